@@ -7,7 +7,7 @@
 
 #include "artefact/json_file.h"
 #include "ground/estimate_ground.h"
-#include "ground/world_scale.h"
+#include "ground/ground_checks.h"
 #include "model/sequence.h"
 
 namespace soslam {

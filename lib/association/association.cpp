@@ -9,9 +9,6 @@
 #include <set>
 #include <tuple>
 
-#include "association/link_frames.h"
-#include "association/merge_tracks.h"
-
 namespace soslam {
 namespace {
 

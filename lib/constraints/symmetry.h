@@ -15,9 +15,7 @@
 #include "geometry/camera.h"
 #include "geometry/mirror_mapping.h"
 #include "image/binary_descriptor.h"
-#include "image/brief.h"
 #include "image/edge_maps.h"
-#include "image/freak.h"
 
 namespace soslam {
 

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "dataset/dataset_checks.h"
-#include "dataset/tracked_rays.h"
 #include "evaluation/statistics.h"
 #include "geometry/angles.h"
 

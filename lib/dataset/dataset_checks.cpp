@@ -14,7 +14,6 @@
 #include "dataset/gate.h"
 
 namespace soslam {
-
 namespace {
 
 using Check = std::vector<Finding> (*)(const ImportView&);

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/import.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

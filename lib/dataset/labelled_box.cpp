@@ -15,7 +15,6 @@
 #include "base/error.h"
 #include "base/table.h"
 #include "dataset/class_names.h"
-#include "dataset/csv_table.h"
 #include "dataset/json_entry.h"
 #include "dataset/text_file.h"
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/tracked_rays.h"
-
 #include <Eigen/Geometry>
 #include <map>
 #include <set>
 #include <string>
 
+#include "dataset/dataset_checks.h"
 #include "evaluation/statistics.h"
 #include "geometry/angles.h"
 #include "geometry/triangulation.h"

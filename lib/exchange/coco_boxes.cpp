@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "exchange/coco_boxes.h"
-
 #include <algorithm>
 #include <array>
 #include <map>
@@ -10,6 +8,7 @@
 
 #include "dataset/class_names.h"
 #include "dataset/labelled_box.h"
+#include "exchange/exports.h"
 #include "initialisation/semantic_table.h"
 
 namespace soslam {

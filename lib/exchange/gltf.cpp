@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "exchange/gltf.h"
-
 #include <fmt/format.h>
 
 #include <bit>
@@ -10,6 +8,7 @@
 
 #include "artefact/model_json.h"
 #include "base/hash.h"
+#include "exchange/exports.h"
 #include "geometry/angles.h"
 
 namespace soslam {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "exchange/text_exports.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 
 #include "base/table.h"
 #include "dataset/trajectories.h"
+#include "exchange/exports.h"
 #include "geometry/angles.h"
 
 namespace soslam {

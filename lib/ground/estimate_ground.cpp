@@ -8,8 +8,8 @@
 
 #include "base/upper_median.h"
 #include "geometry/angles.h"
-#include "ground/group_boxes.h"
 #include "ground/horizontal_planes.h"
+#include "ground/object_heights.h"
 
 namespace soslam {
 namespace {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "ground/estimate_ground.h"
@@ -17,5 +19,36 @@ inline constexpr const char* kCamerasTurnedCheck = "cameras_turned";
 // A scale that cannot be told or is uncertain, and what contradicts it; a camera height that says
 // nothing; an up direction that is uncertain; no support plane.
 std::vector<Finding> CheckGround(const GroundEstimate& estimate, const GroundOptions& options);
+
+// Checks of CheckGround whose findings contradict a scale: the heights of objects contradict the
+// settings that give it, or one another; these settings contradict each other.
+inline constexpr const char* kObjectsAgainstSettingsCheck = "scale_of_objects_differs";
+inline constexpr const char* kObjectsAgainstOneAnotherCheck = "scale_contradicted";
+inline constexpr const char* kSettingsAgainstEachOtherCheck = "settings_of_scale_differ";
+
+// The scale of a world, as world.json states it, and what it rests on.
+struct WorldScale {
+  double metres_per_unit = 1.0;              // of the input's world, median
+  double log_sigma = 0.0;                    // standard deviation of its logarithm
+  double low = 1.0, high = 1.0;              // interval of 95 %
+  std::vector<std::string> found_by;         // "objects", and the settings that give it
+  int objects = 0;                           // those whose heights agree with it
+  std::vector<std::string> contradicted_by;  // checks whose findings contradict it
+};
+
+// None where nothing tells the scale. `findings`: of CheckGround.
+std::optional<WorldScale> WorldScaleOf(const GroundEstimate& estimate,
+                                       const std::vector<Finding>& findings);
+
+// Half the 95 % interval, in per cent of its geometric middle.
+double HalfIntervalPercent(const WorldScale& scale);
+
+// "the usual heights of 9 detected things and the camera's height given"; "objects that contradict
+// one another" where no object agrees with the scale and no setting gives it.
+std::string SourcesInWords(const WorldScale& scale);
+
+// "the heights of objects contradict the camera's height given"; empty where nothing contradicts
+// the scale.
+std::string ContradictionsInWords(const WorldScale& scale);
 
 }  // namespace soslam

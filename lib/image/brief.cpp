@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "image/brief.h"
-
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -8,6 +6,8 @@
 #include <cstdlib>
 #include <opencv2/imgproc.hpp>
 #include <random>
+
+#include "image/binary_descriptor.h"
 
 namespace soslam {
 namespace {

@@ -7,7 +7,6 @@
 #include <opencv2/video/tracking.hpp>
 
 namespace soslam {
-
 namespace {
 
 std::vector<cv::Point2f> Moved(const std::vector<cv::Point2f>& points,

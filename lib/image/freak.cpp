@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "image/freak.h"
-
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -8,6 +6,8 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 #include <vector>
+
+#include "image/binary_descriptor.h"
 
 namespace soslam {
 namespace {

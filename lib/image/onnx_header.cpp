@@ -4,12 +4,45 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <optional>
+#include <utility>
 
 #include "base/error.h"
-#include "image/protobuf_reader.h"
 
 namespace soslam {
 namespace {
+
+// One field of a message: a number of some kind, or bytes, which may be a text, a message or packed
+// numbers.
+struct ProtobufField {
+  enum class Kind { kVarint = 0, kEightBytes = 1, kBytes = 2, kFourBytes = 5 };
+
+  std::uint64_t number;
+  Kind kind;
+  std::uint64_t integer;   // kVarint
+  std::string_view bytes;  // otherwise
+};
+
+// Reads the fields of a message of protobuf's wire format (protobuf.dev, "Encoding") in turn.
+// Returned bytes are views into the message.
+class ProtobufReader {
+ public:
+  explicit ProtobufReader(std::string_view message) : rest_(message) {}
+  // None at the end. Throws InputError, without the file's name, for a malformed message.
+  std::optional<ProtobufField> Next();
+  // The next integer of a packed field; none at the end. Throws likewise.
+  std::optional<std::uint64_t> NextVarint();
+
+ private:
+  std::string_view Take(std::uint64_t count);
+
+  std::string_view rest_;
+};
 
 constexpr int kHalfType = OnnxValue::kHalf;
 constexpr size_t kMostValues = 1000;  // inputs or outputs
@@ -125,6 +158,217 @@ std::string ShapeText(const std::vector<std::int64_t>& shape) {
   std::vector<std::string> sides;
   for (const std::int64_t side : shape) sides.push_back(side == 0 ? "?" : std::to_string(side));
   return fmt::format("[{}]", fmt::join(sides, ", "));
+}
+
+namespace {
+
+using Kind = ProtobufField::Kind;
+
+// Fields of TensorProto in onnx.proto.
+constexpr std::uint64_t kDims = 1, kDataType = 2, kName = 8, kRawData = 9;
+constexpr std::uint64_t kFloatData = 4, kInt32Data = 5, kInt64Data = 7, kDoubleData = 10;
+constexpr std::uint64_t kUint64Data = 11;
+
+// Storage of the numbers of a type: in raw_data, or in a field of their own.
+struct DataType {
+  std::uint64_t type;
+  std::uint64_t raw_bytes;
+  std::uint64_t field;
+};
+constexpr DataType kDataTypes[] = {
+    {1, 4, kFloatData},    // FLOAT
+    {2, 1, kInt32Data},    // UINT8
+    {3, 1, kInt32Data},    // INT8
+    {4, 2, kInt32Data},    // UINT16
+    {5, 2, kInt32Data},    // INT16
+    {6, 4, kInt32Data},    // INT32
+    {7, 8, kInt64Data},    // INT64
+    {9, 1, kInt32Data},    // BOOL
+    {10, 2, kInt32Data},   // FLOAT16
+    {11, 8, kDoubleData},  // DOUBLE
+    {12, 4, kUint64Data},  // UINT32
+    {13, 8, kUint64Data},  // UINT64
+    {16, 2, kInt32Data},   // BFLOAT16
+};
+
+// Wire type of each number of a field, whether they are packed or one by one.
+Kind KindOfNumbers(std::uint64_t field) {
+  if (field == kFloatData) return Kind::kFourBytes;
+  return field == kDoubleData ? Kind::kEightBytes : Kind::kVarint;
+}
+
+std::uint64_t CountPacked(std::string_view bytes, Kind kind) {
+  if (kind == Kind::kFourBytes) return bytes.size() / 4;
+  if (kind == Kind::kEightBytes) return bytes.size() / 8;
+  return static_cast<std::uint64_t>(
+      std::ranges::count_if(bytes, [](char c) { return static_cast<unsigned char>(c) < 0x80; }));
+}
+
+// The type and shape that a tensor states, and the data that it has.
+class Tensor {
+ public:
+  explicit Tensor(std::string_view message) {
+    ProtobufReader reader(message);
+    while (const auto field = reader.Next()) Add(*field);
+  }
+
+  void Check() const {
+    const auto type = std::ranges::find(kDataTypes, type_.value_or(0), &DataType::type);
+    if (type == std::end(kDataTypes)) Refuse(fmt::format("is of type {}", type_.value_or(0)), "");
+    std::uint64_t found = 0;
+    for (const auto& [field, count] : numbers_) {
+      if (field != type->field && count > 0) Refuse("has numbers of another type", "");
+      found += count;
+    }
+    const std::uint64_t raw = raw_bytes_.value_or(0);
+    if (raw > 0 && found > 0) Refuse("has its numbers twice", "");
+    if (raw % type->raw_bytes != 0) Refuse(fmt::format("has {} bytes", raw), "whole numbers");
+    found += raw / type->raw_bytes;
+    if (found != count_) {
+      Refuse(fmt::format("has {} numbers in the file", found),
+             fmt::format("the {} that its shape needs", count_));
+    }
+  }
+
+ private:
+  void Add(const ProtobufField& field) {
+    if (field.number == kName) name_ = field.bytes;
+    if (field.number == kDims) AddSides(field);
+    if (field.number == kDataType) SetOnce(field, Kind::kVarint, field.integer, &type_);
+    if (field.number == kRawData) SetOnce(field, Kind::kBytes, field.bytes.size(), &raw_bytes_);
+    constexpr std::array kNumbers = {kFloatData, kInt32Data, kInt64Data, kDoubleData, kUint64Data};
+    if (std::ranges::find(kNumbers, field.number) == kNumbers.end()) return;
+    const Kind kind = KindOfNumbers(field.number);
+    if (field.kind != kind && field.kind != Kind::kBytes) Refuse("is not as ONNX has it", "");
+    numbers_[field.number] += field.kind == kind ? 1 : CountPacked(field.bytes, kind);
+  }
+
+  void AddSides(const ProtobufField& field) {
+    if (field.kind == Kind::kVarint) return AddSide(field.integer);
+    if (field.kind != Kind::kBytes) Refuse("is not as ONNX has it", "");
+    ProtobufReader packed(field.bytes);
+    while (const auto side = packed.NextVarint()) AddSide(*side);
+  }
+
+  void AddSide(std::uint64_t side) {
+    constexpr std::uint64_t kMax = std::numeric_limits<std::int32_t>::max();
+    if (side > kMax || (side > 0 && count_ > kMax / side)) {
+      Refuse("is absurdly large", fmt::format("at most {} numbers", kMax));
+    }
+    count_ *= side;
+  }
+
+  // Sets a value that may be there only once: readers differ in which of two they take.
+  void SetOnce(const ProtobufField& field, Kind kind, std::uint64_t number,
+               std::optional<std::uint64_t>* value) const {
+    if (field.kind != kind || *value) Refuse("is not as ONNX has it", "");
+    *value = number;
+  }
+
+  [[noreturn]] void Refuse(const std::string& what, const std::string& expected) const {
+    throw InputError(fmt::format("tensor '{}' {}{}{}", name_, what,
+                                 expected.empty() ? "" : "; expected ", expected));
+  }
+
+  std::string_view name_;
+  std::uint64_t count_ = 1;
+  std::optional<std::uint64_t> type_, raw_bytes_;
+  std::map<std::uint64_t, std::uint64_t> numbers_;  // count of numbers by field
+};
+
+// The messages that contain tensors.
+enum class Message { kModel, kGraph, kNode, kAttribute, kTensor };
+
+struct Member {
+  Message of;
+  std::uint64_t field;
+  Message is;
+};
+constexpr Member kMembers[] = {
+    {Message::kModel, 7, Message::kGraph},       {Message::kGraph, 1, Message::kNode},
+    {Message::kGraph, 5, Message::kTensor},      {Message::kNode, 5, Message::kAttribute},
+    {Message::kAttribute, 5, Message::kTensor},  {Message::kAttribute, 6, Message::kGraph},
+    {Message::kAttribute, 10, Message::kTensor}, {Message::kAttribute, 11, Message::kGraph},
+};
+
+void Check(Message message, std::string_view bytes, int depth) {
+  constexpr int kMaxDepth = 64;
+  if (depth > kMaxDepth) throw InputError("is nested too deep");
+  if (message == Message::kTensor) return Tensor(bytes).Check();
+  bool has_tensor = false;
+  ProtobufReader reader(bytes);
+  while (const auto field = reader.Next()) {
+    const auto member = std::ranges::find_if(kMembers, [&](const Member& candidate) {
+      return candidate.of == message && candidate.field == field->number;
+    });
+    if (member == std::end(kMembers)) continue;
+    if (field->kind != Kind::kBytes)
+      throw InputError(fmt::format("field {} is not a message", field->number));
+    const bool is_only_tensor = message == Message::kAttribute && member->field == 5;
+    if (is_only_tensor && std::exchange(has_tensor, true)) {  // readers would merge the two
+      throw InputError("an attribute has two tensors");
+    }
+    Check(member->is, field->bytes, depth + 1);
+  }
+}
+
+}  // namespace
+
+void CheckOnnx(std::string_view bytes, const std::string& name) {
+  try {
+    Check(Message::kModel, bytes, 0);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: is not an ONNX network, or damaged: {}", name, error.what()));
+  }
+}
+
+std::string_view ProtobufReader::Take(std::uint64_t count) {
+  if (count > rest_.size()) {
+    throw InputError(fmt::format("a field of {} bytes has only {}", count, rest_.size()));
+  }
+  const std::string_view taken = rest_.substr(0, count);
+  rest_.remove_prefix(count);
+  return taken;
+}
+
+std::optional<std::uint64_t> ProtobufReader::NextVarint() {
+  if (rest_.empty()) return std::nullopt;
+  constexpr int kBits = 64;
+  std::uint64_t number = 0;
+  for (int shift = 0; shift < kBits; shift += 7) {
+    const auto byte = static_cast<unsigned char>(Take(1).front());
+    number |= std::uint64_t{byte & 0x7fU} << shift;
+    if (byte < 0x80) return number;
+  }
+  throw InputError("an integer has more than 64 bits");
+}
+
+std::optional<ProtobufField> ProtobufReader::Next() {
+  const auto tag = NextVarint();
+  if (!tag) return std::nullopt;
+  constexpr std::uint64_t kMaxTag = 0xffffffff;
+  if (*tag > kMaxTag || *tag >> 3 == 0) throw InputError(fmt::format("a field has tag {}", *tag));
+  ProtobufField field{*tag >> 3, static_cast<ProtobufField::Kind>(*tag & 7), 0, {}};
+  const auto varint = [&] {
+    const auto number = NextVarint();
+    if (!number) throw InputError("its last field is cut short");
+    return *number;
+  };
+  switch (field.kind) {
+    case ProtobufField::Kind::kVarint:
+      field.integer = varint();
+      return field;
+    case ProtobufField::Kind::kEightBytes:
+      field.bytes = Take(8);
+      return field;
+    case ProtobufField::Kind::kBytes:
+      field.bytes = Take(varint());
+      return field;
+    case ProtobufField::Kind::kFourBytes:
+      field.bytes = Take(4);
+      return field;
+  }
+  throw InputError(fmt::format("a field is of kind {}", *tag & 7));
 }
 
 }  // namespace soslam

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -35,5 +36,10 @@ OnnxHeader ReadOnnxHeader(std::string_view bytes, const std::string& name);
 
 // The shape as text, "[1, 3, ?, 640]".
 std::string ShapeText(const std::vector<std::int64_t>& shape);
+
+// Checks that an ONNX file is complete, and that each of its tensors has as many numbers as its
+// shape needs: OpenCV derives their number from the shape. Throws InputError, naming the file
+// `name` and the tensor.
+void CheckOnnx(std::string_view bytes, const std::string& name);
 
 }  // namespace soslam

@@ -16,7 +16,7 @@
 #include "base/paths.h"
 #include "base/process.h"
 #include "base/run_log.h"
-#include "image/onnx_check.h"
+#include "image/onnx_header.h"
 
 namespace soslam {
 namespace {

@@ -8,7 +8,7 @@
 #include "artefact/json_file.h"
 #include "base/error.h"
 #include "base/text.h"
-#include "dataset/csv_table.h"
+#include "dataset/text_file.h"
 
 namespace soslam {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/dataset_tables.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -12,6 +10,7 @@
 
 #include "evaluation/map_reasons.h"
 #include "report/page_html.h"
+#include "report/tables.h"
 
 namespace soslam {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/map_section.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +16,7 @@
 #include "report/map_words.h"
 #include "report/not_placed.h"
 #include "report/page_html.h"
-#include "report/page_sequence.h"
+#include "report/page_parts.h"
 #include "report/plan_view.h"
 
 namespace soslam {

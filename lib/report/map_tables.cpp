@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/map_tables.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,8 +7,8 @@
 #include <utility>
 
 #include "base/text.h"
-#include "report/dataset_tables.h"
 #include "report/page_html.h"
+#include "report/tables.h"
 
 namespace soslam {
 namespace {

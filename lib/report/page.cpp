@@ -13,13 +13,9 @@
 #include "artefact/hdf5_artefact.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
-#include "report/map_section.h"
-#include "report/page_curves.h"
 #include "report/page_html.h"
-#include "report/page_sequence.h"
-#include "report/page_tables.h"
-#include "report/page_variant.h"
-#include "report/paired_differences.h"
+#include "report/page_parts.h"
+#include "report/tables.h"
 
 namespace soslam {
 namespace {

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "model/sequence.h"
@@ -47,5 +48,10 @@ nlohmann::json PageData(const DatasetResult& dataset, const ImageSourceOf& image
 // The data of the page of all datasets: a summary of each dataset's page, and each variant's
 // metrics.
 nlohmann::json OverviewData(const std::vector<nlohmann::json>& pages);
+
+// The part of a page that needs no scripts, as HTML: for a dataset (see PageData) and for all
+// datasets (see OverviewData). Texts of the data are escaped.
+std::string DatasetTables(const nlohmann::json& page);
+std::string OverviewTables(const nlohmann::json& overview);
 
 }  // namespace soslam

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/page_curves.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,7 +9,7 @@
 #include "evaluation/statistics.h"
 #include "geometry/angles.h"
 #include "geometry/landmark.h"
-#include "report/page_geometry.h"
+#include "report/page_parts.h"
 
 namespace soslam {
 namespace {

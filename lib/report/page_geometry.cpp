@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/page_geometry.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <set>
 
 #include "model/occlusion.h"
+#include "report/page_parts.h"
 
 namespace soslam {
 namespace {

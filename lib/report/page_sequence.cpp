@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/page_sequence.h"
-
 #include <algorithm>
 #include <numeric>
 #include <optional>
 
 #include "model/label_groups.h"
 #include "model/segments.h"
-#include "report/page_geometry.h"
+#include "report/page_parts.h"
 
 namespace soslam {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/page_tables.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -13,11 +11,12 @@
 #include "base/table.h"
 #include "base/text.h"
 #include "inspection/inspection.h"
-#include "report/dataset_tables.h"
 #include "report/map_words.h"
+#include "report/page.h"
 #include "report/page_html.h"
-#include "report/page_variant.h"
+#include "report/page_parts.h"
 #include "report/results_tree.h"
+#include "report/tables.h"
 
 namespace soslam {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/page_variant.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,7 +8,7 @@
 #include "artefact/landmarks_file.h"
 #include "evaluation/metrics.h"
 #include "geometry/angles.h"
-#include "report/page_geometry.h"
+#include "report/page_parts.h"
 
 namespace soslam {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/paired_differences.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +10,8 @@
 
 #include "base/error.h"
 #include "evaluation/statistics.h"
-#include "report/page_geometry.h"
+#include "report/page_parts.h"
+#include "report/tables.h"
 
 namespace soslam {
 namespace {

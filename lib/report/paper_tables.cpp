@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/paper_tables.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -9,8 +7,10 @@
 #include <set>
 
 #include "artefact/json_file.h"
+#include "report/tables.h"
 
 namespace soslam {
+
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PublishedRow, dataset, objects, values)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PublishedTable, table, quantity, source, rows, average)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PublishedTime, variant, ms_mean, ms_sigma, observations)

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/results_page.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -11,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "report/tables.h"
 
 namespace soslam {
 namespace {

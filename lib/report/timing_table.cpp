@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/timing_table.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -11,6 +9,7 @@
 #include "artefact/json_file.h"
 #include "base/error.h"
 #include "base/paths.h"
+#include "report/tables.h"
 
 namespace soslam {
 namespace {

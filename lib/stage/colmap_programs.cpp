@@ -17,7 +17,6 @@
 #include "base/paths.h"
 #include "base/process.h"
 #include "base/progress.h"
-#include "dataset/colmap_camera.h"
 #include "dataset/colmap_model.h"
 
 namespace soslam {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/data_stages.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,11 +15,12 @@
 #include "base/paths.h"
 #include "base/run_log.h"
 #include "cli/command_line.h"
+#include "dataset/dataset_content.h"
 #include "dataset/gate.h"
-#include "dataset/import.h"
 #include "priors/furniture_catalogue.h"
 #include "priors/learn_priors.h"
-#include "stage/scene_axes.h"
+#include "stage/segment_views.h"
+#include "stage/stages.h"
 #include "synthesis/scene.h"
 #include "synthesis/simulate.h"
 #include "synthesis/write_dataset.h"

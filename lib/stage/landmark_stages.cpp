@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/landmark_stages.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,6 +23,7 @@
 #include "initialisation/initialise.h"
 #include "orientation/refine_orientation.h"
 #include "orientation/texture_asymmetry.h"
+#include "stage/stages.h"
 
 namespace soslam {
 namespace {

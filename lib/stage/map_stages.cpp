@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/map_stages.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,6 +23,7 @@
 #include "mapping/initial_landmarks.h"
 #include "model/occlusion.h"
 #include "orientation/texture_asymmetry.h"
+#include "stage/stages.h"
 
 namespace soslam {
 namespace {

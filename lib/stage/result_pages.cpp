@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/result_pages.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,17 +15,12 @@
 #include "base/paths.h"
 #include "base/table.h"
 #include "dataset/image_path.h"
-#include "report/dataset_tables.h"
-#include "report/map_tables.h"
 #include "report/page.h"
 #include "report/page_html.h"
-#include "report/page_tables.h"
-#include "report/paired_differences.h"
-#include "report/paper_tables.h"
-#include "report/results_page.h"
 #include "report/results_tree.h"
-#include "report/timing_table.h"
+#include "report/tables.h"
 #include "stage/image_stages.h"
+#include "stage/stages.h"
 
 namespace soslam {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/run_detect.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,8 +20,8 @@
 #include "dataset/trajectories.h"
 #include "image/read_image.h"
 #include "image/yolo_detector.h"
-#include "image/yolo_format.h"
 #include "model/label_groups.h"
+#include "stage/stages.h"
 
 namespace soslam {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/run_export.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,11 +11,9 @@
 #include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "base/hash.h"
-#include "exchange/coco_boxes.h"
-#include "exchange/gltf.h"
-#include "exchange/meshes.h"
-#include "exchange/text_exports.h"
+#include "exchange/exports.h"
 #include "exchange/world.h"
+#include "stage/stages.h"
 
 namespace soslam {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/run_frames.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,6 +28,7 @@
 #include "image/read_image.h"
 #include "image/video_file.h"
 #include "stage/chosen_frames.h"
+#include "stage/stages.h"
 
 namespace soslam {
 namespace {

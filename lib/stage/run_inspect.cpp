@@ -12,10 +12,13 @@
 #include "artefact/hdf5_artefact.h"
 #include "artefact/landmarks_file.h"
 #include "artefact/sequence_file.h"
+#include "artefact/world_file.h"
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/paths.h"
+#include "base/text.h"
 #include "dataset/image_path.h"
-#include "inspection/headline.h"
+#include "inspection/doubts.h"
 #include "inspection/inspection.h"
 #include "inspection/overlay.h"
 #include "stage/image_stages.h"
@@ -152,6 +155,43 @@ bool IsOfAnotherSequence(const InspectRequest& request) {
   return std::ranges::none_of(inputs, [&](const nlohmann::json& input) {
     return input.is_object() && input.value("sha256", "") == sha256;
   });
+}
+
+std::string InBrackets(const std::string& doubts) {
+  return doubts.empty() ? "" : fmt::format(" (uncertain: {})", doubts);
+}
+
+// ", scale ... (uncertain: ...), up (uncertain: ...)", up only if it is uncertain; empty for
+// a world whose scale is given.
+std::string WorldInHeadline(const fs::path& path, const Sequence& sequence) {
+  constexpr const char* kUnknown = ", scale unknown";
+  if (!Exists(path)) return IsInMetresWithoutWorld(sequence) ? "" : kUnknown;
+  const nlohmann::json world = ReadArtefact(path, "world");
+  std::string words = kUnknown;
+  if (const auto scale = ScaleOfWorld(world)) {
+    words = fmt::format(", scale +- {:.0f} %{}", HalfIntervalPercent(*scale),
+                        InBrackets(ContradictionsInWords(*scale)));
+  }
+  const std::string doubt = DoubtOfUp(world);
+  return doubt.empty() ? words : words + ", up" + InBrackets(doubt);
+}
+
+// One line on a map.json, such as "9 objects, scale +- 18 %, 2 objects uncertain": how many objects
+// it has, and how well its scale is known by the world.json beside it, with the reason where
+// something contradicts that. Throws InputError.
+std::string HeadlineOfMap(const fs::path& map, const Sequence& sequence) {
+  const MapEstimate estimate = ReadMap(map, sequence);
+  const std::vector<std::string> doubts = DoubtsOfMap(map.parent_path(), estimate, sequence);
+  size_t placed = 0, uncertain = 0;
+  for (size_t i = 0; i < estimate.objects.size(); ++i) {
+    if (!estimate.objects[i].landmark_in_world) continue;
+    ++placed;
+    if (!doubts[i].empty()) ++uncertain;
+  }
+  std::string line =
+      Counted(placed, "object") + WorldInHeadline(map.parent_path() / "world.json", sequence);
+  if (uncertain > 0) line += fmt::format(", {} uncertain", Counted(uncertain, "object"));
+  return line;
 }
 
 std::string Headline(const InspectRequest& request) {

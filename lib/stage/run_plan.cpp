@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/run_plan.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -14,9 +12,9 @@
 #include "base/error.h"
 #include "base/paths.h"
 #include "base/text.h"
+#include "stage/stages.h"
 #include "workflow/pipeline_settings.h"
 #include "workflow/plan.h"
-#include "workflow/plan_makefile.h"
 
 namespace soslam {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/run_reconstruct.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,6 +21,7 @@
 #include "dataset/text_file.h"
 #include "image/image_format.h"
 #include "stage/colmap_programs.h"
+#include "stage/stages.h"
 
 namespace soslam {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/run_status.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -17,10 +15,9 @@
 #include "base/text.h"
 #include "cli/command_line.h"
 #include "report/results_tree.h"
-#include "stage/run_plan.h"
+#include "stage/stages.h"
 #include "workflow/pipeline_settings.h"
 #include "workflow/plan.h"
-#include "workflow/plan_makefile.h"
 #include "workflow/plan_state.h"
 
 namespace soslam {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/run_track.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,6 +19,7 @@
 #include "model/finding.h"
 #include "model/map_points.h"
 #include "stage/image_stages.h"
+#include "stage/stages.h"
 
 namespace soslam {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/run_verify.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -11,7 +9,7 @@
 #include "base/error.h"
 #include "base/table.h"
 #include "cli/command_line.h"
-#include "workflow/reproduce.h"
+#include "stage/stages.h"
 #include "workflow/verify.h"
 
 namespace soslam {

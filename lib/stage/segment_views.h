@@ -25,4 +25,9 @@ std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, double min_le
 // world, up direction and planes.
 void CheckOneSegment(const Sequence& sequence, const std::filesystem::path& path);
 
+// Sets the scene axes of a sequence's planes from images of the dataset folder, if the sequence has
+// one world. Images that are missing or damaged are left out. Those read are added to `inputs`.
+void AddSceneAxes(const std::filesystem::path& folder, int threads, Sequence* sequence,
+                  std::vector<std::filesystem::path>* inputs);
+
 }  // namespace soslam

@@ -17,7 +17,7 @@
 #include "evaluation/alignment.h"
 #include "ground/options.h"
 #include "image/edge_maps.h"
-#include "image/track_options.h"
+#include "image/feature_tracks.h"
 #include "initialisation/options.h"
 #include "mapping/options.h"
 #include "orientation/options.h"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "workflow/plan_makefile.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -11,6 +9,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "workflow/plan.h"
 
 namespace soslam {
 namespace {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "workflow/plan.h"
-#include "workflow/plan_makefile.h"
 
 namespace soslam {
 

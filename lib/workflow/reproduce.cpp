@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "workflow/reproduce.h"
-
 #include <fmt/format.h>
 #include <sys/wait.h>
 
@@ -18,6 +16,7 @@
 #include "inspection/difference.h"
 #include "report/results_tree.h"
 #include "workflow/plan.h"
+#include "workflow/verify.h"
 
 namespace soslam {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "dataset/import.h"
+#include "dataset/dataset_content.h"
 #include "evaluation/statistics.h"
 #include "mapping/back_end.h"
 #include "support/real_data.h"

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "dataset/import.h"
+#include "dataset/dataset_content.h"
 #include "support/dataset_fixture.h"
 #include "support/expect_error.h"
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/import.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "base/error.h"
+#include "dataset/dataset_content.h"
 #include "model/occlusion.h"
 #include "support/dataset_fixture.h"
 #include "support/expect_error.h"

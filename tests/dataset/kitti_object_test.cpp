@@ -5,7 +5,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "base/error.h"
-#include "dataset/import.h"
+#include "dataset/dataset_content.h"
 #include "dataset/kitti_label.h"
 #include "support/expect_error.h"
 #include "support/kitti_fixture.h"

@@ -6,7 +6,6 @@
 
 #include "base/error.h"
 #include "dataset/dataset_content.h"
-#include "dataset/import.h"
 #include "support/expect_error.h"
 #include "support/kitti_fixture.h"
 

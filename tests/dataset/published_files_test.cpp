@@ -8,7 +8,7 @@
 
 #include "base/options.h"
 #include "dataset/class_names.h"
-#include "dataset/import.h"
+#include "dataset/dataset_content.h"
 #include "dataset/yolo_boxes.h"
 #include "support/real_data.h"
 

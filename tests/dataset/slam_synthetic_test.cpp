@@ -3,7 +3,6 @@
 
 #include "base/error.h"
 #include "dataset/dataset_content.h"
-#include "dataset/import.h"
 #include "support/dataset_fixture.h"
 #include "support/expect_error.h"
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "exchange/coco_boxes.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +6,7 @@
 #include <set>
 
 #include "dataset/labelled_box.h"
+#include "exchange/exports.h"
 #include "support/exported_world.h"
 #include "support/labelled_boxes.h"
 #include "support/temporary_folder.h"

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "exchange/gltf.h"
-
 #include <gtest/gtest.h>
 
 #include "base/hash.h"
+#include "exchange/exports.h"
 #include "geometry/angles.h"
 #include "support/exported_world.h"
 #include "support/gltf_document.h"

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "exchange/meshes.h"
-
 #include <gtest/gtest.h>
 
 #include <set>
 #include <sstream>
 
+#include "exchange/exports.h"
 #include "geometry/support_function.h"
 #include "geometry/surface.h"
 #include "support/exported_world.h"

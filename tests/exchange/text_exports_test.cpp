@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "exchange/text_exports.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <map>
 #include <sstream>
 
-#include "dataset/csv_table.h"
+#include "dataset/text_file.h"
 #include "dataset/trajectories.h"
+#include "exchange/exports.h"
 #include "geometry/angles.h"
 #include "support/exported_world.h"
 #include "support/temporary_folder.h"

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "image/brief.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <opencv2/core.hpp>
 
+#include "image/binary_descriptor.h"
 #include "support/random.h"
 
 namespace soslam {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "image/onnx_check.h"
-
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "image/onnx_header.h"
 #include "support/expect_error.h"
 #include "support/onnx_network.h"
 

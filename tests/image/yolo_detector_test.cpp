@@ -6,7 +6,6 @@
 #include <opencv2/core.hpp>
 
 #include "base/error.h"
-#include "image/yolo_format.h"
 #include "support/expect_error.h"
 #include "support/labelled_boxes.h"
 #include "support/onnx_network.h"

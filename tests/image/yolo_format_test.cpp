@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "image/yolo_format.h"
-
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "image/yolo_detector.h"
 #include "support/expect_error.h"
 #include "support/onnx_network.h"
 #include "support/temporary_folder.h"

@@ -9,10 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "stage/data_stages.h"
 #include "stage/image_stages.h"
-#include "stage/landmark_stages.h"
-#include "stage/map_stages.h"
+#include "stage/stages.h"
 #include "support/small_pipeline.h"
 
 namespace soslam {

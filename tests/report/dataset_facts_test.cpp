@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/dataset_facts.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "report/dataset_tables.h"
 #include "report/results_tree.h"
+#include "report/tables.h"
 #include "support/expect_error.h"
 #include "support/results_folder.h"
 #include "support/table_cells.h"

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/map_tables.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "report/tables.h"
 #include "support/map_metrics.h"
 #include "support/table_cells.h"
 #include "support/temporary_folder.h"

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/page_curves.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "geometry/angles.h"
+#include "report/page_parts.h"
 
 namespace soslam {
 namespace {

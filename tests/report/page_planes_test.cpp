@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "model/segments.h"
-#include "report/page_geometry.h"
+#include "report/page_parts.h"
 #include "support/random.h"
 #include "support/scene.h"
 

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "report/page_sequence.h"
+#include "report/page_parts.h"
 
 namespace soslam {
 namespace {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/page_tables.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "report/page_variant.h"
+#include "report/page.h"
+#include "report/page_parts.h"
 
 namespace soslam {
 namespace {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/paired_differences.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "report/tables.h"
 #include "support/expect_error.h"
 #include "support/results_folder.h"
 #include "support/table_cells.h"

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/paper_tables.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "artefact/json_file.h"
+#include "report/tables.h"
 #include "support/expect_error.h"
 #include "support/results_folder.h"
 #include "support/table_cells.h"

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "report/dataset_tables.h"
+#include "report/tables.h"
 #include "support/map_metrics.h"
 #include "support/table_cells.h"
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/results_page.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/error.h"
 #include "report/results_tree.h"
+#include "report/tables.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 

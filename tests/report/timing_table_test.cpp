@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/timing_table.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "report/tables.h"
 #include "support/expect_error.h"
 #include "support/results_folder.h"
 #include "support/table_cells.h"

@@ -8,7 +8,7 @@
 #include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "report/not_placed.h"
-#include "stage/structure_stages.h"
+#include "stage/stages.h"
 #include "support/association_scenes.h"
 #include "support/expect_error.h"
 #include "support/printed.h"

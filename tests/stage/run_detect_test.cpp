@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/run_detect.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +6,7 @@
 
 #include "base/error.h"
 #include "dataset/labelled_box.h"
+#include "stage/stages.h"
 #include "support/expect_error.h"
 #include "support/image_files.h"
 #include "support/labelled_boxes.h"

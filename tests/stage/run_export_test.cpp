@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/run_export.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +9,7 @@
 #include "association/association.h"
 #include "base/error.h"
 #include "dataset/trajectories.h"
-#include "stage/map_stages.h"
+#include "stage/stages.h"
 #include "support/expect_error.h"
 #include "support/gltf_document.h"
 #include "support/printed.h"

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/run_frames.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "artefact/json_file.h"
 #include "image/read_image.h"
+#include "stage/stages.h"
 #include "support/drawn_photos.h"
 #include "support/expect_error.h"
 

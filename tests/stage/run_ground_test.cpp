@@ -8,7 +8,7 @@
 #include "artefact/points_file.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
-#include "stage/ground_stage.h"
+#include "stage/stages.h"
 #include "support/expect_error.h"
 #include "support/prior_scene.h"
 #include "support/temporary_folder.h"

@@ -6,7 +6,7 @@
 #include "artefact/reconstruction_file.h"
 #include "artefact/sequence_file.h"
 #include "base/hash.h"
-#include "stage/data_stages.h"
+#include "stage/stages.h"
 #include "support/dataset_fixture.h"
 #include "support/expect_error.h"
 #include "support/printed.h"

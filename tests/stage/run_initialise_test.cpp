@@ -9,7 +9,7 @@
 #include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "geometry/iou.h"
-#include "stage/landmark_stages.h"
+#include "stage/stages.h"
 #include "support/drawn_cuboids.h"
 #include "support/expect_error.h"
 #include "support/printed.h"

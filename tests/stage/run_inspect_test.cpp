@@ -13,7 +13,7 @@
 #include "artefact/world_file.h"
 #include "base/error.h"
 #include "base/options.h"
-#include "ground/world_scale.h"
+#include "ground/ground_checks.h"
 #include "inspection/canvas.h"
 #include "support/expect_error.h"
 #include "support/scene.h"

@@ -5,7 +5,7 @@
 #include "artefact/semantic_table_file.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
-#include "stage/data_stages.h"
+#include "stage/stages.h"
 #include "support/expect_error.h"
 #include "support/printed.h"
 #include "support/temporary_folder.h"

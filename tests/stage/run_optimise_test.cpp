@@ -8,7 +8,7 @@
 #include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "evaluation/metrics.h"
-#include "stage/map_stages.h"
+#include "stage/stages.h"
 #include "support/expect_error.h"
 #include "support/scene.h"
 #include "support/temporary_folder.h"

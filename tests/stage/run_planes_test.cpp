@@ -10,7 +10,7 @@
 #include "artefact/sequence_file.h"
 #include "association/association.h"
 #include "base/error.h"
-#include "stage/structure_stages.h"
+#include "stage/stages.h"
 #include "support/expect_error.h"
 #include "support/scene.h"
 #include "support/temporary_folder.h"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/run_reconstruct.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,6 +11,7 @@
 #include "base/error.h"
 #include "dataset/dataset_json.h"
 #include "dataset/trajectories.h"
+#include "stage/stages.h"
 #include "support/expect_error.h"
 #include "support/image_files.h"
 #include "support/printed.h"

@@ -9,7 +9,7 @@
 #include "artefact/landmarks_file.h"
 #include "artefact/sequence_file.h"
 #include "geometry/angles.h"
-#include "stage/landmark_stages.h"
+#include "stage/stages.h"
 #include "support/scene.h"
 #include "support/temporary_folder.h"
 #include "synthesis/render.h"

@@ -7,7 +7,7 @@
 
 #include "artefact/json_file.h"
 #include "base/error.h"
-#include "stage/result_pages.h"
+#include "stage/stages.h"
 #include "support/expect_error.h"
 #include "support/printed.h"
 #include "support/temporary_folder.h"

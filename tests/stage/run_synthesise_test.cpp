@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "stage/data_stages.h"
+#include "stage/stages.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {

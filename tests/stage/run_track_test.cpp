@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/run_track.h"
-
 #include <gtest/gtest.h>
 
 #include <opencv2/imgcodecs.hpp>
@@ -10,6 +8,7 @@
 #include "artefact/sequence_file.h"
 #include "dataset/text_file.h"
 #include "geometry/distortion.h"
+#include "stage/stages.h"
 #include "support/drawn_photos.h"
 #include "support/printed.h"
 #include "support/temporary_folder.h"

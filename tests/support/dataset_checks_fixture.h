@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "dataset/import.h"
+#include "dataset/dataset_content.h"
 #include "geometry/angles.h"
 #include "geometry/box.h"
 #include "geometry/camera.h"

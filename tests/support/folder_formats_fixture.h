@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "dataset/import.h"
+#include "dataset/dataset_content.h"
 #include "support/dataset_fixture.h"
 #include "support/run_command.h"
 

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "exchange/meshes.h"
+#include "exchange/exports.h"
 
 namespace soslam {
 

@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-#include "exchange/meshes.h"
+#include "exchange/exports.h"
 
 namespace soslam {
 

@@ -8,7 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "base/error.h"
-#include "dataset/import.h"
+#include "dataset/dataset_content.h"
 #include "support/scene.h"
 #include "support/temporary_folder.h"
 #include "synthesis/simulate.h"

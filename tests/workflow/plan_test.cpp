@@ -11,7 +11,7 @@
 
 #include "base/error.h"
 #include "dataset/import_options.h"
-#include "stage/run_plan.h"
+#include "stage/stages.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 #include "workflow/pipeline_settings.h"

@@ -4,7 +4,7 @@
 #include <csignal>
 
 #include "support/temporary_folder.h"
-#include "workflow/reproduce.h"
+#include "workflow/verify.h"
 
 namespace soslam {
 namespace {

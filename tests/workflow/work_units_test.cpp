@@ -5,7 +5,7 @@
 #include <set>
 
 #include "workflow/pipeline_settings.h"
-#include "workflow/plan_makefile.h"
+#include "workflow/plan.h"
 
 namespace soslam {
 namespace {

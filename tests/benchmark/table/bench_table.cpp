@@ -15,7 +15,7 @@
 
 #include "artefact/json_file.h"
 #include "base/table.h"
-#include "report/paper_tables.h"
+#include "report/tables.h"
 
 namespace soslam {
 namespace {

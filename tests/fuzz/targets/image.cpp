@@ -3,7 +3,6 @@
 
 #include "fuzz/fuzz_target.h"
 #include "image/image_format.h"
-#include "image/onnx_check.h"
 #include "image/onnx_header.h"
 #include "image/read_image.h"
 

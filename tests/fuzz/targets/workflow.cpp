@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "artefact/run_file.h"
 #include "fuzz/fuzz_target.h"
-#include "report/dataset_tables.h"
-#include "report/paired_differences.h"
-#include "report/paper_tables.h"
 #include "report/results_tree.h"
-#include "report/timing_table.h"
+#include "report/tables.h"
 #include "workflow/pipeline_settings.h"
-#include "workflow/plan_makefile.h"
+#include "workflow/plan.h"
 #include "workflow/verify.h"
 
 namespace soslam {

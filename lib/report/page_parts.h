@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "geometry/camera.h"
+#include "geometry/landmark.h"
+#include "inspection/projection.h"
+#include "model/estimates.h"
+#include "model/sequence.h"
+#include "model/symmetry_record.h"
+#include "report/page_images.h"
+#include "report/results_tree.h"
+
+namespace soslam {
+
+// The part of a sequence that is on a page, which must stay small however long the sequence is.
+struct PageSelection {
+  std::vector<int> frames;  // into Sequence::frames, ascending: the camera's path
+  std::vector<int> shown;   // frames whose pixels are shown, ascending
+  std::vector<int>
+      detections;  // into Sequence::detections, ascending: all in frames that are shown
+
+  bool Shows(int frame_index) const;
+  // Positions in `frames` and `detections`, which must contain the argument.
+  int PlaceOfFrame(int frame_index) const;
+  int PlaceOfDetection(int detection_index) const;
+};
+
+// The ids of at most kMaxShownFrames frames, evenly spaced among those with an image or, if there
+// are no images, among all; if these are too many, only those with detections are considered.
+inline constexpr size_t kMaxShownFrames = 60;
+std::set<int> FramesToShow(const Sequence& sequence,
+                           const std::function<bool(int frame_index)>& has_image);
+
+// Shows the frames with these ids. The camera's path has them, and up to kMaxWayFrames frames
+// evenly spaced over all.
+inline constexpr size_t kMaxWayFrames = 1000;
+PageSelection SelectForPage(const Sequence& sequence, const std::set<int>& shown_ids);
+
+// The data of a sequence on a page, whatever the method. Frames and detections are the selected
+// ones, and indices refer to these lists:
+//   counts: frames, objects, detections of the whole sequence
+//   frames: id, timestamp, segment, width, height, pose (odometry) and true_pose or null, shown;
+//     of those shown grid: see PageGridInFrame
+//   objects: id, label, segment (null if unknown), plane (index or null), truth (landmark or null)
+//   detections: frame and object (indices), box, truth (outline or null); the truth is the cuboid
+//     around the object, with which estimates are compared
+//   planes: see PageGrids
+//   segments: up, a direction of the world
+//   rejected: reason -> detections that were not used
+nlohmann::json PageSequence(const Sequence& sequence, const PageSelection& selection);
+
+// Short forms for pages, to keep them small. Lengths are rounded to a tenth of a millimetre, pixels
+// to a tenth, other numbers to five significant digits. Numbers that are not finite become null.
+
+nlohmann::json PageNumber(double value);
+nlohmann::json PageNumbers(const std::vector<double>& values);
+nlohmann::json PageVector(const Eigen::Vector3d& metres);
+// [x, y, z, qx, qy, qz, qw]
+nlohmann::json PagePose(const Rigid3d& pose);
+// {"pose": world_from_object, "half_axes": [a, b, c], "p": shape exponent}
+nlohmann::json PageLandmark(const Landmark& landmark_in_world);
+// [x, y, x, y, ...] px
+nlohmann::json PagePixels(const std::vector<Eigen::Vector2d>& pixels);
+// {"outline": pixels, "axes": [front, left, up as pixels from centre to face] or null}
+nlohmann::json PageOutline(const Camera& camera, const Landmark& landmark_in_camera);
+
+// The lines of a grid on each of Sequence::planes, in the world; none for planes without objects.
+using PlaneGrids = std::vector<std::vector<LineSegment3>>;
+
+// Grids on the sequence's planes, around true centres if they are known, else around the contact
+// points that its cameras see.
+PlaneGrids GridsOfSequence(const Sequence& sequence);
+// Grids on the map's planes, around its landmarks.
+PlaneGrids GridsOfMap(const MapEstimate& map, const Sequence& sequence);
+
+// Lines [x, y, z, x, y, z] in the world, by plane.
+nlohmann::json PageGrids(const PlaneGrids& grids);
+
+// The part of the grids that a frame's camera sees on the planes of its detections: lines as pixels
+// [x, y, x, y]. The pose of the camera may depend on the detection.
+nlohmann::json PageGridInFrame(
+    const Sequence& sequence, int frame_index, const PlaneGrids& grids,
+    const std::function<Rigid3d(const Detection&)>& camera_from_world_for);
+
+// The camera pose (camera_from_world) from which the sequence's own planes are drawn for a
+// detection: for given planes the true pose if it is known; for estimated planes the pose that
+// moves the plane to the detection's plane_in_camera, with which odometry need not agree.
+Rigid3d CameraAbovePlane(const Sequence& sequence, const Detection& detection);
+
+// The data of one variant with metrics on a page; `sequence` is the variant's own.
+//   name; kind: "map", "views" (one landmark from all frames, without a back end) or "frames" (one
+//     for each observation), by the stages that produced it
+//   metrics: metrics.json without its header and findings
+//   objects, one per object of the sequence: landmark in the world (of kind "frames" that of its
+//     first observation) or null, failure, observations; with a covariance also centre_covariance
+//     (3 x 3, m^2), sigma_centre (m), sigma_log_half_axes, sigma_yaw_deg (about the landmark's z)
+//   outlines, one per detection that is selected: see PageOutline, or null
+//   trajectory: poses of the map for the selected frames; solver: iterations, costs, and the counts
+//     of residuals used and left out
+//   planes: those of the map, see PageGrids, and grids, by selected frame, see PageGridInFrame;
+//     both null if they are the sequence's
+// Throws InputError when a file that the variant should have is missing or not valid.
+nlohmann::json PageVariant(const VariantResult& result, const Sequence& sequence,
+                           const PageSelection& selection);
+
+// Variants of a dataset's page that have more than numbers, as indices into its "variants", in the
+// order of interest: maps before views before single frames, and of each kind the variant with the
+// most parts first.
+std::vector<size_t> DetailedVariants(const nlohmann::json& page);
+
+// Cost over yaw of up to kCurvesPerObject observations of each object, evenly spaced among the
+// selected ones: detection (index into the selected ones); yaw_deg: the grid; cost: by name;
+// true_yaw_deg, initial_yaw_deg, refined_yaw_deg, yaw_sigma_deg or null; pairs: up to kPairsOfCurve
+// pixels with their mirror pixels [x, y, x, y].
+inline constexpr size_t kCurvesPerObject = 3;
+inline constexpr size_t kPairsOfCurve = 120;
+nlohmann::json PageCurves(const std::vector<SymmetryRecord>& records, const Sequence& sequence,
+                          const PageSelection& selection);
+
+// Accuracy of each cost's yaw modulo half a turn, over all observations with ground truth, by name:
+// observations; median_error_deg of its lowest minimum; within: the fraction of them with an error
+// of at most 0, kErrorStepDeg, 2 kErrorStepDeg, ... 90 degrees; known_at_truth: the fraction with a
+// cost at the true yaw; near_where_known: of those the fraction with an error of at most 10
+// degrees, or null; minima: mean number of local minima over half a turn. Empty without ground
+// truth.
+inline constexpr int kErrorStepDeg = 5;
+nlohmann::json PageDescriptors(const std::vector<SymmetryRecord>& records);
+
+// The first section of a dataset's page, as HTML without scripts: the map of the variant in this
+// folder from above, its objects with pictures, what was seen but not placed, and photos without a
+// pose; empty where that has no room in `max_bytes`. Throws InputError for files that are not
+// valid.
+std::string MapSection(const std::string& title, const std::filesystem::path& folder,
+                       const Sequence& sequence, const ImageSource& images, size_t max_bytes,
+                       int threads);
+
+}  // namespace soslam

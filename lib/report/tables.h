@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/table.h"
+#include "report/results_tree.h"
+
+namespace soslam {
+
+// All summary metrics of one dataset, one row per variant: the paper's variants always, with "-" if
+// they have no metrics; others if they have metrics.
+Table DatasetTable(const DatasetResult& dataset);
+
+// A row for each dataset: where its data come from, how much there is, and what marks it.
+Table SequencesTable(const std::vector<DatasetResult>& datasets);
+
+// A variant's name and its metrics.json.
+using NamedMetrics = std::pair<std::string, nlohmann::json>;
+
+// Maps compared with all true objects (map_quality of metrics.json), a row for each variant that
+// has it: counts of found objects, and their errors. Empty if no variant has it.
+std::vector<Table> QualityTables(const std::string& dataset,
+                                 const std::vector<NamedMetrics>& variants);
+std::vector<Table> QualityTables(const DatasetResult& dataset);
+
+// The true objects that a map misses and its false landmarks, each with the reason.
+Table MistakesTable(const nlohmann::json& metrics);
+
+// Tables over all datasets: maps of some variants compared with all true objects (map_quality in
+// metrics.json). Without rows if no dataset has such a map.
+
+// What is right: a row of QualityTables for each map, with what was given.
+Table MapsTable(const std::vector<DatasetResult>& datasets,
+                const std::vector<std::string>& variants);
+
+// The missed objects and the other false landmarks of each map, by reason.
+Table LostTable(const std::vector<DatasetResult>& datasets,
+                const std::vector<std::string>& variants);
+
+// The found objects of each map, each with the part of its landmark whose correction would gain
+// most.
+Table LimitsTable(const std::vector<DatasetResult>& datasets,
+                  const std::vector<std::string>& variants);
+
+// Means over the objects of one dataset, as the paper prints them.
+struct PublishedRow {
+  std::string dataset = "average";
+  int objects = 0;
+  std::map<std::string, double> values;  // by method
+};
+
+struct PublishedTable {
+  std::string table;     // its number, "I"
+  std::string quantity;  // Quantity::key
+  std::string source;
+  std::vector<PublishedRow> rows;  // in the paper's order
+  PublishedRow average;            // as printed, not computed from the rows
+};
+
+struct PublishedTime {
+  std::string variant;
+  double ms_mean = 0.0;
+  double ms_sigma = 0.0;
+  double observations = 0.0;  // mean number per landmark
+};
+
+struct PublishedTimes {
+  std::string source;
+  std::string dataset;
+  std::string machine;
+  std::vector<PublishedTime> values;
+};
+
+// The values in the paper's tables.
+struct Published {
+  std::string protocol;  // how these values came about, one line
+  std::vector<PublishedTable> tables;
+  PublishedTimes times;
+
+  // Null when there is none.
+  const PublishedTable* Find(const std::string& number, const Quantity& quantity) const;
+};
+
+// Reads schemas/published.schema.json. Throws InputError.
+Published ReadPublished(const std::filesystem::path& path);
+
+// A quantity averaged over the objects that have it.
+struct ObjectMean {
+  double mean = 0.0;
+  int objects = 0;
+  int observations = 0;  // of all objects that were compared
+};
+
+// Mean weighted by the number of objects, like the averages of the paper. Requires at least one
+// mean.
+ObjectMean WeightedMean(const std::vector<ObjectMean>& means);
+
+// Tables I to IV of the paper: datasets by variants, its own and ours, with the published values in
+// rows of their own; notes say in what datasets differ from the published ones. The best measured
+// value of a row is bold if it is over all of the row's objects; values over fewer objects have
+// their number in brackets. The average is over datasets that have a value for every variant with a
+// value in any dataset; the row of a detector's boxes is over the objects of such datasets that
+// every variant has. Tables without a measured value are left out.
+std::vector<Table> PaperTables(const std::vector<DatasetResult>& datasets,
+                               const Published& published);
+
+// Run time per landmark. Single-frame variants: edges, initialisation and refinement, per
+// observation; SVD and MultiView: the same, per object; maps: the back end alone, per object.
+struct LandmarkTime {
+  double wall_ms = 0.0;
+  double cpu_ms = 0.0;
+  double observations = 0.0;  // mean number per landmark
+};
+
+// Counts of a sequence.json.
+struct SequenceCounts {
+  int observations = 0;
+  int objects = 0;  // objects that were observed
+};
+
+// Throws InputError for a file that cannot be read or has no detections of objects.
+SequenceCounts CountObservations(const std::filesystem::path& sequence_file);
+
+// None without metrics, observations, or the timing of one of these stages.
+std::optional<LandmarkTime> TimePerLandmark(const VariantResult& variant,
+                                            const SequenceCounts& counts);
+
+// Table V of the paper: datasets by variants, with the published times; without rows when no
+// variant has a time. Throws InputError as CountObservations.
+Table TimeTable(const std::vector<DatasetResult>& datasets, const Published& published);
+
+// A comparison of two variants: the errors of `variant` minus those of `baseline`.
+struct Comparison {
+  std::string variant;
+  std::string baseline;
+};
+
+// All comparisons within each list of variants: each variant with those before it. Lists are
+// separated by commas, variants by blanks: "InitS InitST, OursS OursST". Throws SettingsError for a
+// list of fewer than two variants.
+std::vector<Comparison> ParseComparisons(const std::string& lists);
+
+struct Interval {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+struct PairedDifference {
+  int objects = 0;
+  double mean = 0.0;
+  // Confidence interval of the mean by Student's t, which assumes independent normal differences of
+  // the objects. None for fewer than two objects.
+  std::optional<Interval> confidence_95;
+};
+
+// The t that the absolute value of a Student variable with this many degrees of freedom (>= 1) does
+// not exceed with probability 0.95.
+double StudentT95(int degrees_of_freedom);
+
+// Requires at least one difference.
+PairedDifference MeanDifference(const std::vector<double>& differences);
+
+// One row per comparison and dataset with objects to compare, then one over the objects of all
+// datasets with a detector's boxes and one over those of all datasets, each if there are several.
+// Bold: the interval excludes zero.
+Table DifferencesTable(const std::vector<DatasetResult>& datasets,
+                       const std::vector<Comparison>& comparisons, const Quantity& quantity);
+
+// The rows over several datasets alone, with IoU and Rot side by side.
+Table DifferencesOverDatasets(const std::vector<DatasetResult>& datasets,
+                              const std::vector<Comparison>& comparisons);
+
+// The effect of each part of the methods, for pairs of neighbouring variants with and without it
+// that both have metrics: with, without (names), objects, and for iou, rotation_deg and
+// yaw_error_deg the mean paired difference and the ends low and high of its 95 % interval (null for
+// fewer than two objects).
+nlohmann::json PageDifferences(const DatasetResult& dataset);
+
+// A page of prose with tables in it, each between two lines
+//
+//     <!-- table: NAME -->
+//     <!-- end: SHA-256 of the lines between -->
+//
+// or, before the page is filled for the first time, "<!-- end -->" as the second.
+
+// The page with the present tables between its markers. `name` of the page is for messages. Throws
+// InputError for a table that there is not and for markers without their other half.
+std::string FillPage(const std::string& page, const std::vector<Table>& tables,
+                     const std::string& name);
+
+// Names of the tables in a page that are not as FillPage left them.
+std::vector<std::string> EditedTables(const std::string& page, const std::string& name);
+
+}  // namespace soslam
