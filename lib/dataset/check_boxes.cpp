@@ -206,7 +206,8 @@ int CountKnown(const ImportView& view, const std::set<std::string>& known, int s
   }));
 }
 
-// Finds class numbers that count from 1 where the list counts from 0, or the reverse.
+}  // namespace
+
 std::vector<Finding> CheckClassNumbers(const ImportView& view) {
   constexpr int kFewest = 10;
   std::set<std::string> known;
@@ -232,7 +233,6 @@ std::vector<Finding> CheckClassNumbers(const ImportView& view) {
   return {};
 }
 
-// Finds blank lines between names, which count as classes for programs that identify names by line.
 std::vector<Finding> CheckBlankLines(const ImportView& view) {
   const auto& file = view.content.class_names_file;
   if (!file || file->extension() == ".yaml" || file->extension() == ".yml") return {};
@@ -253,14 +253,6 @@ std::vector<Finding> CheckBlankLines(const ImportView& view) {
        "a name that was deleted, which shifts all classes after it",
        "put a name in each blank line, or take the line away where classes were numbered without "
        "it"}};
-}
-
-}  // namespace
-
-std::vector<Finding> CheckLabels(const ImportView& view) {
-  std::vector<Finding> findings = CheckClassNumbers(view);
-  std::ranges::move(CheckBlankLines(view), std::back_inserter(findings));
-  return findings;
 }
 
 }  // namespace soslam

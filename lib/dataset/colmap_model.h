@@ -64,24 +64,7 @@ bool IsColmapModel(const std::filesystem::path& folder);
 // Each track refers to existing images and image points, no id occurs twice.
 ColmapModel ReadColmapModel(const std::filesystem::path& folder);
 
-// Camera model of COLMAP with the names of its parameters, in order. "f" is both focal lengths.
-struct ColmapCameraModel {
-  int id;  // in binary files
-  const char* name;
-  std::vector<const char*> parameters;
-};
-
-// Throws InputError, naming `place`, for a model that OpenCV's lens model does not include.
-const ColmapCameraModel& FindColmapCameraModel(std::string_view name, const std::string& place);
-const ColmapCameraModel& FindColmapCameraModel(int id, const std::string& place);
-
-// The camera with these parameters, one per name. Throws InputError, naming `place`, for a size or
-// a focal length that no camera has.
-LensCamera CameraOfColmap(const ColmapCameraModel& model, std::int64_t width, std::int64_t height,
-                          std::span<const double> parameters, const std::string& place);
-
-// The inverse of CameraOfColmap: name and parameters ("500,500,320,240") of the smallest model that
-// includes the lens.
+// Name and parameters ("500,500,320,240") of COLMAP's smallest camera model that includes a lens.
 struct ColmapCameraText {
   std::string model;
   std::string parameters;

@@ -53,7 +53,8 @@ std::vector<Finding> CheckDataset(const ImportView& view) {
     }
     Append(&CheckObjectAxes, view, &findings);
   }
-  for (const Check check : {&CheckTruth, &CheckScores, &CheckLabels, &CheckRejections}) {
+  for (const Check check :
+       {&CheckTruth, &CheckScores, &CheckClassNumbers, &CheckBlankLines, &CheckRejections}) {
     Append(check, view, &findings);
   }
   findings.insert(findings.begin(), view.content.findings.begin(), view.content.findings.end());

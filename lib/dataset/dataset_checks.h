@@ -42,9 +42,11 @@ std::vector<Finding> CheckImages(const ImportView& view);
 std::vector<Finding> CheckBoxes(const ImportView& view);
 // Scores outside 0 to 1.
 std::vector<Finding> CheckScores(const ImportView& view);
-// Class names that are shifted with respect to the classes: counted from 1, or with blank lines
-// between.
-std::vector<Finding> CheckLabels(const ImportView& view);
+// Class numbers that count from 1 where the list of names counts from 0, or the reverse.
+std::vector<Finding> CheckClassNumbers(const ImportView& view);
+
+// Blank lines between names, which count as classes for programs that identify names by line.
+std::vector<Finding> CheckBlankLines(const ImportView& view);
 // Gates that reject more than a third of the detections.
 std::vector<Finding> CheckRejections(const ImportView& view);
 // The trajectory against the true one: inverse, another world, another order of the quaternion.

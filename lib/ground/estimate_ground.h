@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "geometry/rigid3.h"
 #include "ground/object_heights.h"
 #include "ground/options.h"
 #include "ground/scale_posterior.h"
-#include "ground/similarity.h"
 #include "initialisation/semantic_table.h"
 #include "model/map_points.h"
 #include "model/sequence.h"
@@ -17,6 +17,25 @@
 #include "planes/up_prior.h"
 
 namespace soslam {
+
+// Change of the world's frame and unit: rigid * (scale * point).
+struct Similarity {
+  double scale = 1.0;
+  Rigid3d rigid;
+
+  Eigen::Vector3d operator*(const Eigen::Vector3d& point) const { return rigid * (scale * point); }
+  Similarity operator*(const Similarity& other) const {
+    return {
+        scale * other.scale,
+        {(rigid.rotation * other.rigid.rotation).normalized(), *this * other.rigid.translation}};
+  }
+};
+
+// The sequence without planes, with its estimated poses in the target world. Ground truth stays.
+Sequence Transformed(const Similarity& target_from_source, Sequence sequence);
+
+std::vector<MapPoint> Transformed(const Similarity& target_from_source,
+                                  std::vector<MapPoint> points);
 
 // Result for one object: its most probable label and support.
 struct GroundObject {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "association/up_estimate.h"
-#include "ground/ground_points.h"
 #include "ground/horizontal_planes.h"
 #include "ground/options.h"
 #include "ground/scale_posterior.h"

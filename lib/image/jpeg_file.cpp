@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "image/exif_focal_length.h"
 #include "image/image_format.h"
 #include "image/tiff_file.h"
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -54,5 +55,15 @@ class TiffDirectory {
 // The orientation in EXIF data, 1 to 8; none if they have none.
 std::optional<int> ExifOrientation(std::string_view exif);
 std::optional<int> ExifOrientation(const TiffDirectory& exif, const ImageBytes& file);
+
+// The focal length in EXIF data over the diagonal of the image, which has `stored` pixels: a guess,
+// as cameras round it. From FocalLengthIn35mmFilm, otherwise from FocalLength and the resolution of
+// the sensor. None if the data have neither, an absurd one, or one of an image that was cropped
+// since.
+std::optional<double> ExifFocalOverDiagonal(std::string_view exif, const ImageSize& stored);
+
+// A segment of a JPEG file with EXIF data that have this focal length only, rounded to a millimetre
+// of 35 mm film.
+std::string FocalLengthSegment(double focal_over_diagonal);
 
 }  // namespace soslam

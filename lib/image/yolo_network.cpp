@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "image/yolo_network.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,6 +15,7 @@
 #include "base/process.h"
 #include "base/run_log.h"
 #include "image/onnx_header.h"
+#include "image/yolo_detector.h"
 
 namespace soslam {
 namespace {

@@ -12,7 +12,7 @@
 #include "artefact/hdf5_artefact.h"
 #include "artefact/json_file.h"
 #include "base/error.h"
-#include "inspection/value_table.h"
+#include "inspection/inspection.h"
 
 namespace soslam {
 namespace {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "inspection/value_table.h"
-
 #include <fmt/color.h>
 #include <fmt/format.h>
 
@@ -8,6 +6,7 @@
 
 #include "base/table.h"
 #include "base/text.h"
+#include "inspection/inspection.h"
 
 namespace soslam {
 namespace {

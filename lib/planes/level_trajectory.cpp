@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "planes/level_trajectory.h"
-
 #include <Eigen/Dense>
 #include <algorithm>
 
 #include "geometry/angles.h"
 #include "geometry/landmark.h"
+#include "planes/estimate_planes.h"
 
 namespace soslam {
 namespace {

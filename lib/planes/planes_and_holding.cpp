@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "planes/planes_and_holding.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -8,7 +6,6 @@
 #include "geometry/angles.h"
 #include "planes/camera_holding.h"
 #include "planes/estimate_planes.h"
-#include "planes/level_trajectory.h"
 
 namespace soslam {
 namespace {

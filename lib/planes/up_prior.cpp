@@ -27,12 +27,6 @@ Eigen::Matrix2d TiltCovariance(const UpPrior& prior) {
   return (d_turns.transpose() * prior.information * d_turns).inverse();
 }
 
-Eigen::Vector3d LowestCostUp(const Eigen::Matrix3d& information, const Eigen::Vector3d& above) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(information);
-  const Eigen::Vector3d up = eigen.eigenvectors().col(0);
-  return up.dot(above) < 0.0 ? -up : up;
-}
-
 std::vector<double> CameraWeights(const std::vector<Rigid3d>& world_from_camera,
                                   double correlation_rad) {
   std::vector<Eigen::Vector3d> optical_axes;
@@ -43,6 +37,14 @@ std::vector<double> CameraWeights(const std::vector<Rigid3d>& world_from_camera,
 }
 
 namespace {
+
+// Unit vector of least cost (smallest eigenvector of the information), with the sign on the side of
+// `above`.
+Eigen::Vector3d LowestCostUp(const Eigen::Matrix3d& information, const Eigen::Vector3d& above) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(information);
+  const Eigen::Vector3d up = eigen.eigenvectors().col(0);
+  return up.dot(above) < 0.0 ? -up : up;
+}
 
 constexpr double kBound = 3.0;         // standard deviations
 constexpr double kUnitOfHeight = 0.1;  // length of weight 1, as a share of the image's height

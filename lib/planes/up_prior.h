@@ -26,10 +26,6 @@ Eigen::Matrix<double, 3, 2> UpByTurns(const Eigen::Vector3d& up);
 // Covariance of these two turns of a prior's up direction.
 Eigen::Matrix2d TiltCovariance(const UpPrior& prior);
 
-// Unit vector of least cost (smallest eigenvector of the information), with the sign on the side of
-// `above`.
-Eigen::Vector3d LowestCostUp(const Eigen::Matrix3d& information, const Eigen::Vector3d& above);
-
 // Weight of each camera: cameras whose optical axes are closer than about `correlation_rad` are
 // correlated and count together as one; all weights are 1 where it is zero.
 std::vector<double> CameraWeights(const std::vector<Rigid3d>& world_from_camera,

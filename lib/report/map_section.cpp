@@ -13,8 +13,6 @@
 #include "inspection/doubts.h"
 #include "inspection/projection.h"
 #include "model/segments.h"
-#include "report/map_words.h"
-#include "report/not_placed.h"
 #include "report/page_html.h"
 #include "report/page_parts.h"
 #include "report/plan_view.h"

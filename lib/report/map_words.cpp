@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/map_words.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -13,6 +11,7 @@
 #include "base/text.h"
 #include "evaluation/statistics.h"
 #include "model/segments.h"
+#include "report/page_parts.h"
 #include "report/plan_view.h"
 
 namespace soslam {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/not_placed.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +12,7 @@
 #include "base/paths.h"
 #include "inspection/doubts.h"
 #include "report/page_html.h"
+#include "report/page_parts.h"
 
 namespace soslam {
 namespace {

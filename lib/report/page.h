@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "model/sequence.h"
-#include "report/page_images.h"
+#include "report/page_parts.h"
 #include "report/results_tree.h"
 
 namespace soslam {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/page_images.h"
-
 #include <algorithm>
 #include <array>
 #include <opencv2/imgcodecs.hpp>
@@ -9,6 +7,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/parallel.h"
+#include "report/page_parts.h"
 
 namespace soslam {
 namespace {

@@ -5,21 +5,123 @@
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <opencv2/core/mat.hpp>
+#include <opencv2/core/types.hpp>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "geometry/box.h"
 #include "geometry/camera.h"
 #include "geometry/landmark.h"
 #include "inspection/projection.h"
 #include "model/estimates.h"
 #include "model/sequence.h"
 #include "model/symmetry_record.h"
-#include "report/page_images.h"
 #include "report/results_tree.h"
 
 namespace soslam {
+
+// The images of frames (indices into Sequence::frames) in colour, undistorted. `read` throws
+// InputError for damaged images.
+struct ImageSource {
+  std::function<bool(int frame_index)> has;
+  std::function<cv::Mat(int frame_index)> read;  // only for frames that have an image
+};
+
+// JPEG files in base 64, by frame.
+struct EncodedImages {
+  struct Image {
+    int frame_index;
+    std::string base64;
+  };
+  std::vector<Image> images;
+  int scaled_to_px = 0;  // the width; 0 if there was room for the largest
+  size_t left_out = 0;   // number of readable images that were left out for lack of room
+  std::vector<std::string> failures;  // why other images cannot be read
+};
+
+// The images of those frames that have one, in at most max_bytes: scaled down, all alike, as far as
+// necessary. If that is not enough, only some of them, evenly spaced.
+EncodedImages EncodeImages(const std::vector<int>& frames, const ImageSource& source,
+                           size_t max_bytes, int threads);
+
+// A part of a frame's image, px.
+struct Crop {
+  int frame_index = 0;
+  cv::Rect part = {};
+};
+
+// JPEG files in base 64 of parts of images, in their order, at most kMaxCropPx wide and high; empty
+// where the part is empty, or the frame has no image that can be read.
+inline constexpr int kMaxCropPx = 160;
+std::vector<std::string> EncodeCrops(const std::vector<Crop>& crops, const ImageSource& source,
+                                     int threads);
+
+// What a map says of an object, in words.
+
+// The scale of a map's world.
+struct ScaleOfMap {
+  bool in_metres = true;
+  double log_sigma = 0.0;     // standard deviation of the logarithm of the scale; 0: exact
+  std::string sentence = {};  // empty where scale and up are given
+  std::string warning = {};   // what contradicts scale and up, if anything
+  bool up_is_in_doubt = false;
+};
+
+// `world`: world.json, or null without it.
+ScaleOfMap ScaleFromWorld(const nlohmann::json& world, const Sequence& sequence);
+
+// Width, depth and height with their 95 % intervals: "52 × 61 × 86 cm (± 5 × 6 × 8)". The
+// covariance of a map is for the scale that it has; the error of the scale is independent.
+std::string SizeInWords(const ObjectEstimate& estimate, const ScaleOfMap& scale);
+
+// "chair 62 %, or sofa 21 %": its label first, then alternatives of at least 10 %; empty where the
+// label is certain. An object has a label that a box has; where another one is more probable by its
+// size, this is said.
+std::string LabelsInWords(const Object& object);
+
+// Least cosine of the angle between up and the normal of a plane that is no wall.
+inline constexpr double kLevel = 0.7;
+
+// "on the floor", "on plane 2, 72 cm above the floor", ... The lowest plane is called the floor if
+// one of its objects is too tall for a table and up is not in doubt.
+std::string SupportInWords(const ObjectEstimate& estimate, const Sequence& sequence,
+                           const MapEstimate& map, const ScaleOfMap& scale);
+
+// A box of something in a frame (index in Sequence::frames). `is_whole`: no edge is cut off, as far
+// as that is known.
+struct SeenBox {
+  int frame_index = 0;
+  Box box;
+  bool is_whole = true;
+};
+
+std::vector<SeenBox> BoxesOf(const Sequence& sequence, const std::vector<int>& detections);
+
+// Something that was detected and has no landmark in the map.
+struct NotPlaced {
+  std::string label;
+  std::vector<SeenBox> boxes;
+  std::string reason;  // in words
+};
+
+// Why association left out a track, by its row in associations.json and the stage's settings.
+std::string FateInWords(const nlohmann::json& track, const nlohmann::json& settings);
+
+// Why an object has no landmark, by the failure in an artefact.
+std::string FailureInWords(const std::string& failure);
+
+// The tracks that association left out, by associations.json. `sequence` is the one that it wrote,
+// or one that later stages made of it; InputError if it is not. None where the sequence is of a
+// version before 1.7, which does not have their boxes.
+std::vector<NotPlaced> TracksLeftOut(const nlohmann::json& associations, const Sequence& sequence);
+
+// What a variant's folder has no landmark for, with the most boxes first: tracks that association
+// left out, and objects without a landmark in the map.
+std::vector<NotPlaced> ThingsNotPlaced(const std::filesystem::path& folder, const MapEstimate& map,
+                                       const Sequence& sequence);
 
 // The part of a sequence that is on a page, which must stay small however long the sequence is.
 struct PageSelection {

@@ -11,7 +11,6 @@
 #include "base/table.h"
 #include "base/text.h"
 #include "inspection/inspection.h"
-#include "report/map_words.h"
 #include "report/page.h"
 #include "report/page_html.h"
 #include "report/page_parts.h"

@@ -145,6 +145,22 @@ std::vector<DatasetResult> ReadResults(const fs::path& results, DamagedFiles dam
   return datasets;
 }
 
+namespace {
+
+void CountSequence(const std::filesystem::path& sequence, DatasetFacts* facts) {
+  const Sequence read = ReadSequence(sequence, PlaneNeed::kNotNeeded);
+  DatasetCounts counts = {static_cast<int>(read.frames.size() + read.held_out.size())};
+  for (const TrueObject& object : read.true_objects) {
+    if (!object.IsWanted()) continue;
+    ++counts.objects;
+    counts.round_objects += object.truth.rotationally_symmetric ? 1 : 0;
+  }
+  facts->counts = counts;
+  facts->odometry = read.odometry_source;
+}
+
+}  // namespace
+
 DatasetFacts ReadFacts(const DatasetResult& dataset, const fs::path& settings) {
   DatasetFacts facts;
   const auto has_sequence = [](const VariantResult& variant) {
@@ -203,18 +219,6 @@ void ReadAbout(const std::filesystem::path& settings, DatasetFacts* facts) {
   if (about.is_null()) return;
   ValidateAgainstSchema(about, "about", settings.string() + ": about");
   about.get_to(*facts);
-}
-
-void CountSequence(const std::filesystem::path& sequence, DatasetFacts* facts) {
-  const Sequence read = ReadSequence(sequence, PlaneNeed::kNotNeeded);
-  DatasetCounts counts = {static_cast<int>(read.frames.size() + read.held_out.size())};
-  for (const TrueObject& object : read.true_objects) {
-    if (!object.IsWanted()) continue;
-    ++counts.objects;
-    counts.round_objects += object.truth.rotationally_symmetric ? 1 : 0;
-  }
-  facts->counts = counts;
-  facts->odometry = read.odometry_source;
 }
 
 std::string MarksOf(const DatasetFacts& facts, int objects) {

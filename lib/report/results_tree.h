@@ -38,9 +38,6 @@ struct DatasetFacts {
 // Reads the field "about" of a file of settings, if it is there and has one. Throws InputError.
 void ReadAbout(const std::filesystem::path& settings, DatasetFacts* facts);
 
-// Counts what is in a sequence.json. Throws InputError.
-void CountSequence(const std::filesystem::path& sequence, DatasetFacts* facts);
-
 // At most so many objects are few: their mean says little of a method.
 inline constexpr int kFewObjects = 2;
 

@@ -81,11 +81,6 @@ std::vector<Table> AllTables(const std::vector<DatasetResult>& datasets, const P
   return tables;
 }
 
-std::vector<std::string> WordsIn(const std::string& text) {
-  std::istringstream words(text);
-  return {std::istream_iterator<std::string>(words), {}};
-}
-
 // Not recorded as an input: the report writes it anew.
 std::string ReadPage(const fs::path& page) {
   std::ifstream stream(page, std::ios::binary);
@@ -102,7 +97,7 @@ void RunReport(const ReportOptions& options, const StageFiles& files, int /*thre
   const std::vector<DatasetResult> datasets = ReadEvaluated(
       files.at("results"), files.contains("datasets") ? files.at("datasets") : fs::path());
   const std::vector<Table> tables =
-      AllTables(datasets, published, comparisons, WordsIn(options.maps));
+      AllTables(datasets, published, comparisons, SplitAtSpaces(options.maps));
   fmt::print("{}", WriteTables(tables, files.at("output")));
   if (files.contains("page")) {
     const fs::path& page = files.at("page");

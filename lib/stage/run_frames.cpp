@@ -7,11 +7,16 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <opencv2/core/types.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "artefact/dataset_folder.h"
@@ -22,18 +27,152 @@
 #include "base/progress.h"
 #include "base/text.h"
 #include "cli/command_line.h"
+#include "dataset/labelled_box.h"
 #include "dataset/photo_folder.h"
 #include "dataset/text_file.h"
-#include "image/exif_focal_length.h"
 #include "image/read_image.h"
+#include "image/tiff_file.h"
 #include "image/video_file.h"
-#include "stage/chosen_frames.h"
+#include "model/finding.h"
 #include "stage/stages.h"
 
 namespace soslam {
 namespace {
 
 namespace fs = std::filesystem;
+
+// Frames with what they were chosen from.
+struct ChosenFrames {
+  FramesRecord record;
+  cv::Size source_size;  // of the images that were chosen from, upright
+  std::vector<std::filesystem::path> inputs;
+  bool is_cut_short = false;  // the video has fewer frames than it announces
+};
+
+inline bool IsLeftOut(const SourceFrame& frame) { return frame.rejection.has_value(); }
+
+// First line of detections.csv.
+inline constexpr std::string_view kFrameBoxesMark = "# Written by soslam-frames";
+
+// The likely cause and the remedy where much is left out for one reason.
+struct FrameAdvice {
+  FrameRejection reason;
+  const char* cause;
+  const char* remedy;
+};
+constexpr std::array kAdvice = {
+    FrameAdvice{FrameRejection::kUnreadable, "files of another format, or copied incompletely",
+                "convert them to JPEG, or copy them again"},
+    FrameAdvice{FrameRejection::kOtherSize,
+                "photos of several cameras, or upright ones among others",
+                "take all photos with one camera that is held in one way"},
+    FrameAdvice{FrameRejection::kOtherFocalLength, "a zoom, or several lenses of one telephone",
+                "take all photos with one lens, without zoom"},
+    FrameAdvice{FrameRejection::kBlurred, "a camera that moved while the image was taken",
+                "move more slowly, with more light; or lower min_sharpness"}};
+
+// Coordinate of a pixel after scaling; both count from the centre of the first pixel.
+double Scaled(double coordinate, double scale) { return (coordinate + 0.5) * scale - 0.5; }
+
+// Boxes of soslam-detect name their images, which are all of the frames.
+void RefuseBoxesOfOtherImages(const std::filesystem::path& path, size_t frames) {
+  std::ifstream stream(path);
+  size_t images = 0;
+  for (std::string line; std::getline(stream, line) && line.starts_with('#');) {
+    if (line.starts_with("# input ")) ++images;
+  }
+  if (images == 0 || images == frames) return;
+  throw InputError(fmt::format(
+      "{}: is of {} images; expected boxes of all {} photos or video frames: were they detected in "
+      "images that soslam-frames had chosen? Give the network instead",
+      path.string(), images, frames));
+}
+
+// Number of frames that were left out, by reason.
+std::map<std::string, int> CountLeftOut(const std::vector<SourceFrame>& frames) {
+  std::map<std::string, int> counts;
+  for (const SourceFrame& frame : frames) {
+    if (frame.rejection) ++counts[kFrameRejectionNames[static_cast<size_t>(*frame.rejection)]];
+  }
+  return counts;
+}
+
+// Finds more than a third of the images left out for one reason, and a video that was cut short.
+std::vector<Finding> CheckFrames(const ChosenFrames& chosen) {
+  constexpr int kFewest = 6;
+  const FramesRecord& record = chosen.record;
+  std::vector<Finding> findings;
+  const int all = static_cast<int>(record.frames.size());
+  const auto counts = CountLeftOut(record.frames);
+  for (const FrameAdvice& advice : kAdvice) {
+    const std::string name = kFrameRejectionNames[static_cast<size_t>(advice.reason)];
+    const auto found = counts.find(name);
+    if (found == counts.end() || all < kFewest || 3 * found->second <= all) continue;
+    findings.push_back({"frames_" + name, Severity::kWarning,
+                        fmt::format("{} of {} images are left out as {}", found->second, all, name),
+                        "at most a third left out for one reason", advice.cause, advice.remedy});
+  }
+  if (chosen.is_cut_short) {
+    findings.push_back(
+        {"video_cut_short", Severity::kWarning,
+         fmt::format("{}: {} frames can be decoded, fewer than it announces", record.name, all),
+         "all frames", "a file that was copied or recorded incompletely", "copy it again"});
+  }
+  return findings;
+}
+
+// The text of rgb.txt. Times are those of the video; photos are numbered.
+std::string FrameListText(const std::vector<SourceFrame>& frames) {
+  std::string text = "# timestamp filename\n";
+  int count = 0;
+  for (const SourceFrame& frame : frames) {
+    if (IsLeftOut(frame)) continue;
+    text += fmt::format("{} {}\n", frame.time_s.value_or(count), frame.image);
+    ++count;
+  }
+  return text;
+}
+
+// The text of detections.csv: the boxes of the chosen images among those of all images in the file
+// `path`. Prints how many they are. Throws InputError if there are none.
+std::string FrameBoxesText(const std::filesystem::path& path, const ChosenFrames& chosen) {
+  std::vector<std::optional<int>> rows;
+  int row = 0;
+  for (const SourceFrame& frame : chosen.record.frames) {
+    rows.push_back(IsLeftOut(frame) ? std::nullopt : std::optional(row++));
+  }
+  const double scale_x = static_cast<double>(chosen.record.width) / chosen.source_size.width;
+  const double scale_y = static_cast<double>(chosen.record.height) / chosen.source_size.height;
+  RefuseBoxesOfOtherImages(path, chosen.record.frames.size());
+  const std::vector<LabelledBox> boxes = ReadDetectionsCsv(path);
+  std::vector<LabelledBox> of_chosen;
+  int left_out = 0, unknown = 0;
+  for (LabelledBox box : boxes) {
+    const int number = std::get<int>(box.frame);
+    const bool is_known = number >= 0 && number < std::ssize(rows);
+    const auto of_frame = is_known ? rows[number] : std::nullopt;
+    if (!of_frame) {
+      ++(is_known ? left_out : unknown);
+      continue;
+    }
+    box.frame = *of_frame;
+    box.box = {Scaled(box.box.x_min, scale_x), Scaled(box.box.y_min, scale_y),
+               Scaled(box.box.x_max, scale_x), Scaled(box.box.y_max, scale_y)};
+    of_chosen.push_back(std::move(box));
+  }
+  if (of_chosen.empty()) {
+    throw InputError(fmt::format(
+        "{}: none of its {} boxes is of a chosen image; expected as `frame` the number of the "
+        "image, from 0, in the order of their names or of the video",
+        path.string(), boxes.size()));
+  }
+  fmt::print("{}: {} boxes of chosen images, {} of images that were left out, {} of others\n",
+             path.filename().string(), of_chosen.size(), left_out, unknown);
+  std::ranges::stable_sort(of_chosen, {},
+                           [](const LabelledBox& box) { return std::get<int>(box.frame); });
+  return fmt::format("{} from {}\n{}", kFrameBoxesMark, OneLine(path.filename().string()),
+                     LabelledBoxesText(of_chosen));
+}
 
 // What is in the folder beside the images.
 constexpr std::array kFiles = {"README.md", "rgb.txt", "frames.json", "run.json", "timing.json"};

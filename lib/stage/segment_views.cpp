@@ -14,12 +14,16 @@
 #include "stage/image_stages.h"
 
 namespace soslam {
+namespace {
 
+// Straight edges of at least `min_length_px` in an image of a sequence, with its frame's pose.
 SegmentView ReadSegmentView(const Sequence& sequence, const FrameImageReader& reader,
                             const FrameImage& image, double min_length_px) {
   return {sequence.CameraOf(*image.frame), FindLineSegments(reader.ReadGrey(image), min_length_px),
           image.frame->world_from_camera};
 }
+
+}  // namespace
 
 std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, double min_length_px,
                                          const StageFiles& files, int threads,

@@ -11,10 +11,6 @@
 
 namespace soslam {
 
-// Straight edges of at least `min_length_px` in an image of a sequence, with its frame's pose.
-SegmentView ReadSegmentView(const Sequence& sequence, const FrameImageReader& reader,
-                            const FrameImage& image, double min_length_px);
-
 // Line segments of at least `min_length_px` in the images of folder "dataset", per frame; none if
 // no frame has an image. The images are added to `inputs`. Throws SettingsError without a folder.
 std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, double min_length_px,

@@ -23,7 +23,7 @@
 #include "ground/ground_checks.h"
 #include "mapping/back_end.h"
 #include "mapping/initial_landmarks.h"
-#include "planes/planes_and_holding.h"
+#include "planes/estimate_planes.h"
 #include "planes/planes_estimate.h"
 #include "planes/scene_axis.h"
 #include "stage/segment_views.h"
@@ -226,6 +226,15 @@ Result FromCameraHeight(const Sequence& sequence, const PlanesOptions& options,
   return result;
 }
 
+// A sequence that has frames, with or without planes.
+Sequence ReadFrames(const std::filesystem::path& file) {
+  Sequence sequence = ReadSequence(file, PlaneNeed::kNotNeeded);
+  if (sequence.frames.empty()) {
+    throw NothingUsableError(file.string() + ": has no frames; expected some");
+  }
+  return sequence;
+}
+
 }  // namespace
 
 void RunPlanes(const PlanesOptions& options, const StageFiles& files, int threads) {
@@ -234,10 +243,7 @@ void RunPlanes(const PlanesOptions& options, const StageFiles& files, int thread
         "planes is given; expected estimated, where_missing or camera_height (given planes need no "
         "stage)");
   }
-  const Sequence sequence = ReadSequence(files.at("sequence"), PlaneNeed::kNotNeeded);
-  if (sequence.frames.empty()) {
-    throw NothingUsableError(files.at("sequence").string() + ": has no frames; expected some");
-  }
+  const Sequence sequence = ReadFrames(files.at("sequence"));
   const bool has_planes = options.planes == PlaneSource::kWhereMissing && !sequence.planes.empty();
   const Result result = has_planes ? FromSequence(sequence)
                         : options.planes == PlaneSource::kCameraHeight
@@ -288,10 +294,7 @@ void RunGround(const GroundOptions& options, const StageFiles& files, int thread
   if (options.ground == GroundSource::kGiven) {
     throw SettingsError("ground is given; expected estimated (a given world needs no stage)");
   }
-  const Sequence sequence = ReadSequence(files.at("sequence"), PlaneNeed::kNotNeeded);
-  if (sequence.frames.empty()) {
-    throw NothingUsableError(files.at("sequence").string() + ": has no frames; expected some");
-  }
+  const Sequence sequence = ReadFrames(files.at("sequence"));
   CheckOneSegment(sequence, files.at("sequence"));
   ArtefactInfo info = {OptionsToJson(options),
                        {files.at("sequence"), files.at("points"), files.at("table")}};

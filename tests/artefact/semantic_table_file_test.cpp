@@ -21,15 +21,8 @@ class SemanticTableFileTest : public testing::Test {
     WriteBytes(file_, table.dump());
     return ReadSemanticTable(file_);
   }
-  // The error of a table whose only entry has one field set to a value.
-  void ExpectRefused(const std::string& field, const json& value) const {
-    json entry = kRatioOnly;
-    entry[field] = value;
-    ExpectError<InputError>(
-        [&] {
-          Read({{"labels", {{"cup", entry}}}});
-        },
-        {"table.json: /labels/cup/" + field + " is " + value.dump()});
+  void ExpectRefused(const json& labels, const std::vector<std::string>& words) const {
+    ExpectError<InputError>([&] { Read(json{{"labels", labels}}); }, words);
   }
 
   TemporaryFolder folder_;
@@ -71,16 +64,9 @@ TEST_F(SemanticTableFileTest, FindsLabelsByAliasHoweverTheyAreWritten) {
 TEST_F(SemanticTableFileTest, TheSameNameTwiceIsRefused) {
   json entry = kRatioOnly;
   entry["aliases"] = {"Coffee_Cup"};
-  ExpectError<InputError>(
-      [&] {
-        Read({{"labels", {{"mug", entry}, {"coffee cup", kRatioOnly}}}});
-      },
-      {"table.json: /labels/mug", "Coffee_Cup", "'coffee cup'", "expected each name once"});
-  ExpectError<InputError>(
-      [&] {
-        Read({{"labels", {{"mug", kRatioOnly}, {"Mug", kRatioOnly}}}});
-      },
-      {"table.json", "ug'"});
+  ExpectRefused({{"mug", entry}, {"coffee cup", kRatioOnly}},
+                {"table.json: /labels/mug", "Coffee_Cup", "'coffee cup'", "each name once"});
+  ExpectRefused({{"mug", kRatioOnly}, {"Mug", kRatioOnly}}, {"table.json", "ug'"});
 }
 
 TEST_F(SemanticTableFileTest, ImpossibleNumbersAreRefused) {
@@ -95,15 +81,14 @@ TEST_F(SemanticTableFileTest, ImpossibleNumbersAreRefused) {
                                                  {"samples", -1},
                                                  {"edge_bias", 0.1},
                                                  {"edge_bias", {0.1, 0.1, 0.1}}}) {
-    ExpectRefused(field, value);
+    json entry = kRatioOnly;
+    entry[field] = value;
+    ExpectRefused({{"cup", entry}},
+                  {"table.json: /labels/cup/" + std::string(field) + " is " + value.dump()});
   }
   json entry = kRatioOnly;
   entry["edge_bias"] = {0.0, 0.0, 0.0, 0.5};  // two of these would leave no box
-  ExpectError<InputError>(
-      [&] {
-        Read({{"labels", {{"cup", entry}}}});
-      },
-      {"table.json: /labels/cup/edge_bias/3 is 0.5"});
+  ExpectRefused({{"cup", entry}}, {"table.json: /labels/cup/edge_bias/3 is 0.5"});
 }
 
 TEST_F(SemanticTableFileTest, EdgeBiasIsWrittenWhereThereIsOne) {

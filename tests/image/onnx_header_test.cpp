@@ -65,5 +65,102 @@ TEST(OnnxHeaderTest, DamagedFilesAreRefused) {
   ExpectError<InputError>([&] { Read(deep.Onnx()); }, {"too many sides"});
 }
 
+constexpr int kDims = 1, kType = 2, kFloatData = 4, kInt32Data = 5, kName = 8, kRawData = 9;
+constexpr int kDoubleData = 10, kExternalData = 13;
+constexpr int kFloat = 1, kInt8 = 3, kInt32 = 6, kString = 8, kFloat16 = 10, kDouble = 11;
+
+std::string Zeros(size_t bytes) { return std::string(bytes, '\0'); }
+
+ProtoMessage Tensor(int type, const std::vector<std::uint64_t>& sides) {
+  ProtoMessage tensor;
+  for (const std::uint64_t side : sides) tensor.Integer(kDims, side);
+  return tensor.Integer(kType, static_cast<std::uint64_t>(type)).Text(kName, "weights");
+}
+
+// A file with this tensor as an initialiser.
+std::string File(const ProtoMessage& tensor) {
+  return ProtoMessage().Message(7, ProtoMessage().Message(5, tensor)).bytes();
+}
+
+void ExpectAccepted(const ProtoMessage& tensor) {
+  EXPECT_NO_THROW(CheckOnnx(File(tensor), "net.onnx"));
+}
+void ExpectRefused(const std::string& file, const std::vector<std::string>& words) {
+  ExpectError<InputError>([&] { CheckOnnx(file, "net.onnx"); }, words);
+}
+
+TEST(OnnxCheckTest, WholeTensorsAreAccepted) {
+  ExpectAccepted(Tensor(kFloat, {2, 3}).Text(kRawData, Zeros(24)));
+  ExpectAccepted(Tensor(kFloat, {}).Text(kRawData, Zeros(4)));  // one number
+  ExpectAccepted(Tensor(kFloat, {2, 0, 5}));
+  ExpectAccepted(Tensor(kFloat, {3}).Text(kFloatData, Zeros(12)));  // packed
+  ExpectAccepted(Tensor(kInt32, {3}).Text(kInt32Data, "\x01\x80\x01\x02"));
+  ExpectAccepted(Tensor(kInt8, {2}).Integer(kInt32Data, 300).Integer(kInt32Data, 1));
+  ExpectAccepted(Tensor(kFloat16, {5}).Text(kRawData, Zeros(10)));
+  ExpectAccepted(Tensor(kDouble, {2}).Text(kDoubleData, Zeros(16)));
+  ExpectAccepted(ProtoMessage()
+                     .Text(kDims, "\x02\x03")
+                     .Integer(kType, kFloat)
+                     .Text(kRawData, Zeros(24)));  // packed sides
+  EXPECT_NO_THROW(CheckOnnx(MeanNetwork{{1, 1, 7}, std::vector<float>(7), {}}.Onnx(), "net.onnx"));
+}
+
+TEST(OnnxCheckTest, TensorsWithOtherNumbersThanTheirShapeNeedsAreRefused) {
+  for (const size_t bytes : {0u, 20u, 23u, 25u, 28u}) {
+    ExpectRefused(File(Tensor(kFloat, {2, 3}).Text(kRawData, Zeros(bytes))),
+                  {"net.onnx", "'weights'"});
+  }
+  ExpectRefused(File(Tensor(kFloat, {2, 3}).Text(kRawData, Zeros(20))), {"5 numbers", "the 6"});
+  ExpectRefused(File(Tensor(kInt32, {3}).Text(kInt32Data, "\x01\x80\x01")), {"2 numbers"});
+  ExpectRefused(File(Tensor(kFloat, {2}).Integer(kInt32Data, 1).Integer(kInt32Data, 1)),
+                {"another type"});
+  ExpectRefused(File(Tensor(kFloat, {2}).Text(kRawData, Zeros(8)).Text(kFloatData, Zeros(8))),
+                {"twice"});
+  ExpectRefused(File(Tensor(kFloat, {1u << 20, 1u << 20}).Text(kRawData, Zeros(4))), {"large"});
+  ExpectRefused(File(Tensor(kFloat, {~std::uint64_t{0}}).Text(kRawData, Zeros(4))), {"large"});
+  ExpectRefused(File(Tensor(kString, {1}).Text(6, "text")), {"type 8"});
+  ExpectRefused(File(Tensor(kFloat, {2}).Text(kExternalData, "elsewhere")), {"0 numbers"});
+}
+
+TEST(OnnxCheckTest, WhatReadersTakeDifferentlyIsRefused) {
+  ExpectRefused(File(Tensor(kFloat, {2}).Integer(kType, kInt8).Text(kRawData, Zeros(8))),
+                {"'weights'"});
+  ExpectRefused(File(Tensor(kFloat, {2}).Text(kRawData, Zeros(8)).Text(kRawData, Zeros(4))),
+                {"'weights'"});
+  ExpectRefused(File(Tensor(kFloat, {2}).Text(kRawData, Zeros(8)).Integer(kFloatData, 1)),
+                {"'weights'"});
+}
+
+// Those of nodes, and of graphs within them.
+TEST(OnnxCheckTest, TensorsAreFoundWhereverTheyAre) {
+  const ProtoMessage bad = Tensor(kFloat, {2}).Text(kRawData, Zeros(4));
+  const ProtoMessage good = Tensor(kFloat, {1}).Text(kRawData, Zeros(4));
+  const auto file = [](const ProtoMessage& attribute) {
+    const ProtoMessage graph = ProtoMessage().Message(1, ProtoMessage().Message(5, attribute));
+    return ProtoMessage().Message(7, graph).bytes();
+  };
+  const auto graph = [](const ProtoMessage& tensor) { return ProtoMessage().Message(5, tensor); };
+  EXPECT_NO_THROW(CheckOnnx(file(ProtoMessage().Message(5, good)), "net.onnx"));
+  ExpectRefused(file(ProtoMessage().Message(5, bad)), {"net.onnx", "'weights'"});
+  ExpectRefused(file(ProtoMessage().Message(6, graph(bad))), {"'weights'"});
+  ExpectRefused(file(ProtoMessage().Message(10, good).Message(10, bad)), {"'weights'"});
+  ExpectRefused(file(ProtoMessage().Message(11, graph(bad))), {"'weights'"});
+  ExpectRefused(file(ProtoMessage().Message(5, good).Message(5, good)), {"two tensors"});
+}
+
+TEST(OnnxCheckTest, DamagedFilesAreRefused) {
+  const std::string whole = MeanNetwork{{1, 1, 7}, std::vector<float>(7), {}}.Onnx();
+  for (size_t size = 1; size < 6; ++size) ExpectRefused(whole.substr(0, whole.size() - size), {});
+  ExpectRefused("no network", {"net.onnx"});
+  ExpectRefused("\x3a\xff\xff\xff\xff\x0f", {"net.onnx", "4294967295 bytes"});
+  ExpectRefused("\x3b", {"kind 3"});
+  ExpectRefused("\x38" + std::string(11, '\xff'), {"64 bits"});
+  ProtoMessage deep;
+  for (int i = 0; i < 1000; ++i) {
+    deep = ProtoMessage().Message(1, ProtoMessage().Message(5, ProtoMessage().Message(6, deep)));
+  }
+  ExpectRefused(ProtoMessage().Message(7, deep).bytes(), {"deep"});
+}
+
 }  // namespace
 }  // namespace soslam

@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <opencv2/imgproc.hpp>
 
+#include "inspection/canvas.h"
+#include "inspection/projection.h"
 #include "support/random.h"
 #include "support/scene.h"
 #include "support/true_map.h"
@@ -162,6 +166,161 @@ TEST(OverlayTest, GridsOfPlanesReachAroundTheFeet) {
   EXPECT_NEAR(drawn.y, kCamera.Project({0.0, 1.0, 13.0})->y(), 2.0);
   EXPECT_NEAR(drawn.y + drawn.height - 1, kCamera.Project({0.0, 1.0, 11.0})->y(), 2.0);
   EXPECT_NE(OverlayLegend(input).at(0).text.find("cells of 1 m"), std::string::npos);
+}
+
+constexpr int kSize = kPictureWidth;  // so that pictures are not enlarged
+
+// One vertical edge in the middle, and a corner.
+EdgeMaps MapsOfAnEdge() {
+  EdgeMaps maps;
+  maps.grey = cv::Mat(kSize, kSize, CV_8UC1, cv::Scalar(50));
+  maps.edges = cv::Mat::zeros(kSize, kSize, CV_8UC1);
+  maps.edges.col(kSize / 2) = 255;
+  maps.distance = cv::Mat(kSize, kSize, CV_32FC1);
+  maps.nearest_edge = cv::Mat(kSize, kSize, CV_16SC2);
+  for (int y = 0; y < kSize; ++y) {
+    for (int x = 0; x < kSize; ++x) {
+      maps.distance.at<float>(y, x) = static_cast<float>(std::abs(x - kSize / 2));
+      maps.nearest_edge.at<cv::Vec2s>(y, x) = {kSize / 2, static_cast<short>(y)};
+    }
+  }
+  maps.corners = {{100.0F, 200.0F}};
+  return maps;
+}
+
+// Blue, green, red at (x, y).
+cv::Vec3b At(const cv::Mat& picture, int x, int y) { return picture.at<cv::Vec3b>(y, x); }
+
+int Brightness(const cv::Vec3b& colour) { return colour[0] + colour[1] + colour[2]; }
+
+TEST(PicturesTest, EveryLayerShowsItsMap) {
+  const EdgeMaps maps = MapsOfAnEdge();
+  const auto picture = [&](EdgeLayer layer) { return EdgesPicture(maps, layer, "frame 1"); };
+  const cv::Mat grey = picture(EdgeLayer::kGrey);
+  EXPECT_EQ(At(grey, 10, 10), cv::Vec3b(50, 50, 50));
+  EXPECT_EQ(At(grey, 100, 200), cv::Vec3b(66, 228, 240)) << "the corner";
+  const cv::Mat edges = picture(EdgeLayer::kEdges);
+  EXPECT_EQ(At(edges, kSize / 2, 10), cv::Vec3b(255, 255, 255));
+  EXPECT_EQ(At(edges, 10, 10), cv::Vec3b(0, 0, 0));
+  const cv::Mat distance = picture(EdgeLayer::kDistance);
+  EXPECT_GT(Brightness(At(distance, 0, 10)), Brightness(At(distance, kSize / 2, 10)) + 100);
+  const cv::Mat nearest = picture(EdgeLayer::kNearest);
+  EXPECT_GT(At(nearest, 10, 10)[2], At(nearest, 10, 10)[0]) << "red: the edge is to the right";
+  EXPECT_LT(At(nearest, kSize - 10, 10)[2], At(nearest, kSize - 10, 10)[0]) << "cyan: to the left";
+  EXPECT_GT(nearest.rows, kSize) << "there is a caption";
+}
+
+TEST(PicturesTest, AllLayersAreSideBySide) {
+  const cv::Mat all = EdgesPicture(MapsOfAnEdge(), EdgeLayer::kAll, "frame 1");
+  EXPECT_EQ(all.cols, 2 * kSize);
+  EXPECT_EQ(At(all, kSize + kSize / 2, 10), cv::Vec3b(255, 255, 255));
+}
+
+TEST(PicturesTest, AnImageWithoutEdgesIsDark) {
+  const EdgeMaps maps = ComputeEdgeMaps(cv::Mat(kSize, kSize, CV_8UC1, cv::Scalar(50)), {});
+  const cv::Mat nearest = EdgesPicture(maps, EdgeLayer::kNearest, "");
+  EXPECT_EQ(At(nearest, 10, 10), cv::Vec3b(0, 0, 0));
+  const cv::Mat distance = EdgesPicture(maps, EdgeLayer::kDistance, "");
+  EXPECT_EQ(At(distance, 10, 10), At(distance, kSize - 10, kSize - 10));
+}
+
+TEST(PicturesTest, PairsAreJoinedOnThePartAroundThem) {
+  SymmetryRecord record;
+  record.samples = {{300.0F, 400.0F}};
+  record.mirrored = {{360.0F, 400.0F}};
+  const cv::Mat image(kSize, kSize, CV_8UC3, cv::Scalar(0, 0, 0));
+  const cv::Mat picture = SymmetryPicture(record, image, "frame 1, object 2");
+  // 61 pixels with 24 on both sides are enlarged to the width of a picture.
+  const int factor = (kSize + 108) / 109;
+  EXPECT_EQ(picture.cols, 109 * factor);
+  const int y = static_cast<int>(24.5 * factor);
+  EXPECT_EQ(At(picture, static_cast<int>(24.5 * factor), y), cv::Vec3b(66, 228, 240));
+  EXPECT_EQ(At(picture, static_cast<int>(84.5 * factor), y), cv::Vec3b(233, 180, 86));
+  EXPECT_GT(Brightness(At(picture, static_cast<int>(54.5 * factor), y)), 60) << "the line";
+}
+
+TEST(PicturesTest, WithoutPairsTheWholeImageIsShown) {
+  const cv::Mat image(kSize, kSize, CV_8UC3, cv::Scalar(1, 2, 3));
+  const cv::Mat picture = SymmetryPicture({}, image, "");
+  EXPECT_EQ(picture.cols, kSize);
+  EXPECT_EQ(At(picture, kSize - 1, kSize - 1), cv::Vec3b(1, 2, 3));
+}
+
+// Shoelace formula.
+double Area(const Polygon& polygon) {
+  double twice = 0.0;
+  for (size_t i = 0; i < polygon.size(); ++i) {
+    const Eigen::Vector2d& next = polygon[(i + 1) % polygon.size()];
+    twice += polygon[i].x() * next.y() - next.x() * polygon[i].y();
+  }
+  return std::abs(twice) / 2.0;
+}
+
+// A sphere straight ahead is a disc of radius f tan(asin(r / d)). The polygon is half a pixel off
+// at most, over a rim of 540 px.
+TEST(OutlinePolygon, OfASphereIsADisc) {
+  Camera camera = TestCamera();
+  camera.fy = camera.fx;
+  const Landmark sphere{{Eigen::Quaterniond::Identity(), {0.0, 0.0, 4.0}},
+                        Eigen::Vector3d::Constant(0.6)};
+  const double radius = camera.fx * std::tan(std::asin(0.6 / 4.0));
+  const Polygon outline = OutlinePolygon(camera, sphere);
+  EXPECT_NEAR(Area(outline), std::numbers::pi * radius * radius,
+              2.0 * std::numbers::pi * radius * 0.5);
+  for (const Eigen::Vector2d& pixel : outline) {
+    EXPECT_NEAR((pixel - Eigen::Vector2d(camera.cx, camera.cy)).norm(), radius, 1e-3);
+  }
+}
+
+TEST(OutlinePolygon, OfACuboidInFrontIsItsNearFace) {
+  const Camera camera = TestCamera();
+  const Landmark cuboid{
+      {Eigen::Quaterniond::Identity(), {0.0, 0.0, 5.0}}, {0.5, 0.4, 1.0}, kCuboidExponent};
+  const Polygon outline = OutlinePolygon(camera, cuboid);
+  ASSERT_EQ(outline.size(), 4u);
+  EXPECT_NEAR(Area(outline), (2.0 * 0.5 * camera.fx / 4.0) * (2.0 * 0.4 * camera.fy / 4.0), 1.0);
+}
+
+TEST(ProjectSegment, EndsWhereTheCameraIs) {
+  const Camera camera = TestCamera();
+  const LineSegment3 through{Eigen::Vector3d(0.3, 0.2, -1.0), Eigen::Vector3d(0.3, 0.2, 3.0)};
+  const auto visible = ProjectSegment(camera, through);
+  ASSERT_TRUE(visible);
+  EXPECT_EQ((*visible)[1], *camera.Project(through[1]));
+  // On the same line of the image, beyond its far end.
+  const Eigen::Vector2d centre(camera.cx, camera.cy);
+  const Eigen::Vector2d near = (*visible)[0] - centre;
+  const Eigen::Vector2d far = (*visible)[1] - centre;
+  EXPECT_NEAR(near.x() * far.y() - near.y() * far.x(), 0.0, 1e-6 * near.norm() * far.norm());
+  EXPECT_GT(near.norm(), far.norm());
+  EXPECT_FALSE(ProjectSegment(camera, {Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(1, 0, -2)}));
+}
+
+TEST(GridAround, IsOnThePlaneAroundThePoints) {
+  for (const double extent : {0.2, 3.0, 60.0}) {
+    const Plane plane = RandomPlane();
+    const Rigid3d frame_from_plane = {UprightRotation(plane.normal, 0.0),
+                                      -plane.offset * plane.normal};
+    std::vector<Eigen::Vector3d> points;
+    for (int i = 0; i < 5; ++i) {
+      points.push_back(frame_from_plane * RandomVector(-extent, extent));
+    }
+    const auto lines = GridAround(plane, points).lines;
+    EXPECT_LE(lines.size(), static_cast<size_t>(2 * (kMaxGridLines + 2)));
+    Eigen::Array2d low(1e9, 1e9), high(-1e9, -1e9);
+    for (const LineSegment3& line : lines) {
+      for (const Eigen::Vector3d& end : line) {
+        EXPECT_NEAR(plane.SignedDistance(end), 0.0, 1e-9);
+        const Eigen::Array2d place = (frame_from_plane.Inverse() * end).head<2>().array();
+        low = low.min(place);
+        high = high.max(place);
+      }
+    }
+    for (const Eigen::Vector3d& point : points) {
+      const Eigen::Array2d place = (frame_from_plane.Inverse() * point).head<2>().array();
+      EXPECT_TRUE((place >= low).all() && (place <= high).all());
+    }
+  }
 }
 
 }  // namespace

@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planes/planes_estimate.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "geometry/angles.h"
+#include "planes/estimate_planes.h"
+#include "planes/standing_body.h"
 #include "support/random.h"
 #include "support/scene.h"
+#include "support/shape_exponents.h"
 
 namespace soslam {
 namespace {
@@ -94,6 +101,209 @@ TEST(PlanesBelowCameras, IsTheGroundUnderALevelDrive) {
   const Plane ground = GroundInCamera(1.65);
   EXPECT_LT((in_camera.normal - ground.normal).norm(), 1e-12);
   EXPECT_NEAR(in_camera.offset, ground.offset, 1e-12);
+}
+
+using testing::ElementsAre;
+
+constexpr double kMaxTilt = 0.1;
+constexpr double kNewLevel = 10.0;
+
+// An object with its foot at (x, y) from the pivot on the plane z = height + slope . (x, y), its
+// height known to sigma and its tilt not at all. A motion of the plane raises it at the foot by
+// turn_x y - turn_y x + rise.
+PlaneEvidence FootAt(double x, double y, double sigma) {
+  const Eigen::Vector3d d_motion(y, -x, 1.0);
+  PlaneEvidence evidence;
+  evidence.information = d_motion * d_motion.transpose() / (sigma * sigma);
+  return evidence;
+}
+
+TEST(ClusterPlaneHeights, GroupsHeightsByTheirUncertainty) {
+  const auto levels_of = [](double sigma) {
+    const std::vector<PlaneEvidence> evidence(4, FootAt(0, 0, sigma));
+    return ClusterPlaneHeights(evidence, {0.51, 0.0, 0.50, 0.01}, {}, kMaxTilt, kNewLevel);
+  };
+  const PlaneHeights sure = levels_of(0.02);
+  EXPECT_THAT(sure.level_of, ElementsAre(1, 0, 1, 0));
+  ASSERT_EQ(sure.heights.size(), 2u);
+  EXPECT_NEAR(sure.heights[0], 0.005, 1e-9);
+  EXPECT_NEAR(sure.heights[1], 0.505, 1e-9);
+  EXPECT_THAT(levels_of(0.5).level_of, ElementsAre(0, 0, 0, 0));
+  EXPECT_THAT(levels_of(0.0001).level_of, ElementsAre(3, 0, 2, 1));
+}
+
+// One level for two objects costs 0.5 * (0.2 / (sqrt(2) sigma))^2 more than two levels.
+TEST(ClusterPlaneHeights, OpensALevelWhereItIsWorthItsCost) {
+  const double sigma = 0.2 / (std::sqrt(2.0) * std::sqrt(2.0 * kNewLevel));
+  const auto count = [&](double factor) {
+    const std::vector<PlaneEvidence> evidence(2, FootAt(0, 0, factor * sigma));
+    return ClusterPlaneHeights(evidence, {0.0, 0.2}, {}, kMaxTilt, kNewLevel).heights.size();
+  };
+  EXPECT_EQ(count(1.01), 1u);
+  EXPECT_EQ(count(0.99), 2u);
+}
+
+// Heights at the pivot of objects far apart differ as the tilt is wrong: with the right one they
+// agree. Steps of the grid are max_tilt / 32.
+TEST(ClusterPlaneHeights, FindsTheTiltInWhichFewLevelsDo) {
+  const Eigen::Vector2d tilt(0.05, -0.025);
+  const std::vector<Eigen::Vector2d> feet = {{2, 0}, {-2, 1}, {0, 3}, {1, -2}, {-1, -1}};
+  std::vector<PlaneEvidence> evidence;
+  std::vector<double> heights;
+  for (const Eigen::Vector2d& foot : feet) {
+    evidence.push_back(FootAt(foot.x(), foot.y(), 0.01));
+    heights.push_back(tilt.x() * foot.y() - tilt.y() * foot.x());
+  }
+  heights[4] += 0.4;
+  const PlaneHeights levels = ClusterPlaneHeights(evidence, heights, {}, kMaxTilt, kNewLevel);
+  EXPECT_LT((levels.tilt - tilt).norm(), kMaxTilt / 32);
+  EXPECT_THAT(levels.level_of, ElementsAre(0, 0, 0, 0, 1));
+  EXPECT_NEAR(levels.heights[1] - levels.heights[0], 0.4, 0.02);
+}
+
+TEST(ClusterPlaneHeights, HoldsTheTiltToItsPrior) {
+  PlaneEvidence prior;
+  prior.information.diagonal() << 1e6, 1e6, 0.0;
+  const Eigen::Vector2d expected(0.05, 0.0);
+  prior.gradient.head<2>() = -1e6 * expected;
+  const PlaneHeights levels =
+      ClusterPlaneHeights({FootAt(1, 2, 0.01)}, {0.3}, prior, kMaxTilt, kNewLevel);
+  EXPECT_LT((levels.tilt - expected).norm(), kMaxTilt / 32);
+}
+
+// The partition against all others: numbers of levels are few enough to try.
+TEST(ClusterPlaneHeights, NoOtherGroupingCostsLess) {
+  for (int trial = 0; trial < 20; ++trial) {
+    constexpr size_t kObjects = 5;
+    std::vector<PlaneEvidence> evidence;
+    std::vector<double> heights, weights;
+    for (size_t i = 0; i < kObjects; ++i) {
+      const double sigma = RandomUniform(0.02, 0.2);
+      evidence.push_back(FootAt(0, 0, sigma));
+      heights.push_back(RandomUniform(0, 1));
+      weights.push_back(1.0 / (sigma * sigma));
+    }
+    double lowest = std::numeric_limits<double>::infinity();
+    for (int code = 0; code < 3125; ++code) {  // 5^5 labellings
+      std::array<double, kObjects> weight{}, first{}, second{};
+      int rest = code;
+      for (size_t i = 0; i < kObjects; ++i, rest /= 5) {
+        const auto level = static_cast<size_t>(rest % 5);
+        weight[level] += weights[i];
+        first[level] += weights[i] * heights[i];
+        second[level] += weights[i] * heights[i] * heights[i];
+      }
+      double cost = 0.0;
+      for (size_t level = 0; level < kObjects; ++level) {
+        if (weight[level] == 0.0) continue;
+        cost += kNewLevel + 0.5 * (second[level] - first[level] * first[level] / weight[level]);
+      }
+      lowest = std::min(lowest, cost);
+    }
+    EXPECT_NEAR(ClusterPlaneHeights(evidence, heights, {}, kMaxTilt, kNewLevel).cost, lowest, 1e-6);
+  }
+}
+
+// A body that may float by sigma says as much about the plane's height as the variances together.
+TEST(WithHeightNoise, AddsTheVariances) {
+  PlaneEvidence evidence = FootAt(1.0, 2.0, 0.03);
+  evidence.cost = 7.0;
+  evidence.gradient = evidence.information.col(2) * 0.01;
+  const PlaneEvidence loose = WithHeightNoise(evidence, 0.04);
+  EXPECT_LT((loose.information - FootAt(1.0, 2.0, 0.05).information).norm(), 1e-9);
+  // The plane is 0.01 m from where the body would have it, at either looseness.
+  EXPECT_LT((loose.gradient - loose.information.col(2) * 0.01).norm(), 1e-9);
+  EXPECT_NEAR(evidence.cost - loose.cost,
+              0.5 * 0.01 * 0.01 * (1.0 / (0.03 * 0.03) - 1.0 / (0.05 * 0.05)), 1e-9);
+  EXPECT_EQ(WithHeightNoise(evidence, 0.0).information, evidence.information);
+}
+
+constexpr double kStep = 3.0 * kRadPerDeg;
+
+// An object of a random scene with noisy boxes.
+MultiViewObservation RandomObservation(int seed, bool noise = true) {
+  Scene scene = RandomScene(seed, 1, 12, {Shape::kBox});
+  scene.noise.box_edge_sigma = 0.02;
+  const Sequence sequence = SyntheticSequence(scene, noise);
+  return MakeMultiViewObservation(sequence, DetectionsByObject(sequence)[0],
+                                  TrueCuboidPriors(sequence, 0.1)[0], 0.02, 0.0);
+}
+
+// After a body is carried along, it is as upright on its plane as before.
+TEST(Moved, KeepsBodiesOnTheirPlanes) {
+  for (int i = 0; i < 20; ++i) {
+    const Plane plane = RandomPlane();
+    UprightVector parameters;
+    parameters << RandomUniform(-3, 3), RandomVector(-2, 2).head<2>(), RandomVector(-1, 1);
+    const Landmark landmark = UprightGround(plane).LandmarkAt(parameters, kCuboidExponent);
+    const Eigen::Vector3d pivot = RandomVector(-3, 3);
+    const PlaneMotion motion = RandomVector(-0.5, 0.5);
+    const Plane moved = Moved(plane, pivot, motion);
+    const Landmark body = Moved(plane, pivot, motion, landmark);
+    EXPECT_NEAR(moved.SignedDistance(body.Centre()), body.half_axes.z(), 1e-12);
+    EXPECT_LT((body.frame_from_object.rotation * Eigen::Vector3d::UnitZ() - moved.normal).norm(),
+              1e-12);
+    // The rise is at the pivot.
+    EXPECT_NEAR(plane.SignedDistance(pivot) - moved.SignedDistance(pivot), motion.z(), 1e-12);
+  }
+}
+
+TEST(Moved, TurnsAboutTheLevelAxes) {
+  const Plane floor;
+  const Eigen::Vector3d x = UprightRotation(floor.normal, 0.0) * Eigen::Vector3d::UnitX();
+  const Plane moved = Moved(floor, Eigen::Vector3d::Zero(), {0.1, 0.0, 0.0});
+  EXPECT_NEAR(moved.normal.dot(x), 0.0, 1e-12);
+  EXPECT_NEAR(moved.normal.dot(floor.normal), std::cos(0.1), 1e-12);
+}
+
+// Gradient and curvature of the cost of the best body against differences of that cost. The
+// information leaves out second derivatives of the residuals, which count by their size: it is
+// exact where boxes are. A motion of 1e-3 rad or m changes noisy costs by about 1, and the gradient
+// by a few per cent of a standard deviation.
+TEST(EvidenceOf, IsHowTheBestCostChanges) {
+  const Eigen::Vector3d pivot(0.5, -0.5, 0.0);
+  constexpr double kMotion = 1e-3;
+  for (int trial = 0; trial < 10; ++trial) {
+    SCOPED_TRACE(trial);
+    const bool noise = trial % 2 == 0;
+    MultiViewObservation observation = RandomObservation(trial / 2, noise);
+    observation.huber_delta = 1e6;
+    const auto start = SolveViews(observation, kStep);
+    ASSERT_TRUE(start);
+    const auto at = [&](const PlaneMotion& motion) {
+      StandingBody body{observation, Moved(Plane(), pivot, motion, start->landmark)};
+      body.observation.plane_in_world = Moved(Plane(), pivot, motion);
+      return EvidenceOf(*FitOnPlane(body), pivot);
+    };
+    const PlaneEvidence here = at(PlaneMotion::Zero());
+    for (int i = 0; i < 3; ++i) {
+      const PlaneMotion motion = kMotion * PlaneMotion::Unit(i);
+      const double above = at(motion).cost;
+      const double below = at(-motion).cost;
+      const double sigma = 1.0 / std::sqrt(here.information(i, i));
+      EXPECT_NEAR((above - below) / (2.0 * kMotion) * sigma, here.gradient(i) * sigma, 0.1) << i;
+      if (noise) continue;
+      const double curvature = (above - 2.0 * here.cost + below) / (kMotion * kMotion);
+      EXPECT_NEAR(curvature / here.information(i, i), 1.0, 0.15) << i;
+    }
+  }
+}
+
+TEST(FitBodyAtFreeHeight, FindsHeightAndBodyFromExactBoxes) {
+  for (int seed = 0; seed < 6; ++seed) {
+    SCOPED_TRACE(seed);
+    const auto body =
+        FitBodyAtFreeHeight(RandomObservation(seed, false), Eigen::Vector3d::UnitZ(), kStep);
+    ASSERT_TRUE(body);
+    EXPECT_NEAR(body->observation.plane_in_world.offset, 0.0, 0.005);
+    EXPECT_LT(EvidenceOf(*body, body->landmark.Centre()).cost, 0.01);
+  }
+}
+
+TEST(FitBodyAtFreeHeight, IsNoneForOneView) {
+  MultiViewObservation observation = RandomObservation(1);
+  observation.views.resize(1);
+  EXPECT_FALSE(FitBodyAtFreeHeight(observation, Eigen::Vector3d::UnitZ(), kStep));
 }
 
 }  // namespace

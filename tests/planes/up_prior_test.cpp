@@ -3,15 +3,49 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <vector>
 
 #include "geometry/angles.h"
+#include "planes/estimate_planes.h"
+#include "planes/scene_axis.h"
 #include "support/random.h"
-#include "support/segment_views.h"
 
 namespace soslam {
 namespace {
+
+// A camera anywhere in a room around the origin that looks somewhat downwards, not level.
+Rigid3d CameraInRoom(double heading) {
+  const Eigen::Quaterniond level =
+      Eigen::Quaterniond(Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ())) *
+      Eigen::Quaterniond((Eigen::Matrix3d() << 0, 0, 1, -1, 0, 0, 0, -1, 0).finished());
+  const Eigen::Vector3d attitude(RandomUniform(-0.5, -0.2), 0.0, RandomUniform(-0.1, 0.1));
+  return {level * ExpRotation(attitude), RandomVector(-0.3, 0.3)};
+}
+
+// Edges along `directions` (or any, where there is none) as a camera sees them.
+SegmentView ViewOfEdges(const Rigid3d& world_from_camera,
+                        const std::vector<Eigen::Vector3d>& directions) {
+  SegmentView view{TestCamera(), {}, world_from_camera};
+  const Camera camera = TestCamera();
+  const Rigid3d camera_from_world = world_from_camera.Inverse();
+  for (const Eigen::Vector3d& direction : directions) {
+    for (;;) {
+      const Eigen::Vector3d point =
+          world_from_camera *
+          Eigen::Vector3d(RandomUniform(-1, 1), RandomUniform(-0.7, 0.7), RandomUniform(2.5, 4));
+      const auto begin = camera.Project(camera_from_world * point);
+      const auto end = camera.Project(camera_from_world * (point + 0.5 * direction));
+      if (!begin || !end || (*end - *begin).norm() < 30.0) continue;
+      view.segments.push_back({*begin, *end});
+      break;
+    }
+  }
+  return view;
+}
 
 constexpr double kRollSigma = 5.0 * kRadPerDeg;
 constexpr double kPitchSigma = 30.0 * kRadPerDeg;
@@ -177,6 +211,162 @@ TEST(WithVerticals, CamerasInOnePlaceCountAsOne) {
   EXPECT_LT((found(one).up_in_world - found(ten).up_in_world).norm(), 1e-6);
   EXPECT_LT((found(one).information - found(ten).information).norm(),
             1e-6 * found(one).information.norm());
+}
+
+constexpr int kTurnFrames = 40;
+constexpr double kDrift = 0.15 * kRadPerDeg;  // between two frames, all of it to one side
+
+LevelTrajectory LevelInRoom(const std::vector<SegmentView>& views, double odometry_sigma_deg) {
+  PlanesOptions options;
+  options.view_correlation_deg = 0.0;
+  options.odometry_rotation_sigma_deg = odometry_sigma_deg;
+  return Level(views, CameraHolding::kLevel, options);
+}
+
+// A walk once around, cameras looking outwards and a little down.
+std::vector<Rigid3d> TrueTrajectory() {
+  std::vector<Rigid3d> poses;
+  const Eigen::Quaterniond forward_x((Eigen::Matrix3d() << 0, 0, 1, -1, 0, 0, 0, -1, 0).finished());
+  for (int i = 0; i < kTurnFrames; ++i) {
+    const double heading = 2.0 * std::numbers::pi * i / kTurnFrames;
+    const Eigen::Quaterniond turn(Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()));
+    poses.push_back({turn * forward_x * ExpRotation({-0.2, 0.0, 0.0}),
+                     {2.0 * std::cos(heading), 2.0 * std::sin(heading), 1.2}});
+  }
+  return poses;
+}
+
+// What odometry makes of it when every motion is turned by `drift` about the first camera's x.
+std::vector<Rigid3d> Drifted(const std::vector<Rigid3d>& truth, double drift) {
+  const Eigen::Vector3d axis = truth.front().rotation * Eigen::Vector3d::UnitX();
+  std::vector<Rigid3d> drifted = {truth.front()};
+  for (size_t i = 1; i < truth.size(); ++i) {
+    Rigid3d motion = truth[i - 1].Inverse() * truth[i];
+    motion.rotation = motion.rotation * ExpRotation(truth[i].rotation.conjugate() * (drift * axis));
+    drifted.push_back(drifted.back() * motion);
+  }
+  return drifted;
+}
+
+// Six verticals two to four metres in front of each true camera, seen exactly.
+std::vector<SegmentView> ViewsOf(const std::vector<Rigid3d>& truth,
+                                 const std::vector<Rigid3d>& odometry) {
+  const Camera camera = TestCamera();
+  std::vector<SegmentView> views;
+  for (size_t i = 0; i < truth.size(); ++i) {
+    const Rigid3d camera_from_world = truth[i].Inverse();
+    SegmentView view{camera, {}, odometry[i]};
+    while (view.segments.size() < 6) {
+      const Eigen::Vector3d foot =
+          truth[i] *
+          Eigen::Vector3d(RandomUniform(-1, 1), RandomUniform(0, 0.7), RandomUniform(2, 4));
+      const auto begin = camera.Project(camera_from_world * foot);
+      const auto end = camera.Project(camera_from_world * (foot + 0.5 * Eigen::Vector3d::UnitZ()));
+      if (begin && end) view.segments.push_back({*begin, *end});
+    }
+    views.push_back(view);
+  }
+  return views;
+}
+
+// The largest angle between the true up and that of a frame, both in the camera.
+double WorstUp(const std::vector<Rigid3d>& truth, const std::vector<Rigid3d>& found,
+               const Eigen::Vector3d& up_of_found) {
+  double worst = 0.0;
+  for (size_t i = 0; i < truth.size(); ++i) {
+    worst = std::max(worst, AngleBetween(truth[i].rotation.conjugate() * Eigen::Vector3d::UnitZ(),
+                                         found[i].rotation.conjugate() * up_of_found));
+  }
+  return worst;
+}
+
+double WorstPosition(const std::vector<Rigid3d>& truth, const std::vector<Rigid3d>& found) {
+  double worst = 0.0;
+  for (size_t i = 0; i < truth.size(); ++i) {
+    worst = std::max(worst, (truth[i].translation - found[i].translation).norm());
+  }
+  return worst;
+}
+
+// Verticals that a camera sees ahead say how it rolls, hardly how it pitches: that is seen a
+// quarter of the walk later. So what is left is at most the drift of a quarter of the walk.
+TEST(Level, TakesDriftOutOfATrajectory) {
+  const std::vector<Rigid3d> truth = TrueTrajectory();
+  const std::vector<Rigid3d> drifted = Drifted(truth, kDrift);
+  const LevelTrajectory level = LevelInRoom(ViewsOf(truth, drifted), 0.2);
+  ASSERT_EQ(level.world_from_camera.size(), truth.size());
+  EXPECT_GT(WorstUp(truth, drifted, Eigen::Vector3d::UnitZ()), 5.0 * kRadPerDeg);
+  EXPECT_LT(WorstUp(truth, level.world_from_camera, level.attitude.up_in_world),
+            0.25 * kTurnFrames * kDrift);
+  EXPECT_LT(WorstPosition(truth, level.world_from_camera), 0.5 * WorstPosition(truth, drifted));
+  EXPECT_EQ(level.world_from_camera.front().translation, truth.front().translation);
+  EXPECT_TRUE(level.world_from_camera.front().rotation.isApprox(truth.front().rotation, 1e-9));
+}
+
+// Nothing is to be taken out: what verticals say is what odometry says.
+TEST(Level, LeavesATrajectoryWithoutDrift) {
+  const std::vector<Rigid3d> truth = TrueTrajectory();
+  const LevelTrajectory level = LevelInRoom(ViewsOf(truth, truth), 0.2);
+  EXPECT_LT(WorstUp(truth, level.world_from_camera, level.attitude.up_in_world), 0.2 * kRadPerDeg);
+  EXPECT_LT(WorstPosition(truth, level.world_from_camera), 0.02);
+}
+
+TEST(Level, TakesExactOdometryAsItIs) {
+  const std::vector<Rigid3d> truth = TrueTrajectory();
+  const std::vector<Rigid3d> drifted = Drifted(truth, kDrift);
+  const LevelTrajectory level = LevelInRoom(ViewsOf(truth, drifted), 0.0);
+  for (size_t i = 0; i < drifted.size(); ++i) {
+    EXPECT_EQ(level.world_from_camera[i].translation, drifted[i].translation);
+    EXPECT_EQ(level.world_from_camera[i].rotation.coeffs(), drifted[i].rotation.coeffs());
+  }
+}
+
+const Eigen::Vector3d kZ = Eigen::Vector3d::UnitZ();
+
+// Edges along two horizontal directions at right angles and upwards, among others of any direction.
+std::vector<SegmentView> FurnishedRoom(double yaw, int others) {
+  const Eigen::Vector3d along(std::cos(yaw), std::sin(yaw), 0.0);
+  std::vector<SegmentView> views;
+  for (int i = 0; i < 12; ++i) {
+    std::vector<Eigen::Vector3d> directions;
+    for (int k = 0; k < 6; ++k) {
+      directions.insert(directions.end(), {along, kZ.cross(along), kZ});
+    }
+    for (int k = 0; k < others; ++k) directions.push_back(RandomRotation() * along);
+    views.push_back(ViewOfEdges(CameraInRoom(0.5 * i), directions));
+  }
+  return views;
+}
+
+double OffAxis(const Eigen::Vector3d& axis, double yaw) {
+  return std::abs(std::remainder(std::atan2(axis.y(), axis.x()) - yaw, 0.5 * std::numbers::pi));
+}
+
+// Edges are exact: only those of other directions, which fall near the axis by chance, disturb.
+TEST(SceneAxis, IsTheDirectionOfMostEdges) {
+  for (int i = 0; i < 20; ++i) {
+    const double yaw = RandomUniform(-3.0, 3.0);
+    const auto exact = SceneAxis(kZ, FurnishedRoom(yaw, 0), kCorrelation);
+    ASSERT_TRUE(exact);
+    EXPECT_LT(OffAxis(*exact, yaw), 1e-6);
+    EXPECT_NEAR(exact->dot(kZ), 0.0, 1e-12);
+    const auto among_others = SceneAxis(kZ, FurnishedRoom(yaw, 10), kCorrelation);
+    ASSERT_TRUE(among_others);
+    EXPECT_LT(OffAxis(*among_others, yaw), 0.5 * kRadPerDeg);
+  }
+}
+
+TEST(SceneAxis, IsNoneWhereEdgesHaveNoCommonDirection) {
+  EXPECT_FALSE(SceneAxis(kZ, {}, kCorrelation));
+  for (int i = 0; i < 20; ++i) {
+    std::vector<SegmentView> views;
+    for (int camera = 0; camera < 12; ++camera) {
+      std::vector<Eigen::Vector3d> directions;
+      for (int k = 0; k < 20; ++k) directions.emplace_back(RandomRotation() * kZ);
+      views.push_back(ViewOfEdges(CameraInRoom(0.5 * camera), directions));
+    }
+    EXPECT_FALSE(SceneAxis(kZ, views, kCorrelation));
+  }
 }
 
 }  // namespace

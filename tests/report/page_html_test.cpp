@@ -73,7 +73,7 @@ TEST(PageHtml, CarriesTheLicencesOfTheScriptsInIt) {
 
 using nlohmann::json;
 
-json Finding(const std::string& severity, const std::string& found) {
+json FindingAs(const std::string& severity, const std::string& found) {
   return {
       {"check", "camera_against_images"}, {"severity", severity},         {"found", found},
       {"expected", "640 x 480"},          {"cause", "<img onerror='x'>"}, {"remedy", "scale it"}};
@@ -94,7 +94,7 @@ class PageFindingsTest : public testing::Test {
 };
 
 TEST_F(PageFindingsTest, EachIsThereOnceErrorsFirst) {
-  const json warning = Finding("warning", "1280 x 960"), error = Finding("error", "no scale");
+  const json warning = FindingAs("warning", "1280 x 960"), error = FindingAs("error", "no scale");
   for (const char* variant : {"InitP", "OursP"})
     Write(variant, "sequence.json", json::array({warning}));
   Write("OursP", "map.json", json::array({error}));
@@ -116,7 +116,8 @@ TEST_F(PageFindingsTest, WhatIsNoFindingIsNone) {
 }
 
 TEST_F(PageFindingsTest, TextsAreEscaped) {
-  Write("<Init>", "sequence.json", json::array({Finding("error\" onclick=\"x", "</li><script>")}));
+  Write("<Init>", "sequence.json",
+        json::array({FindingAs("error\" onclick=\"x", "</li><script>")}));
   const std::string html = FindingsHtml(PageFindings(dataset_));
   EXPECT_THAT(html, AllOf(HasSubstr("&lt;/li&gt;&lt;script&gt;"), HasSubstr("640 x 480"),
                           HasSubstr("&lt;img onerror=&#39;x&#39;&gt;"), HasSubstr("scale it"),

@@ -6,7 +6,6 @@
 #include "report/tables.h"
 #include "support/expect_error.h"
 #include "support/results_folder.h"
-#include "support/table_cells.h"
 
 namespace soslam {
 namespace {

@@ -7,7 +7,7 @@
 #include "artefact/json_file.h"
 #include "artefact/sequence_file.h"
 #include "base/error.h"
-#include "report/not_placed.h"
+#include "report/page_parts.h"
 #include "stage/stages.h"
 #include "support/association_scenes.h"
 #include "support/expect_error.h"

@@ -15,6 +15,7 @@
 #include "support/printed.h"
 #include "support/scene.h"
 #include "support/temporary_folder.h"
+#include "support/true_map.h"
 
 namespace soslam {
 namespace {
@@ -31,13 +32,7 @@ class RunExportTest : public testing::Test {
       map_.objects[i].landmark_in_world = sequence_.objects[i].ground_truth->landmark_in_world;
       map_.objects[i].failure.clear();
     }
-    for (const Frame& frame : sequence_.frames) {
-      map_.world_from_camera.push_back(frame.world_from_camera);
-      map_.world_from_camera.back().translation.x() += 0.125;
-    }
-    for (const SupportPlane& plane : sequence_.planes) {
-      map_.planes_in_world.push_back(plane.plane_in_world);
-    }
+    for (Rigid3d& pose : map_.world_from_camera) pose.translation.x() += 0.125;
     Write();
   }
 
@@ -55,6 +50,13 @@ class RunExportTest : public testing::Test {
     for (const auto& [argument, name] : outputs) files[argument] = File(name);
     PrintedBy([&] { RunExport(options_, files, 1); });
   }
+  // Expects that Run refuses, saying these words.
+  template <typename Error>
+  void ExpectRefused(const std::vector<std::string>& inputs,
+                     const std::vector<std::pair<std::string, std::string>>& outputs,
+                     const std::vector<std::string>& words) const {
+    ExpectError<Error>([&] { Run(inputs, outputs); }, words);
+  }
   size_t FilesInFolder() const {
     return static_cast<size_t>(
         std::distance(fs::directory_iterator(folder_.path()), fs::directory_iterator()));
@@ -65,7 +67,7 @@ class RunExportTest : public testing::Test {
       {"coco", "c.json"},      {"coco_dataset", "d.json"}, {"csv", "l.csv"}};
   ExportOptions options_;
   Sequence sequence_ = CuboidSequence(4, 9);
-  MapEstimate map_;
+  MapEstimate map_ = EmptyMap(sequence_);
 
  private:
   TemporaryFolder folder_;
@@ -90,11 +92,8 @@ TEST_F(RunExportTest, WithoutAMapThereAreThePosesOfTheSequence) {
   Run({}, {{"trajectory", "t.txt"}});
   EXPECT_EQ(ReadTrajectory(File("t.txt"))[2].world_from_camera.translation,
             sequence_.frames[2].world_from_camera.translation);
-  ExpectError<SettingsError>(
-      [&] {
-        Run({}, {{"trajectory", "t.txt"}, {"csv", "l.csv"}});
-      },
-      {"no objects", "--map", "truth"});
+  ExpectRefused<SettingsError>({}, {{"trajectory", "t.txt"}, {"csv", "l.csv"}},
+                               {"no objects", "--map", "truth"});
 }
 
 TEST_F(RunExportTest, TrajectoryNeedsNoPlanes) {
@@ -114,7 +113,7 @@ TEST_F(RunExportTest, TruthIsPosesAndObjects) {
   EXPECT_EQ(ReadTrajectory(File("t.txt"))[3].world_from_camera.translation,
             sequence_.frames[3].true_world_from_camera->translation);
   EXPECT_EQ(ParseGlb(FileBytes(File("m.glb"))).json.at("nodes").size(), 1 + 4 + 1u);
-  ExpectError<SettingsError>([&] { Run({"map"}, kAll); }, {"truth", "--map"});
+  ExpectRefused<SettingsError>({"map"}, kAll, {"truth", "--map"});
 }
 
 TEST_F(RunExportTest, MetricsBringAMapIntoTheWorldOfTheTruth) {
@@ -135,16 +134,12 @@ TEST_F(RunExportTest, MetricsBringAMapIntoTheWorldOfTheTruth) {
   Run({"map", "metrics"}, {{"trajectory", "t.txt"}});
   EXPECT_NEAR(ReadTrajectory(File("t.txt"))[3].world_from_camera.translation.y(),
               map_.world_from_camera[3].translation.y() + 0.5, 1e-9);
-  ExpectError<SettingsError>([&] { Run({"map"}, {{"csv", "l.csv"}}); }, {"aligned", "--metrics"});
+  ExpectRefused<SettingsError>({"map"}, {{"csv", "l.csv"}}, {"aligned", "--metrics"});
   map_.world_from_camera[0].translation.x() += 1.0;
   Write();
-  ExpectError<InputError>(
-      [&] {
-        Run({"map", "metrics"}, {{"csv", "l.csv"}});
-      },
-      {"metrics.json", "map.json"});
+  ExpectRefused<InputError>({"map", "metrics"}, {{"csv", "l.csv"}}, {"metrics.json", "map.json"});
   options_.truth = true;
-  ExpectError<SettingsError>([&] { Run({"metrics"}, {{"csv", "l.csv"}}); }, {"--metrics", "--map"});
+  ExpectRefused<SettingsError>({"metrics"}, {{"csv", "l.csv"}}, {"--metrics", "--map"});
 }
 
 TEST_F(RunExportTest, NoTruthIsNothingUsable) {
@@ -152,16 +147,8 @@ TEST_F(RunExportTest, NoTruthIsNothingUsable) {
   sequence_.true_objects.clear();
   Write();
   options_.truth = true;
-  ExpectError<NothingUsableError>(
-      [&] {
-        Run({}, {{"trajectory", "t.txt"}});
-      },
-      {"sequence.json", "no poses"});
-  ExpectError<NothingUsableError>(
-      [&] {
-        Run({}, {{"csv", "l.csv"}});
-      },
-      {"sequence.json", "no landmarks"});
+  ExpectRefused<NothingUsableError>({}, {{"trajectory", "t.txt"}}, {"sequence.json", "no poses"});
+  ExpectRefused<NothingUsableError>({}, {{"csv", "l.csv"}}, {"sequence.json", "no landmarks"});
   EXPECT_EQ(FilesInFolder(), 2u);
 }
 
@@ -184,15 +171,11 @@ TEST_F(RunExportTest, SegmentsAreFilesOfTheirOwn) {
 }
 
 TEST_F(RunExportTest, RefusesWhatItCannotDo) {
-  ExpectError<SettingsError>([&] { Run({"map"}, {}); }, {"--trajectory", "--csv"});
-  ExpectError<SettingsError>(
-      [&] {
-        Run({"map"}, {{"gltf", "m.obj"}});
-      },
-      {"m.obj", ".glb or .gltf"});
+  ExpectRefused<SettingsError>({"map"}, {}, {"--trajectory", "--csv"});
+  ExpectRefused<SettingsError>({"map"}, {{"gltf", "m.obj"}}, {"m.obj", ".glb or .gltf"});
   for (ObjectEstimate& object : map_.objects) object.landmark_in_world.reset();
   Write();
-  ExpectError<NothingUsableError>([&] { Run({"map"}, kAll); }, {"map.json", "no landmarks"});
+  ExpectRefused<NothingUsableError>({"map"}, kAll, {"map.json", "no landmarks"});
   EXPECT_EQ(FilesInFolder(), 2u);
 }
 

@@ -18,6 +18,7 @@
 #include "support/expect_error.h"
 #include "support/scene.h"
 #include "support/temporary_folder.h"
+#include "support/true_map.h"
 #include "synthesis/simulate.h"
 
 namespace soslam {
@@ -81,7 +82,7 @@ TEST_F(RunInspectTest, AnotherSequenceThanTheArtefactsIsNoted) {
 }
 
 TEST_F(RunInspectTest, TheHeadlineOfAMapIsALine) {
-  MapEstimate map;
+  MapEstimate map = EmptyMap(sequence_);
   for (size_t i = 0; i < 3; ++i) {
     const auto& truth = sequence_.objects[i].ground_truth;
     map.objects.push_back({static_cast<int>(i), 5, truth->landmark_in_world, {}, ""});
@@ -91,12 +92,6 @@ TEST_F(RunInspectTest, TheHeadlineOfAMapIsALine) {
   // Its place is known to a kilometre.
   map.objects[1].covariance = Covariance9(1e6 * Covariance9::Identity());
   map.objects[1].covariance->block<3, 3>(6, 6) *= 1e-9;
-  for (const Frame& frame : sequence_.frames) {
-    map.world_from_camera.push_back(frame.world_from_camera);
-  }
-  for (const SupportPlane& plane : sequence_.planes) {
-    map.planes_in_world.push_back(plane.plane_in_world);
-  }
   WriteMap(File("map.json"), map, sequence_, {});
   InspectRequest request = RequestOf("map.json");
   request.headline = true;

@@ -2,8 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <string>
 #include <utility>
 
 #include "artefact/hdf5_artefact.h"
@@ -18,13 +21,22 @@
 #include "report/page_parts.h"
 #include "stage/stages.h"
 #include "support/expect_error.h"
-#include "support/page_data.h"
 #include "support/printed.h"
 #include "support/results_folder.h"
 #include "support/scene.h"
+#include "support/temporary_folder.h"
+#include "support/true_map.h"
 
 namespace soslam {
 namespace {
+
+// What a page for browsers shows.
+nlohmann::json PageDataIn(const std::filesystem::path& page) {
+  const std::string html = FileBytes(page);
+  const std::string open = "<script type=\"application/json\" id=\"data\">";
+  const size_t begin = html.find(open) + open.size();
+  return nlohmann::json::parse(html.substr(begin, html.find("</script>", begin) - begin));
+}
 
 namespace fs = std::filesystem;
 using nlohmann::json;
@@ -73,14 +85,8 @@ class RunPagesTest : public testing::Test {
   void WriteOurs(const std::string& name) const {
     WriteMultiView(name);
     WriteVariant(name, {"import-1", "initialise-2", "refine-4", "optimise-5", "evaluate-6"});
-    MapEstimate map;
+    MapEstimate map = EmptyMap(sequence_);
     map.objects = Estimates();
-    for (const Frame& frame : sequence_.frames) {
-      map.world_from_camera.push_back(frame.world_from_camera);
-    }
-    for (const SupportPlane& plane : sequence_.planes) {
-      map.planes_in_world.push_back(plane.plane_in_world);
-    }
     WriteMap(Folder(name) / "map.json", map, sequence_, {});
     WriteSymmetry(Folder(name) / "symmetry.h5", {Record()}, {});
   }

@@ -14,8 +14,8 @@
 
 #include "artefact/semantic_table_file.h"
 #include "geometry/angles.h"
-#include "ground/ground_points.h"
-#include "ground/similarity.h"
+#include "ground/estimate_ground.h"
+#include "ground/horizontal_planes.h"
 #include "synthesis/simulate.h"
 
 namespace soslam {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "artefact/json_file.h"
+#include "base/table.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {
@@ -102,5 +103,18 @@ class ResultsFolder {
 
   TemporaryFolder folder_;
 };
+
+// The rows of a table, each with its cells divided by blanks and bold ones between stars.
+inline std::vector<std::string> CellTexts(const Table& table) {
+  std::vector<std::string> lines;
+  for (const auto& row : table.rows) {
+    std::string line;
+    for (const Cell& cell : row) {
+      line += (line.empty() ? "" : " ") + (cell.bold ? "*" + cell.text + "*" : cell.text);
+    }
+    lines.push_back(line);
+  }
+  return lines;
+}
 
 }  // namespace soslam

@@ -6,8 +6,8 @@
 
 namespace soslam {
 
-// The poses, planes and true landmarks of a sequence as a map of it.
-inline MapEstimate TrueMap(const Sequence& sequence) {
+// The poses and planes of a sequence as a map of it, without objects.
+inline MapEstimate EmptyMap(const Sequence& sequence) {
   MapEstimate map;
   for (const Frame& frame : sequence.frames) {
     map.world_from_camera.push_back(frame.world_from_camera);
@@ -15,6 +15,12 @@ inline MapEstimate TrueMap(const Sequence& sequence) {
   for (const SupportPlane& plane : sequence.planes) {
     map.planes_in_world.push_back(plane.plane_in_world);
   }
+  return map;
+}
+
+// The same with the true landmarks.
+inline MapEstimate TrueMap(const Sequence& sequence) {
+  MapEstimate map = EmptyMap(sequence);
   for (const Object& object : sequence.objects) {
     const int index = static_cast<int>(map.objects.size());
     map.objects.push_back({index, 3, object.ground_truth->landmark_in_world, {}, ""});

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "artefact/hdf5_artefact.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <opencv2/core.hpp>
+
+#include "artefact/points_file.h"
+#include "base/error.h"
+#include "base/parallel.h"
+#include "support/expect_error.h"
+#include "support/random.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+EdgeMaps MapsOfRandomRectangles() {
+  cv::Mat grey(48, 64, CV_8UC1, cv::Scalar(30));
+  for (int i = 0; i < 4; ++i) {
+    const cv::Rect rectangle(static_cast<int>(RandomUniform(5, 40)),
+                             static_cast<int>(RandomUniform(5, 25)), 15, 12);
+    grey(rectangle) = RandomUniform(60, 250);
+  }
+  return ComputeEdgeMaps(grey, {});
+}
+
+void ExpectSame(const EdgeMaps& a, const EdgeMaps& b) {
+  const auto same = [](const cv::Mat& m, const cv::Mat& n) {
+    return m.type() == n.type() && m.size() == n.size() &&
+           std::equal(m.datastart, m.dataend, n.datastart);
+  };
+  EXPECT_TRUE(same(a.grey, b.grey));
+  EXPECT_TRUE(same(a.edges, b.edges));
+  EXPECT_TRUE(same(a.distance, b.distance));
+  EXPECT_TRUE(same(a.nearest_edge, b.nearest_edge));
+  EXPECT_EQ(a.corners, b.corners);
+}
+
+class EdgesFileTest : public testing::Test {
+ protected:
+  std::filesystem::path Write(const std::string& name, const EdgeMaps& maps) {
+    EdgesWriter writer(folder_ / name, {});
+    writer.Write(12, maps);
+    writer.Commit();
+    return folder_ / name;
+  }
+  // An artefact with nothing but a header.
+  std::filesystem::path WriteHeader(const std::string& header) {
+    Hdf5File file = Hdf5File::Create(folder_ / "header.h5");
+    file.WriteText("/", "artefact", header);
+    file.Close();
+    return folder_ / "header.h5";
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(EdgesFileTest, FramesComeBackExactly) {
+  const EdgeMaps first = MapsOfRandomRectangles();
+  const EdgeMaps second = MapsOfRandomRectangles();
+  EdgesWriter writer(folder_ / "edges.h5", {});
+  writer.Write(7, first);
+  writer.Write(1234567, second);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "edges.h5")) << "before it is complete";
+  writer.Commit();
+
+  const EdgesReader reader(folder_ / "edges.h5");
+  EXPECT_TRUE(reader.Has(7));
+  EXPECT_TRUE(reader.Has(1234567));
+  EXPECT_FALSE(reader.Has(8));
+  ExpectSame(reader.Read(7), first);
+  ExpectSame(reader.Read(1234567), second);
+  ExpectError<InputError>([&] { reader.Read(8); }, {"edges.h5", "/frames/000008", "missing"});
+}
+
+// (Where the HDF5 library knows threads, it would take turns by itself.)
+TEST_F(EdgesFileTest, ThreadsReadSideBySide) {
+  std::vector<EdgeMaps> maps;
+  EdgesWriter writer(folder_ / "edges.h5", {});
+  for (int i = 0; i < 8; ++i) {
+    maps.push_back(MapsOfRandomRectangles());
+    writer.Write(i, maps.back());
+  }
+  writer.Commit();
+  const EdgesReader reader(folder_ / "edges.h5");
+  std::vector<EdgeMaps> read(maps.size());
+  ParallelFor(static_cast<int>(read.size()), 4, [&](int i) { read[i] = reader.Read(i); });
+  for (size_t i = 0; i < maps.size(); ++i) ExpectSame(read[i], maps[i]);
+}
+
+TEST_F(EdgesFileTest, NearestEdgesOutsideTheImageAreRefused) {
+  for (const cv::Vec2s& outside : {cv::Vec2s(-1, 3), cv::Vec2s(3, -7), cv::Vec2s(3, 32000)}) {
+    EdgeMaps maps = MapsOfRandomRectangles();
+    maps.nearest_edge.at<cv::Vec2s>(2, 1) = outside;
+    const auto file = Write("edges.h5", maps);
+    ExpectError<InputError>([&] { EdgesReader(file).Read(12); },
+                            {"edges.h5", "nearest_edge", "(1, 2)", "expected a pixel"});
+  }
+}
+
+TEST_F(EdgesFileTest, CutShortAnywhereIsRefused) {
+  const std::string whole = FileBytes(Write("edges.h5", MapsOfRandomRectangles()));
+  for (size_t size = 0; size < whole.size(); size += 37) {
+    WriteBytes(folder_ / "cut.h5", whole.substr(0, size));
+    ExpectError<InputError>([&] { EdgesReader(folder_ / "cut.h5").Read(12); }, {"cut.h5"});
+  }
+}
+
+TEST_F(EdgesFileTest, DamagedDataIsRefused) {
+  const EdgeMaps maps = MapsOfRandomRectangles();
+  std::string bytes = FileBytes(Write("edges.h5", maps));
+  // The deflated streams begin with 78 01 (zlib, fastest) or, by ISA-L from 2.31 on, 78 5e; spoil
+  // the checksum's neighbourhood.
+  const size_t stream = std::min(bytes.find("\x78\x01"), bytes.find("\x78\x5e"));
+  ASSERT_NE(stream, bytes.npos);
+  for (size_t i = stream + 2; i < stream + 12; ++i) bytes[i] = static_cast<char>(~bytes[i]);
+  WriteBytes(folder_ / "damaged.h5", bytes);
+  ExpectError<InputError>([&] { EdgesReader(folder_ / "damaged.h5").Read(12); },
+                          {"damaged.h5", "/frames/000012", "damaged"});
+}
+
+TEST_F(EdgesFileTest, OtherKindsAndNewerVersionsAreRefused) {
+  ExpectBadTexts({{R"({"kind": "symmetry", "schema_version": [1, 0]})", {"symmetry", "edges"}},
+                  {R"({"kind": "edges", "schema_version": [1, 8]})", {"[1, 8]", "[1, 7]"}},
+                  {"", {"header"}},
+                  {"{", {"header"}}},
+                 "header.h5",
+                 [&](const std::string& header) { EdgesReader reader(WriteHeader(header)); });
+  Hdf5File::Create(folder_ / "header.h5").Close();
+  ExpectError<InputError>([&] { EdgesReader(folder_ / "header.h5"); }, {"header.h5", "header"});
+}
+
+TEST_F(EdgesFileTest, MapsOfDifferentSizesAreRefused) {
+  EdgeMaps maps = MapsOfRandomRectangles();
+  maps.distance = maps.distance.rowRange(0, 40);
+  const EdgesReader reader(Write("edges.h5", maps));
+  ExpectError<InputError>([&] { reader.Read(12); },
+                          {"edges.h5", "/frames/000012/distance", "40 x 64", "48 x 64"});
+}
+
+SymmetryRecord FullRecord() {
+  SymmetryRecord record;
+  record.frame_id = 12;
+  record.object_id = 3;
+  record.yaw = {-0.1, 0.0, 0.1};
+  record.cost["grey"] = {1.0, 2.0, std::nan("")};
+  record.cost["improved_dt"] = {0.5, 0.25, 0.125};
+  record.samples = {{1.5F, 2.0F}, {3.0F, 4.25F}};
+  record.mirrored = {{10.5F, 2.0F}, {8.0F, 4.0F}};
+  record.initial_yaw = -0.1;
+  record.refined_yaw = 0.1;
+  record.yaw_sigma = 0.02;
+  record.mirror_planes = 2;
+  record.true_yaw = 0.09;
+  return record;
+}
+
+// The record of an observation without landmark and ground truth.
+SymmetryRecord BareRecord() {
+  SymmetryRecord record;
+  record.frame_id = 2;
+  record.object_id = 30;
+  return record;
+}
+
+class SymmetryFileTest : public testing::Test {
+ protected:
+  TemporaryFolder folder_;
+};
+
+TEST_F(SymmetryFileTest, RecordsComeBackInOrder) {
+  WriteSymmetry(folder_ / "symmetry.h5", {FullRecord(), BareRecord()}, {});
+  const auto records = ReadSymmetry(folder_ / "symmetry.h5");
+  ASSERT_EQ(records.size(), 2U);
+
+  EXPECT_EQ(records[0].frame_id, 2);
+  EXPECT_EQ(records[0].object_id, 30);
+  EXPECT_TRUE(records[0].yaw.empty());
+  EXPECT_TRUE(records[0].cost.empty());
+  EXPECT_TRUE(records[0].samples.empty());
+  EXPECT_TRUE(records[0].mirrored.empty());
+  EXPECT_TRUE(std::isnan(records[0].initial_yaw));
+  EXPECT_TRUE(std::isnan(records[0].refined_yaw));
+  EXPECT_FALSE(records[0].yaw_sigma);
+  EXPECT_FALSE(records[0].mirror_planes);
+  EXPECT_FALSE(records[0].true_yaw);
+
+  const SymmetryRecord expected = FullRecord();
+  EXPECT_EQ(records[1].frame_id, 12);
+  EXPECT_EQ(records[1].object_id, 3);
+  EXPECT_EQ(records[1].yaw, expected.yaw);
+  ASSERT_EQ(records[1].cost.size(), 2U);
+  EXPECT_EQ(records[1].cost.at("improved_dt"), expected.cost.at("improved_dt"));
+  EXPECT_EQ(records[1].cost.at("grey")[1], 2.0);
+  EXPECT_TRUE(std::isnan(records[1].cost.at("grey")[2]));
+  EXPECT_EQ(records[1].samples, expected.samples);
+  EXPECT_EQ(records[1].mirrored, expected.mirrored);
+  EXPECT_EQ(records[1].initial_yaw, expected.initial_yaw);
+  EXPECT_EQ(records[1].refined_yaw, expected.refined_yaw);
+  EXPECT_EQ(records[1].yaw_sigma, expected.yaw_sigma);
+  EXPECT_EQ(records[1].mirror_planes, expected.mirror_planes);
+  EXPECT_EQ(records[1].true_yaw, expected.true_yaw);
+}
+
+TEST_F(SymmetryFileTest, RefusesAnImpossibleNumberOfMirrorPlanes) {
+  SymmetryRecord record = FullRecord();
+  record.mirror_planes = 7;
+  WriteSymmetry(folder_ / "symmetry.h5", {record}, {});
+  ExpectError<InputError>([&] { ReadSymmetry(folder_ / "symmetry.h5"); },
+                          {"symmetry.h5", "mirror_planes", "7", "0, 1 or 2"});
+}
+
+TEST_F(SymmetryFileTest, BadFilesAreNamed) {
+  EdgesWriter(folder_ / "edges.h5", {}).Commit();
+  ExpectError<InputError>([&] { ReadSymmetry(folder_ / "edges.h5"); },
+                          {"edges.h5", "edges", "symmetry"});
+}
+
+TEST_F(SymmetryFileTest, CurvesOfAnotherLengthAreRefused) {
+  SymmetryRecord record = FullRecord();
+  record.cost["grey"].pop_back();
+  WriteSymmetry(folder_ / "symmetry.h5", {record}, {});
+  ExpectError<InputError>([&] { ReadSymmetry(folder_ / "symmetry.h5"); },
+                          {"/observations/000012_000003/cost/grey", "expected 3"});
+}
+
+std::vector<MapPoint> TwoPoints() {
+  return {{{1.0, 2.0, 3.0}, 0.25, {{0, {10.0, 20.5}}, {7, {11.0, 21.0}}}},
+          {{-1.0, 0.5, 1e-3}, 0.0, {{3, {-0.5, 639.0}}}}};
+}
+
+class PointsFileTest : public testing::Test {
+ protected:
+  // The error of the reader for two points, changed.
+  void ExpectRefused(const std::function<void(std::vector<MapPoint>*)>& change,
+                     const std::vector<std::string>& parts) {
+    std::vector<MapPoint> points = TwoPoints();
+    change(&points);
+    WritePoints(folder_ / "points.h5", points, {});
+    ExpectError<InputError>([&] { ReadPoints(folder_ / "points.h5"); }, parts);
+  }
+
+  // A file with two points and an observation each.
+  void WriteArrays(const std::vector<int>& begins, int pixel_rows = 2) {
+    Hdf5File file = Hdf5File::Create(folder_ / "points.h5");
+    WriteArtefactHeader("points", {}, &file);
+    file.WriteMatrix("/position", cv::Mat::zeros(2, 3, CV_64FC1));
+    file.WriteVector("/reprojection_error_px", std::vector<double>{0.0, 0.0});
+    file.WriteVector("/observation_begin", begins);
+    file.WriteVector("/observation_frame", std::vector<int>{0, 1});
+    file.WriteMatrix("/observation_pixel", cv::Mat::zeros(pixel_rows, 2, CV_64FC1));
+    file.Close();
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(PointsFileTest, PointsComeBack) {
+  WritePoints(folder_ / "points.h5", TwoPoints(), {});
+  const auto points = ReadPoints(folder_ / "points.h5");
+  const auto expected = TwoPoints();
+  ASSERT_EQ(points.size(), expected.size());
+  for (size_t i = 0; i < points.size(); ++i) {
+    EXPECT_EQ(points[i].position_in_world, expected[i].position_in_world);
+    EXPECT_EQ(points[i].reprojection_error_px, expected[i].reprojection_error_px);
+    ASSERT_EQ(points[i].observations.size(), expected[i].observations.size());
+    for (size_t k = 0; k < points[i].observations.size(); ++k) {
+      EXPECT_EQ(points[i].observations[k].frame_id, expected[i].observations[k].frame_id);
+      EXPECT_EQ(points[i].observations[k].pixel, expected[i].observations[k].pixel);
+    }
+  }
+}
+
+TEST_F(PointsFileTest, ImpossibleNumbersAreRefused) {
+  ExpectRefused([](auto* points) { (*points)[1].position_in_world.y() = std::nan(""); },
+                {"points.h5", "/position", "row 1", "nan", "finite"});
+  ExpectRefused([](auto* points) { (*points)[0].observations[1].pixel.x() = 1.0 / 0.0; },
+                {"/observation_pixel", "row 1", "inf", "finite"});
+  ExpectRefused([](auto* points) { (*points)[0].reprojection_error_px = -1.0; },
+                {"/reprojection_error_px", "row 0", "-1", "at least 0"});
+  ExpectRefused([](auto* points) { (*points)[1].reprojection_error_px = std::nan(""); },
+                {"/reprojection_error_px", "row 1", "nan"});
+  ExpectRefused([](auto* points) { (*points)[1].observations[0].frame_id = -4; },
+                {"/observation_frame", "row 2", "-4", "at least 0"});
+}
+
+TEST_F(PointsFileTest, ArraysThatDoNotFitAreRefused) {
+  const auto read = [&] { ReadPoints(folder_ / "points.h5"); };
+  WriteArrays({0, 1, 2});
+  EXPECT_NO_THROW(read());
+  WriteArrays({1, 1, 2});
+  ExpectError<InputError>(read, {"/observation_begin", "row 0", "found 1", "expected 0"});
+  WriteArrays({0, 5, 2});
+  ExpectError<InputError>(read, {"/observation_begin", "row 2", "found 2", "above"});
+  WriteArrays({0, 1, 1});
+  ExpectError<InputError>(read, {"/observation_begin", "found 1", "number of rows"});
+  WriteArrays({0, 2});
+  ExpectError<InputError>(read, {"/observation_begin", "expected 3"});
+  WriteArrays({0, 1, 2}, 3);
+  ExpectError<InputError>(read, {"/observation_pixel", "expected 2 x 2"});
+}
+
+TEST_F(PointsFileTest, BadFilesAreNamed) {
+  EdgesWriter(folder_ / "edges.h5", {}).Commit();
+  ExpectError<InputError>([&] { ReadPoints(folder_ / "edges.h5"); },
+                          {"edges.h5", "edges", "points"});
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/page_parts.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "base/error.h"
+#include "geometry/angles.h"
+#include "model/segments.h"
+#include "report/page.h"
+#include "report/page_html.h"
+#include "support/random.h"
+#include "support/scene.h"
+
+namespace soslam {
+namespace {
+
+// A curve over half a turn in steps of 2 degrees with `minima` equal minima, one of them at
+// `lowest_deg`, another cost that knows nothing.
+SymmetryRecord Record(double lowest_deg, int minima, double true_deg) {
+  SymmetryRecord record;
+  const double nan = std::nan("");
+  for (int deg = 0; deg < 180; deg += 2) {
+    record.yaw.push_back(deg * kRadPerDeg);
+    record.cost["wave"].push_back(1.0 - std::cos(2.0 * minima * (deg - lowest_deg) * kRadPerDeg) -
+                                  1e-3 * std::cos(2.0 * (deg - lowest_deg) * kRadPerDeg));
+    record.cost["gap"].push_back(nan);
+  }
+  record.true_yaw = true_deg * kRadPerDeg;
+  return record;
+}
+
+TEST(PageDescriptors, CountErrorsModuloHalfATurnAndMinima) {
+  const auto found = PageDescriptors({Record(40, 1, 44), Record(10, 1, 190), Record(100, 1, 160)});
+  ASSERT_EQ(found.size(), 1u);  // what has no cost anywhere says nothing
+  const auto& wave = found.at("wave");
+  EXPECT_EQ(wave.at("observations"), 3);
+  EXPECT_NEAR(wave.at("median_error_deg").get<double>(), 4.0, 1e-3);
+  // 4 degrees off twice, 60 once.
+  EXPECT_EQ(wave.at("within")[0], 0.0);
+  EXPECT_NEAR(wave.at("within")[1].get<double>(), 2.0 / 3.0, 1e-4);
+  EXPECT_NEAR(wave.at("within")[11].get<double>(), 2.0 / 3.0, 1e-4);
+  EXPECT_EQ(wave.at("within")[12], 1.0);
+  EXPECT_EQ(wave.at("within")[90 / kErrorStepDeg], 1.0);
+  EXPECT_EQ(wave.at("minima"), 1.0);
+  EXPECT_EQ(PageDescriptors({Record(40, 3, 40)}).at("wave").at("minima"), 3.0);
+}
+
+TEST(PageDescriptors, TellWhereTheTrueYawHasNoCost) {
+  SymmetryRecord gap = Record(40, 1, 100);
+  for (size_t i = 45; i < 56; ++i) gap.cost["wave"][i] = std::nan("");  // 90 to 110 degrees
+  const auto wave = PageDescriptors({gap, Record(40, 1, 44)}).at("wave");
+  EXPECT_EQ(wave.at("known_at_truth"), 0.5);
+  EXPECT_EQ(wave.at("near_where_known"), 1.0);
+  EXPECT_EQ(wave.at("within")[2], 0.5);
+  EXPECT_TRUE(PageDescriptors({gap}).at("wave").at("near_where_known").is_null());
+}
+
+TEST(PageDescriptors, NeedTheTruth) {
+  SymmetryRecord record = Record(40, 1, 44);
+  record.true_yaw.reset();
+  EXPECT_TRUE(PageDescriptors({record}).empty());
+}
+
+// Frames with ids `first_id`, 10 more and so on; a detection in every `step`-th.
+Sequence Recording(int frames, int step, int first_id = 10) {
+  Sequence sequence;
+  sequence.objects = {{7, "cup", kNoPlane, {}}};
+  for (int i = 0; i < frames; ++i) {
+    Frame frame;
+    frame.id = first_id + 10 * i;
+    sequence.frames.push_back(frame);
+    Detection detection;
+    detection.frame_index = i;
+    if (i % step == 0) sequence.detections.push_back(detection);
+  }
+  return sequence;
+}
+
+TEST(PageCurves, AreOfObservationsSpreadOverEachObject) {
+  std::vector<SymmetryRecord> records;
+  for (int i = 0; i < 9; ++i) {
+    records.push_back(Record(40, 1, 44));
+    records.back().frame_id = 10 * i;
+    records.back().object_id = 7;
+    records.back().samples.assign(500, {1.0f, 2.0f});
+    records.back().mirrored.assign(500, {3.0f, 4.0f});
+  }
+  const Sequence sequence = Recording(9, 1, 0);
+  const auto curves =
+      PageCurves(records, sequence, SelectForPage(sequence, {0, 10, 20, 40, 50, 60}));
+  ASSERT_EQ(curves.size(), kCurvesPerObject);
+  EXPECT_EQ(curves[0].at("detection"), 0);
+  EXPECT_EQ(curves[1].at("detection"), 2);
+  EXPECT_EQ(curves[2].at("detection"), 4);
+  EXPECT_TRUE(PageCurves(records, sequence, SelectForPage(sequence, {})).empty());
+  EXPECT_NEAR(curves[0].at("true_yaw_deg").get<double>(), 44.0, 1e-3);
+  EXPECT_TRUE(curves[0].at("refined_yaw_deg").is_null());
+  EXPECT_EQ(curves[0].at("pairs").size(), kPairsOfCurve);
+  EXPECT_EQ(curves[0].at("pairs")[0], nlohmann::json({1.0, 2.0, 3.0, 4.0}));
+  EXPECT_EQ(curves[0].at("pairs_in_all"), 500);
+  EXPECT_TRUE(curves[0].at("cost").at("gap")[0].is_null());
+}
+
+constexpr size_t kFloor = 0;
+
+TEST(CameraAbovePlane, SeesEstimatedPlanesWhereTheDetectionDoes) {
+  Sequence sequence = CuboidSequence(3, 5);
+  sequence.planes[kFloor].attitude_information = Eigen::Matrix3d::Identity();
+  for (Detection& detection : sequence.detections) {
+    // The boxes of one frame differ from odometry by some degrees and centimetres.
+    const Rigid3d off = {ExpRotation(RandomVector(-0.1, 0.1)), RandomVector(-0.1, 0.1)};
+    detection.plane_in_camera = Transform(off, detection.plane_in_camera);
+    const Rigid3d camera_from_world = CameraAbovePlane(sequence, detection);
+    const Plane seen = Transform(camera_from_world, sequence.planes[kFloor].plane_in_world);
+    EXPECT_LT((seen.Homogeneous() - detection.plane_in_camera.Homogeneous()).norm(), 1e-9);
+  }
+}
+
+TEST(CameraAbovePlane, SeesGivenPlanesFromTheTruePose) {
+  Sequence sequence = CuboidSequence(3, 5);
+  for (Frame& frame : sequence.frames) {
+    frame.true_world_from_camera = frame.world_from_camera;
+    frame.world_from_camera.translation += Eigen::Vector3d(0.5, 0.2, 0.1);
+  }
+  const Detection& detection = sequence.detections.front();
+  const Rigid3d camera_from_world = CameraAbovePlane(sequence, detection);
+  const Rigid3d& truth = *sequence.FrameOf(detection).true_world_from_camera;
+  EXPECT_LT(((camera_from_world * truth).Matrix() - Eigen::Matrix4d::Identity()).norm(), 1e-9);
+}
+
+TEST(GridsOfMap, AreOnThePlanesOfTheMap) {
+  const Sequence sequence = CuboidSequence(3, 5);
+  MapEstimate map;
+  map.planes_in_world = {{Eigen::Vector3d(0.1, 0.0, 1.0).normalized(), 0.2}};
+  map.objects.push_back({1, 5, sequence.objects[1].ground_truth->landmark_in_world, {}, ""});
+  const PlaneGrids grids = GridsOfMap(map, sequence);
+  ASSERT_EQ(grids.size(), 1u);
+  ASSERT_FALSE(grids[kFloor].empty());
+  for (const LineSegment3& line : grids[kFloor]) {
+    EXPECT_NEAR(map.planes_in_world[kFloor].SignedDistance(line[0]), 0.0, 1e-9);
+    EXPECT_NEAR(map.planes_in_world[kFloor].SignedDistance(line[1]), 0.0, 1e-9);
+  }
+  EXPECT_TRUE(GridsOfMap({}, sequence).empty());
+}
+
+TEST(UpOfSegment, IsTheFloorsAndNotTheWalls) {
+  Sequence sequence = CuboidSequence(3, 5);
+  const Plane floor = sequence.planes[kFloor].plane_in_world;
+  const Eigen::Vector3d sideways = floor.normal.unitOrthogonal();
+  sequence.planes.insert(sequence.planes.begin(), {1, {sideways, 2.0}});
+  sequence.planes.push_back({2, {-floor.normal, 3.0}});
+  for (size_t i = 0; i < sequence.objects.size(); ++i) {
+    sequence.objects[i].plane_index = static_cast<int>(i);
+  }
+  EXPECT_LT((UpOfSegment(sequence, 0) - floor.normal).norm(), 1e-12);
+}
+
+TEST(UpOfSegment, IsThatOfTheImagesWithoutAFloor) {
+  Sequence sequence = CuboidSequence(3, 5);
+  const Eigen::Vector3d normal = sequence.planes[kFloor].plane_in_world.normal;
+  sequence.planes[kFloor].plane_in_world.normal = normal.unitOrthogonal();
+  EXPECT_GT(UpOfSegment(sequence, 0).dot(normal), 0.7);
+  EXPECT_NEAR(UpOfSegment(sequence, 1).norm(), 1.0, 1e-12);  // none of its frames
+}
+
+using testing::ElementsAre;
+
+const auto kNoImage = [](int) { return false; };
+
+TEST(FramesToShow, AreThoseWithImages) {
+  EXPECT_THAT(FramesToShow(Recording(9, 2), [](int frame) { return frame % 4 == 1; }),
+              ElementsAre(20, 60));
+}
+
+TEST(FramesToShow, AreAllWhereThereAreNoImages) {
+  EXPECT_EQ(FramesToShow(Recording(9, 2), kNoImage).size(), 9u);
+}
+
+TEST(FramesToShow, AreFewOfManyAndHaveDetections) {
+  const Sequence sequence = Recording(1000, 4);
+  const std::set<int> ids = FramesToShow(sequence, kNoImage);
+  EXPECT_EQ(ids.size(), kMaxShownFrames);
+  for (const int id : ids) EXPECT_EQ((id / 10 - 1) % 4, 0);
+  EXPECT_GT(*ids.rbegin(), 9000);
+}
+
+TEST(SelectForPage, HasAllThatIsShownAndSomeOfTheWay) {
+  const Sequence sequence = Recording(5000, 2);
+  const PageSelection selection = SelectForPage(sequence, {10, 40, 30030});
+  EXPECT_THAT(selection.shown, ElementsAre(0, 3, 3002));
+  EXPECT_THAT(selection.detections, ElementsAre(0, 1501));
+  EXPECT_GE(selection.frames.size(), kMaxWayFrames);
+  EXPECT_LE(selection.frames.size(), kMaxWayFrames + 3);
+  for (const int frame : selection.shown) {
+    EXPECT_TRUE(selection.Shows(frame));
+    EXPECT_EQ(selection.frames[selection.PlaceOfFrame(frame)], frame);
+  }
+  EXPECT_EQ(selection.PlaceOfDetection(1501), 1);
+  EXPECT_FALSE(selection.Shows(1));
+}
+
+cv::Mat Noise() {
+  cv::Mat image(480, 640, CV_8UC3);
+  cv::RNG(1).fill(image, cv::RNG::UNIFORM, 0, 255);
+  return image;
+}
+
+size_t Bytes(const EncodedImages& encoded) {
+  size_t bytes = 0;
+  for (const auto& image : encoded.images) bytes += image.base64.size();
+  return bytes;
+}
+
+const ImageSource kNoises = {[](int) { return true; }, [](int) { return Noise(); }};
+
+// Frame 1 has no image, that of frame 2 is damaged.
+const ImageSource kFaulty = {[](int frame) { return frame != 1; },
+                             [](int frame) {
+                               if (frame == 2) throw InputError("2.png: is empty");
+                               return Noise();
+                             }};
+
+TEST(EncodeImages, AreAsLargeAsThereIsRoom) {
+  const EncodedImages large = EncodeImages({0, 1, 2}, kNoises, 10'000'000, 2);
+  const EncodedImages small = EncodeImages({0, 1, 2}, kNoises, 300'000, 2);
+  EXPECT_GT(Bytes(large), 300'000u);
+  EXPECT_EQ(large.scaled_to_px, 0);
+  EXPECT_LE(Bytes(small), 300'000u);
+  EXPECT_GT(Bytes(small), 30'000u);
+  EXPECT_EQ(small.images.size(), 3u);
+  EXPECT_EQ(small.scaled_to_px, 320);
+}
+
+TEST(EncodeImages, AreFewerWhenTheSmallestAreTooLarge) {
+  const std::vector<int> frames = {0, 1, 2, 3, 4, 5, 6, 7};
+  const EncodedImages few = EncodeImages(frames, kNoises, 50'000, 2);
+  EXPECT_LE(Bytes(few), 50'000u);
+  EXPECT_FALSE(few.images.empty());
+  EXPECT_EQ(few.left_out + few.images.size(), frames.size());
+  EXPECT_GT(few.left_out, 0u);
+  EXPECT_TRUE(EncodeImages(frames, kNoises, 100, 2).images.empty());
+}
+
+TEST(EncodeImages, LeaveOutWhatIsNotThereAndNameWhatIsDamaged) {
+  const EncodedImages encoded = EncodeImages({0, 1, 2, 3}, kFaulty, 10'000'000, 2);
+  ASSERT_EQ(encoded.images.size(), 2u);
+  EXPECT_EQ(encoded.images[1].frame_index, 3);
+  EXPECT_EQ(encoded.failures, std::vector<std::string>{"2.png: is empty"});
+  EXPECT_EQ(encoded.left_out, 0u);
+}
+
+// The size of a JPEG file in base 64.
+cv::Size SizeOf(const std::string& base64) {
+  const std::string kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::vector<unsigned char> bytes;
+  unsigned bits = 0, count = 0;
+  for (const char c : base64) {
+    const size_t digit = kDigits.find(c);
+    if (digit == std::string::npos) break;
+    bits = (bits << 6U) | static_cast<unsigned>(digit);
+    count += 6;
+    if (count < 8) continue;
+    count -= 8;
+    bytes.push_back(static_cast<unsigned char>((bits >> count) & 0xFFU));
+  }
+  return cv::imdecode(bytes, cv::IMREAD_COLOR).size();
+}
+
+TEST(EncodeCrops, AreSmallAndInTheOrderOfTheCrops) {
+  const cv::Rect large(0, 0, 320, 200), tall(600, 0, 100, 480), small(10, 10, 40, 30);
+  const std::vector<std::string> crops =
+      EncodeCrops({{0, large}, {1, large}, {2, large}, {3, tall}, {3, small}, {3, {}}}, kFaulty, 2);
+  ASSERT_EQ(crops.size(), 6u);
+  EXPECT_EQ(SizeOf(crops[0]), cv::Size(160, 100));
+  EXPECT_EQ(crops[1], "");
+  EXPECT_EQ(crops[2], "");
+  EXPECT_EQ(SizeOf(crops[3]), cv::Size(13, 160));  // 40 of its 100 columns are in the image
+  EXPECT_EQ(SizeOf(crops[4]), cv::Size(40, 30));
+  EXPECT_EQ(crops[5], "");
+}
+
+using nlohmann::json;
+
+constexpr size_t kPart = 10'000;  // bytes
+
+json Variant(const char* name, const char* kind) {
+  return {{"name", name},
+          {"kind", kind},
+          {"numbers_only", false},
+          {"metrics", {{"summary", 1}, {"objects", json::array({1, 2})}}},
+          {"outlines", std::string(kPart, 'x')}};
+}
+
+json Data() {
+  json data = {{"notes", json::array()}, {"sequences", json::array()}};
+  data["sequences"].push_back({{"frames", std::string(kPart, 'x')}, {"counts", 3}});
+  data["symmetries"].push_back({{"curves", std::string(kPart, 'x')}, {"descriptors", 5}});
+  for (const char* name : {"SVD", "OursP", "InitP"}) {
+    const std::string kind = name[0] == 'S' ? "views" : name[0] == 'O' ? "map" : "frames";
+    data["variants"].push_back(Variant(name, kind.c_str()));
+  }
+  return data;
+}
+
+json Fitted(size_t max_bytes) {
+  json data = Data();
+  FitPageData(
+      max_bytes, [](const json& all) { return PageText(all).size(); }, &data);
+  EXPECT_LE(PageText(data).size(), max_bytes + 200);  // the notes
+  return data;
+}
+
+TEST(FitPageData, ChangesNothingThatFits) { EXPECT_EQ(Fitted(6 * kPart), Data()); }
+
+TEST(FitPageData, LeavesOutCurvesFirst) {
+  json expected = Data();
+  expected["symmetries"][0]["curves"] = json::array();
+  expected["notes"].push_back(
+      "For lack of room the cost over yaw of single observations is left out.");
+  EXPECT_EQ(Fitted(5 * kPart), expected);
+}
+
+TEST(FitPageData, ThenKeepsTheNumbersOfSingleFramesOnly) {
+  const json data = Fitted(7 * kPart / 2);
+  EXPECT_EQ(data["variants"][0], Variant("SVD", "views"));
+  EXPECT_EQ(data["variants"][1], Variant("OursP", "map"));
+  EXPECT_EQ(data["variants"][2]["numbers_only"], true);
+  EXPECT_EQ(data["variants"][2]["metrics"]["summary"], 1);
+  EXPECT_FALSE(data["variants"][2].contains("outlines"));
+  EXPECT_EQ(data["notes"].back(), "For lack of room only the numbers of InitP are shown.");
+  EXPECT_FALSE(data["sequences"][0]["frames"].empty());
+}
+
+TEST(FitPageData, KeepsNumbersWhateverHappens) {
+  const json data = Fitted(1000);
+  for (const json& variant : data["variants"]) EXPECT_EQ(variant["metrics"]["summary"], 1);
+  EXPECT_EQ(data["symmetries"][0]["descriptors"], 5);
+  EXPECT_EQ(data["sequences"][0]["counts"], 3);
+  EXPECT_TRUE(data["sequences"][0]["frames"].empty());
+}
+
+}  // namespace
+}  // namespace soslam

@@ -1,0 +1,412 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/tables.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "report/results_tree.h"
+#include "support/expect_error.h"
+#include "support/results_folder.h"
+#include "support/temporary_folder.h"
+
+namespace soslam {
+namespace {
+
+// An alignment of a map, as metrics.json has it.
+nlohmann::json Alignment(const char* kind, double scale, int frames, double rmse_m) {
+  return {{"kind", kind}, {"scale", scale}, {"frames", frames}, {"rmse_m", rmse_m}};
+}
+
+nlohmann::json Score(int found, double f1) {
+  return {{"true_objects", 4},
+          {"detectable", 3},
+          {"landmarks", 5},
+          {"ignored", 1},
+          {"found", found},
+          {"precision", 0.875},
+          {"recall", 0.625},
+          {"f1", f1},
+          {"recall_of_detectable", 0.75},
+          {"of_found",
+           {{"iou_mean", 0.5},
+            {"centre_m_mean", 0.125},
+            {"centre_relative_mean", 0.25},
+            {"log_size_abs_mean", {0.1, 0.2, nullptr}},
+            {"log_scale_abs_mean", 0.0625},
+            {"yaw_error_deg_mean", nullptr},
+            {"up_error_deg_mean", 1.5},
+            {"plane_offset_m_abs_mean", 0.01},
+            {"plane_tilt_deg_mean", 2.5},
+            {"labels_agree", 2},
+            {"ids_known", 3},
+            {"ids_agree", 1}}}};
+}
+
+// What tables read of the metrics.json of a map: a cup that is missed, and a television that is
+// false.
+nlohmann::json MapMetrics(const nlohmann::json& alignments) {
+  return {
+      {"odometry_source", "ORB-SLAM2"},
+      {"map_quality",
+       {{"alignments", alignments},
+        {"scores", {Score(3, 0.75), Score(2, 0.5)}},
+        {"in_frames", {{"iou_mean", 0.625}, {"iou_mean_in_world", 0.5}}},
+        {"objects",
+         {{{"true_object", 7}, {"label", "cup"}, {"reason", "not_detected"}, {"detail", "0 of 9"}},
+          {{"true_object", 8}, {"label", "book"}, {"reason", nullptr}, {"detail", nullptr}}}},
+        {"landmarks",
+         {{{"object", 2},
+           {"label", "tv"},
+           {"fate", "false"},
+           {"true_object", nullptr},
+           {"reason", "background"},
+           {"detail", ""}}}}}}};
+}
+
+using testing::ElementsAre;
+
+TEST(DatasetFacts, AboutIsReadBesideTheSettings) {
+  const TemporaryFolder folder;
+  WriteBytes(
+      folder / "room.json",
+      R"({"import": {"labels": "cup"}, "about": {"boxes": "a network", "boxes_of": "detector"}})");
+  DatasetFacts facts;
+  facts.odometry = "COLMAP";
+  ReadAbout(folder / "room.json", &facts);
+  EXPECT_TRUE(facts.HasDetectorBoxes());
+  EXPECT_EQ(DifferencesInWords(facts), "boxes: a network; odometry: COLMAP");
+  ReadAbout(folder / "none.json", &facts);
+  EXPECT_EQ(facts.boxes, "a network");
+}
+
+TEST(DatasetFacts, RefusesWhatTheSchemaDoesNotAllow) {
+  const TemporaryFolder folder;
+  WriteBytes(folder / "room.json", R"({"about": {"boxes_of": "hand"}})");
+  DatasetFacts facts;
+  ExpectError<InputError>([&] { ReadAbout(folder / "room.json", &facts); },
+                          {"room.json", "/boxes_of", "hand"});
+}
+
+TEST(DatasetFacts, MarksSayWhatLimitsARow) {
+  DatasetFacts facts;
+  EXPECT_EQ(MarksOf(facts, 3), kNoValue);
+  EXPECT_EQ(MarksOf(facts, 2), "f");
+  facts.partly_annotated = true;
+  facts.counts = DatasetCounts{.frames = 4, .objects = 3, .round_objects = 1};
+  EXPECT_EQ(MarksOf(facts, 3), "p, r");
+  EXPECT_EQ(DifferencesInWords(facts), "4 frames, 3 annotated objects");
+}
+
+// The settings of the project say of each dataset whose boxes it has.
+TEST(DatasetFacts, AllDatasetsOfTheProjectAreDescribed) {
+  const std::filesystem::path settings =
+      std::filesystem::path(SOSLAM_SOURCE_DIR) / "pipelines" / "datasets";
+  for (const auto& file : std::filesystem::directory_iterator(settings)) {
+    DatasetFacts facts;
+    ReadAbout(file.path(), &facts);
+    EXPECT_FALSE(facts.boxes.empty()) << file.path();
+    EXPECT_FALSE(facts.boxes_of.empty()) << file.path();
+  }
+}
+
+TEST(SequencesTable, HasARowForEachCountedDataset) {
+  DatasetFacts facts;
+  facts.counts = DatasetCounts{.frames = 4, .objects = 3, .round_objects = 1};
+  facts.boxes = "a network";
+  EXPECT_THAT(CellTexts(SequencesTable({{"room", {}, facts}, {"attic", {}}})),
+              ElementsAre("room a network - - r 4 3 1"));
+}
+
+using nlohmann::json;
+using testing::IsEmpty;
+
+const json kExact = json::array({Alignment("none", 1.0, 3, 0.0)});
+
+json FalseLandmark(int id, const json& true_object, const char* reason) {
+  return {{"object", id},     {"label", "jar"}, {"fate", "false"}, {"true_object", true_object},
+          {"reason", reason}, {"detail", ""}};
+}
+
+json FoundLandmark(int true_object, const json& wrong_part) {
+  return {{"object", 5},
+          {"label", "bowl"},
+          {"fate", "found"},
+          {"true_object", true_object},
+          {"reason", nullptr},
+          {"detail", nullptr},
+          {"wrong_part", wrong_part},
+          {"errors",
+           {{"iou", 0.5},
+            {"centre_m", 0.25},
+            {"log_size", {0.5, -0.25, 0.0}},
+            {"yaw_error_deg", nullptr}}}};
+}
+
+std::vector<DatasetResult> OneMap(const json& metrics, const std::filesystem::path& folder = {}) {
+  return {{"room", {{"OursS", folder, metrics}}}};
+}
+
+TEST(MapsTable, SaysWhatTheVariantWasGiven) {
+  const TemporaryFolder folder;
+  WriteBytes(folder / "associations.json", "");
+  const Table table = MapsTable(OneMap(MapMetrics(kExact), folder.path()), {"OursSTE", "OursS"});
+  EXPECT_THAT(CellTexts(table),
+              ElementsAre("room OursS estimated given 4 (3) 5 (1) 0.75 3 0.88 0.62 0.75 0.500 2 "
+                          "0.88 0.62 0.50 0.500"));
+  EXPECT_EQ(table.header.size(), table.rows.front().size());
+}
+
+TEST(LostTable, JoinsTheObjectsOfAReason) {
+  json metrics = MapMetrics(kExact);
+  metrics["map_quality"]["objects"].push_back(
+      {{"true_object", 9}, {"label", "can"}, {"reason", "not_detected"}, {"detail", ""}});
+  EXPECT_THAT(CellTexts(LostTable(OneMap(metrics), {"OursS"})),
+              ElementsAre("room OursS missed not detected cup 7, can 9",
+                          "room OursS false background tv 2"));
+}
+
+TEST(LostTable, VariantsWithTheSameMistakesShareARow) {
+  std::vector<DatasetResult> datasets = OneMap(MapMetrics(kExact));
+  datasets[0].variants.push_back({"OursSTE", {}, MapMetrics(kExact)});
+  datasets[0].variants[1].metrics["map_quality"]["landmarks"] = json::array();
+  EXPECT_THAT(CellTexts(LostTable(datasets, {"OursS", "OursSTE"})),
+              ElementsAre("room OursS, OursSTE missed not detected cup 7",
+                          "room OursS false background tv 2"));
+}
+
+TEST(LostTable, TheLandmarkOfAMissedObjectIsNotListedAgain) {
+  json metrics = MapMetrics(kExact);
+  metrics["map_quality"]["landmarks"] = {FalseLandmark(1, 7, "wrong_size"),
+                                         FalseLandmark(3, 8, "duplicate")};
+  EXPECT_THAT(
+      CellTexts(LostTable(OneMap(metrics), {"OursS"})),
+      ElementsAre("room OursS missed not detected cup 7", "room OursS false duplicate jar 3"));
+}
+
+TEST(LimitsTable, HasTheFoundLandmarks) {
+  json metrics = MapMetrics(kExact);
+  metrics["map_quality"]["landmarks"].push_back(
+      FoundLandmark(8, {{"part", "size"}, {"iou_corrected", 0.75}}));
+  metrics["map_quality"]["landmarks"].push_back(FoundLandmark(6, nullptr));
+  EXPECT_THAT(CellTexts(LimitsTable(OneMap(metrics), {"OursS"})),
+              ElementsAre("room OursS bowl 8 size 0.500 0.750 0.250 0.50, -0.25, 0.00 -",
+                          "room OursS bowl 6 - 0.500 - 0.250 0.50, -0.25, 0.00 -"));
+}
+
+TEST(MapTables, HaveNoRowsOfVariantsWithoutAMap) {
+  const std::vector<DatasetResult> datasets = OneMap({{"summary", json::object()}});
+  for (const auto& table_of : {&MapsTable, &LostTable, &LimitsTable}) {
+    EXPECT_THAT(table_of(datasets, {"OursS", "InitP"}).rows, IsEmpty());
+  }
+}
+
+TEST(QualityTables, HaveARowForEachMap) {
+  const auto tables = QualityTables(
+      "room", {{"InitP", json::object()},
+               {"OursS", MapMetrics(json::array({Alignment("rigid", 1.0, 9, 0.25)}))}});
+  ASSERT_EQ(tables.size(), 2u);
+  EXPECT_EQ(tables[0].name, "map_quality_room");
+  EXPECT_THAT(CellTexts(tables[0]),
+              ElementsAre("OursS 4 (3) 5 (1) 0.75 3 0.88 0.62 0.75 0.500 2 0.88 0.62 0.50 0.500"));
+  EXPECT_THAT(tables[0].notes,
+              ElementsAre(testing::StartsWith("True objects"), "Odometry: ORB-SLAM2."));
+  EXPECT_EQ(tables[1].name, "map_errors_room");
+  EXPECT_THAT(CellTexts(tables[1]),
+              ElementsAre("OursS 0.125 0.25 0.10, 0.20, - 0.062 - 1.5 0.010 2.5 2 of 3 1 of 3 "
+                          "0.625 0.500"));
+  for (const Table& table : tables) EXPECT_EQ(table.header.size(), table.rows.front().size());
+}
+
+TEST(QualityTables, TitlesSayWhatAlignedTheMaps) {
+  const auto title = [](const std::vector<json>& alignments) {
+    std::vector<NamedMetrics> variants;
+    for (const json& of_map : alignments) variants.emplace_back("OursS", MapMetrics(of_map));
+    const std::string text = QualityTables("road", variants)[0].title;
+    return text.substr(text.find("alignment"));
+  };
+  // sqrt((3 * 0.01 + 0.25) / 4)
+  EXPECT_EQ(title({{Alignment("none", 1.0, 3, 0.1), Alignment("none", 1.0, 1, 0.5)}}),
+            "alignment none, cameras 0.2646 m apart");
+  EXPECT_EQ(
+      title({{Alignment("similarity", 2.5, 9, 0.25)}, {Alignment("similarity", 2.0, 9, 0.5)}}),
+      "alignment similarity, scale 2 to 2.5, cameras 0.25 to 0.5 m apart");
+  json unknown = Alignment("none", 1.0, 0, 0.0);
+  unknown["rmse_m"] = nullptr;
+  EXPECT_EQ(title({{unknown}}), "alignment none");
+}
+
+TEST(QualityTables, RowsSayTheirAlignmentWhereOthersHaveAnother) {
+  const auto tables = QualityTables(
+      "road", {{"OursS", MapMetrics(json::array({Alignment("none", 1.0, 3, 0.1)}))},
+               {"OursP", MapMetrics(json::array({Alignment("rigid", 1.0, 3, 0.1)}))}});
+  EXPECT_EQ(tables[0].rows[0][0].text, "OursS (none)");
+  EXPECT_EQ(tables[1].rows[1][0].text, "OursP (rigid)");
+}
+
+TEST(QualityTables, AreNoneWithoutMaps) {
+  EXPECT_THAT(QualityTables("room", {{"InitP", json::object()}, {"SVD", nullptr}}), IsEmpty());
+}
+
+TEST(MistakesTable, HasWhatIsMissedAndWhatIsFalse) {
+  EXPECT_THAT(CellTexts(MistakesTable(MapMetrics(json::array()))),
+              ElementsAre("missed cup 7 not detected 0 of 9", "false tv 2 background "));
+  EXPECT_THAT(MistakesTable(json::object()).rows, IsEmpty());
+}
+
+// Eight observations of two objects.
+constexpr const char* kSequence = R"({"detections": [
+  {"object": 1}, {"object": 1}, {"object": 2}, {"object": 1},
+  {"object": 2}, {"object": 2}, {"object": 2}, {"object": 2}]})";
+
+class TimingTableTest : public testing::Test {
+ protected:
+  // A variant made of these runs, of which `optimise-4` takes 4 s of wall and 4.5 s of CPU time.
+  void Write(const std::string& variant, const std::vector<std::string>& runs,
+             bool is_single_frame) {
+    results_.WriteMetrics("room", variant, {{.id = 1}, {.id = 2}}, is_single_frame);
+    results_.WriteStages("room", variant, runs);
+    WriteBytes(results_.VariantFolder("room", variant) / "sequence.json", kSequence);
+    for (const std::string& run : runs) {
+      const double seconds = std::stod(run.substr(run.rfind('-') + 1));
+      results_.WriteTiming("room", run, seconds, seconds + 0.5);
+    }
+  }
+  std::vector<DatasetResult> Read() const { return ReadResults(results_.path()); }
+  std::optional<LandmarkTime> TimeOf(const std::string& variant) const {
+    const DatasetResult dataset = Read().front();
+    return TimePerLandmark(*dataset.Evaluated(variant), {.observations = 8, .objects = 2});
+  }
+
+  ResultsFolder results_;
+};
+
+TEST_F(TimingTableTest, SingleFramesCountPerObservationFromEdgesToRefinement) {
+  Write("InitPT", {"import-9", "edges-1", "initialise-2", "refine-5", "evaluate-9"}, true);
+  const auto time = TimeOf("InitPT");
+  ASSERT_TRUE(time);
+  EXPECT_DOUBLE_EQ(time->wall_ms, 1e3 * (1 + 2 + 5) / 8);
+  EXPECT_DOUBLE_EQ(time->cpu_ms, 1e3 * (1.5 + 2.5 + 5.5) / 8);
+  EXPECT_EQ(time->observations, 1.0);
+}
+
+TEST_F(TimingTableTest, InitialisationFromAllFramesCountsPerObject) {
+  Write("SVD", {"import-9", "initialise-2", "evaluate-9"}, false);
+  const auto time = TimeOf("SVD");
+  ASSERT_TRUE(time);
+  EXPECT_DOUBLE_EQ(time->wall_ms, 1e3 * 2 / 2);
+  EXPECT_EQ(time->observations, 4.0);
+}
+
+TEST_F(TimingTableTest, MapsCountTheBackEndPerObject) {
+  Write("OursPT", {"edges-1", "initialise-2", "refine-5", "optimise-4", "evaluate-9"}, false);
+  const auto time = TimeOf("OursPT");
+  ASSERT_TRUE(time);
+  EXPECT_DOUBLE_EQ(time->wall_ms, 1e3 * 4 / 2);
+  EXPECT_DOUBLE_EQ(time->cpu_ms, 1e3 * 4.5 / 2);
+}
+
+TEST_F(TimingTableTest, MissingTimingIsNoValue) {
+  Write("InitPT", {"initialise-2", "refine-5"}, true);
+  std::filesystem::remove(results_.path() / "room/shared/refine-5/timing.json");
+  EXPECT_FALSE(TimeOf("InitPT"));
+  EXPECT_THAT(TimeTable(Read(), {}).rows, IsEmpty());
+}
+
+TEST_F(TimingTableTest, NoStagesOrNoSequenceNoTimes) {
+  results_.WriteMetrics("room", "InitP", {{.id = 1}}, true);
+  EXPECT_FALSE(TimeOf("InitP"));
+  Write("InitP", {"initialise-2"}, true);
+  std::filesystem::remove(results_.path() / "room/InitP/sequence.json");
+  EXPECT_THAT(TimeTable(Read(), {}).rows, IsEmpty());
+}
+
+TEST_F(TimingTableTest, MeasuredAndPublishedTimesOnTheirMachines) {
+  Write("InitP", {"initialise-2"}, true);
+  Published published;
+  published.times = {"A paper", "desk", "A laptop", {{"InitP", 5.8, 1.4, 1.0}}};
+  const Table table = TimeTable(Read(), published);
+  EXPECT_THAT(CellTexts(table),
+              ElementsAre("room wall ms - - 250.0 - - - - - - - - - - - - - -",
+                          "room CPU ms - - 312.5 - - - - - - - - - - - - - -",
+                          "room observations - - 1.0 - - - - - - - - - - - - - -",
+                          "desk published ms - - 5.8 ± 1.4 - - - - - - - - - - - - - -",
+                          "desk published observations - - 1.0 - - - - - - - - - - - - - -"));
+  EXPECT_EQ(table.notes.front(), "Measured on: A CPU, 4 cores, 2 threads.");
+  EXPECT_EQ(table.notes.back(), "Published: A paper, on A laptop.");
+}
+
+TEST(CountObservations, CountsDetectionsAndTheirObjects) {
+  const TemporaryFolder folder;
+  WriteBytes(folder / "sequence.json", kSequence);
+  const SequenceCounts counts = CountObservations(folder / "sequence.json");
+  EXPECT_EQ(counts.observations, 8);
+  EXPECT_EQ(counts.objects, 2);
+}
+
+TEST(CountObservations, RefusesASequenceWithoutDetectionsByName) {
+  const TemporaryFolder folder;
+  WriteBytes(folder / "sequence.json", R"({"frames": []})");
+  ExpectError<InputError>([&] { CountObservations(folder / "sequence.json"); },
+                          {"sequence.json", "detections"});
+}
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+const std::vector<Table> kTables = {
+    {"prices", "Prices", {"thing", "price"}, {{"cup", "3"}}, 1, {}}};
+const std::string kPage = "# Shop\n\nBefore.\n\n<!-- table: prices -->\n<!-- end -->\n\nAfter.\n";
+
+TEST(ResultsPage, ProseStaysAroundATable) {
+  const std::string page = FillPage(kPage, kTables, "shop.md");
+  EXPECT_THAT(page, StartsWith("# Shop\n\nBefore.\n\n<!-- table: prices -->\n"));
+  EXPECT_THAT(page, HasSubstr("\n#" + ToMarkdown(kTables[0]) + "\n<!-- end: "));
+  EXPECT_TRUE(page.ends_with(" -->\n\nAfter.\n"));
+  EXPECT_EQ(FillPage(page, kTables, "shop.md"), page);
+}
+
+TEST(ResultsPage, ATableFollowsTheResults) {
+  std::vector<Table> dearer = kTables;
+  dearer[0].rows = {{"cup", "4"}};
+  const std::string page = FillPage(kPage, kTables, "shop.md");
+  EXPECT_EQ(FillPage(page, dearer, "shop.md"), FillPage(kPage, dearer, "shop.md"));
+}
+
+TEST(ResultsPage, EditedTablesAreFound) {
+  std::string page = FillPage(kPage, kTables, "shop.md");
+  EXPECT_THAT(EditedTables(page, "shop.md"), IsEmpty());
+  page.replace(page.find('3', page.find("cup")), 1, "2");
+  EXPECT_THAT(EditedTables(page, "shop.md"), ElementsAre("prices"));
+  EXPECT_THAT(EditedTables(kPage, "shop.md"), ElementsAre("prices"));
+}
+
+TEST(ResultsPage, RefusesUnknownTablesAndHalfMarkers) {
+  const auto refuses = [](const std::string& page, const std::vector<std::string>& words) {
+    ExpectError<InputError>([&] { FillPage(page, kTables, "shop.md"); }, words);
+  };
+  refuses("<!-- table: names -->\n<!-- end -->\n", {"shop.md", "'names'", "prices"});
+  refuses("\n<!-- table: prices -->\n", {"shop.md:2", "prices", "<!-- end"});
+  refuses("<!-- table: prices -->\n<!-- table: prices -->\n<!-- end -->\n", {"shop.md:1"});
+  refuses("\n\n<!-- end -->\n", {"shop.md:3", "<!-- table:"});
+}
+
+TEST(ResultsPage, TablesOfTheDocumentationAreNotEditedByHand) {
+  const std::filesystem::path page =
+      std::filesystem::path(SOSLAM_SOURCE_DIR) / "docs" / "results.md";
+  EXPECT_THAT(EditedTables(FileBytes(page), page.string()), IsEmpty())
+      << "make results-page writes them";
+}
+
+TEST(ResultsPage, TheDocumentationHasAColumnForEachVariant) {
+  const std::string page =
+      FileBytes(std::filesystem::path(SOSLAM_SOURCE_DIR) / "docs" / "results.md");
+  for (const std::string& variant : KnownVariants()) {
+    EXPECT_THAT(page, testing::ContainsRegex("\\| +" + variant + " \\|"));
+  }
+}
+
+}  // namespace
+}  // namespace soslam
