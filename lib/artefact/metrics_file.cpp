@@ -131,7 +131,8 @@ json ToJson(const ObjectMetrics& metrics, const Sequence& sequence) {
           {"iou", metrics.observations > 0 ? json(metrics.iou) : json()},
           {"centre_m", metrics.centre_m},
           {"rotation_deg", metrics.rotation_deg},
-          {"yaw_error_deg", metrics.yaw_deg}};
+          {"yaw_error_deg", metrics.yaw_deg},
+          {"attitude_error_deg", metrics.attitude_deg}};
 }
 
 json ToJson(const HeldOutMetrics& metrics, const Sequence& sequence) {

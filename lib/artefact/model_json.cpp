@@ -110,14 +110,20 @@ void from_json(const json& json, Camera& camera) {
 }
 
 json LandmarkToJson(const Landmark& landmark, const std::string& frame) {
-  return {{frame + "_from_object", landmark.frame_from_object},
-          {"half_axes", VectorToJson(landmark.half_axes)},
-          {"shape_exponent", landmark.shape_exponent}};
+  json fields = {{frame + "_from_object", landmark.frame_from_object},
+                 {"half_axes", VectorToJson(landmark.half_axes)},
+                 {"shape_exponent", landmark.shape_exponent}};
+  if (landmark.rests_on != RestingFace::kBottom) {
+    fields["rests_on"] = kRestingFaceNames[static_cast<size_t>(landmark.rests_on)];
+  }
+  return fields;
 }
 
 Landmark LandmarkFromJson(const json& json, const std::string& frame) {
   return {json.at(frame + "_from_object").get<Rigid3d>(), VectorFromJson(json.at("half_axes")),
-          json.value("shape_exponent", kEllipsoidExponent)};
+          json.value("shape_exponent", kEllipsoidExponent),
+          EnumFromName<RestingFace>(kRestingFaceNames,
+                                    json.value("rests_on", kRestingFaceNames.front()))};
 }
 
 namespace {

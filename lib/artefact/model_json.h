@@ -115,7 +115,8 @@ Eigen::Vector3d VectorFromJson(const nlohmann::json& json);
 nlohmann::json MatrixToJson(const Eigen::Matrix3d& matrix);
 Eigen::Matrix3d MatrixFromJson(const nlohmann::json& json);
 
-// {"<frame>_from_object": rigid, "half_axes": [a, b, c] in metres, "shape_exponent": 1 to 2};
+// {"<frame>_from_object": rigid, "half_axes": [a, b, c] in metres, "shape_exponent": 1 to 2,
+// "rests_on": a name of kRestingFaceNames, "bottom" if absent};
 // `frame` is "world" or "camera". Schema version 1.0 had no shape exponent: all were ellipsoids.
 nlohmann::json LandmarkToJson(const Landmark& landmark, const std::string& frame);
 Landmark LandmarkFromJson(const nlohmann::json& json, const std::string& frame);

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "artefact/semantic_table_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
 
 #include "artefact/json_file.h"
 #include "artefact/model_json.h"
+#include "base/error.h"
 
 namespace soslam {
 namespace {
@@ -31,11 +34,21 @@ ShapePrior Prior(const json& entry) {
                       entry.value("height_log_sigma", kDefaultLogSigma)};
   }
   prior.edge_bias = entry.value("edge_bias", EdgeBias());
+  prior.attitude =
+      EnumFromName<Attitude>(kAttitudeNames, entry.value("attitude", kAttitudeNames.front()));
   return prior;
 }
 
-SemanticRow Row(const std::string& label, const json& entry) {
-  return {label, entry.value("aliases", std::vector<std::string>()), Prior(entry),
+// `where` is that of the entry in its file, for error messages.
+SemanticRow Row(const std::string& label, const json& entry, const std::string& where) {
+  const ShapePrior prior = Prior(entry);
+  if (prior.attitude != Attitude::kStanding && prior.mount != Mount::kStanding) {
+    throw InputError(fmt::format(
+        "{}: attitude is {} and mount {}; expected attitude standing of what hangs or is on a wall",
+        where, kAttitudeNames[static_cast<size_t>(prior.attitude)],
+        kMountNames[static_cast<size_t>(prior.mount)]));
+  }
+  return {label, entry.value("aliases", std::vector<std::string>()), prior,
           entry.value("samples", 0), entry.at("source").get<std::string>()};
 }
 
@@ -51,6 +64,9 @@ json Entry(const SemanticRow& row) {
                 {"source", row.source}};
   if (prior.mount != Mount::kStanding) {
     entry["mount"] = kMountNames[static_cast<size_t>(prior.mount)];
+  }
+  if (prior.attitude != Attitude::kStanding) {
+    entry["attitude"] = kAttitudeNames[static_cast<size_t>(prior.attitude)];
   }
   if (!row.aliases.empty()) entry["aliases"] = row.aliases;
   if (prior.height_m) {
@@ -73,9 +89,12 @@ SemanticRows ReadSemanticRows(const std::filesystem::path& path) {
   ValidateAgainstSchema(document, kSemanticTableKind, path.string());
   SemanticRows rows;
   rows.description = document.value("description", "");
-  if (document.contains("default")) rows.default_row = Row("default", document.at("default"));
+  if (document.contains("default")) {
+    rows.default_row = Row("default", document.at("default"), path.string() + ": default");
+  }
   for (const auto& item : document.at("labels").items()) {
-    rows.rows.push_back(Row(item.key(), item.value()));
+    rows.rows.push_back(
+        Row(item.key(), item.value(), fmt::format("{}: labels/{}", path.string(), item.key())));
   }
   return rows;
 }

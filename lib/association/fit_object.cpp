@@ -120,10 +120,10 @@ std::optional<Landmark> LandmarkOnPlane(const Sequence& sequence,
   return std::nullopt;
 }
 
-}  // namespace
-
-std::optional<FittedObject> FitObject(const Sequence& sequence, const std::vector<int>& detections,
-                                      const ShapePrior& prior, const AssociateOptions& options,
+// FitObject for one face that the object may rest on.
+std::optional<FittedObject> FitOnFace(const Sequence& sequence, const std::vector<int>& detections,
+                                      const std::optional<ShapePrior>& prior,
+                                      const AssociateOptions& options,
                                       const std::variant<Plane, UpEstimate>& support_in_world) {
   const std::vector<int> used = SpreadOver(detections, static_cast<size_t>(options.max_views));
   const auto* up = std::get_if<UpEstimate>(&support_in_world);
@@ -145,6 +145,19 @@ std::optional<FittedObject> FitObject(const Sequence& sequence, const std::vecto
       FittedAt(observation, *landmark, up ? up->covariance : Eigen::Matrix3d::Zero());
   if (!fitted.covariance.allFinite() || !std::isfinite(fitted.cost)) return std::nullopt;
   return fitted;
+}
+
+}  // namespace
+
+std::optional<FittedObject> FitObject(const Sequence& sequence, const std::vector<int>& detections,
+                                      const ShapePrior& prior, const AssociateOptions& options,
+                                      const std::variant<Plane, UpEstimate>& support_in_world) {
+  std::optional<FittedObject> best;
+  for (const auto& on_face : OnPossibleFaces(prior)) {
+    const auto fit = FitOnFace(sequence, detections, on_face, options, support_in_world);
+    if (fit && (!best || fit->cost < best->cost)) best = fit;
+  }
+  return best;
 }
 
 Drift::Drift(const std::vector<Frame>& frames, double rotation_sigma_rad,

@@ -32,9 +32,9 @@ struct Support {
 };
 
 // Fits an object's landmark to its detections (indices in Sequence::detections, at least one), of
-// which at most max_views are used. The covariance is the inverse of the information of boxes and
-// prior; views from one side count as one. None when the boxes do not determine a landmark in front
-// of the cameras.
+// which at most max_views are used, on the face that fits best. The covariance is the inverse of
+// the information of boxes and prior; views from one side count as one. None when the boxes do not
+// determine a landmark in front of the cameras.
 //
 // An object without a plane is upright at a free height, and its prior's height_m fixes the scale
 // and thus the distance. The covariance includes the uncertainty of up, with the landmark adapting

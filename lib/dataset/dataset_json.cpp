@@ -52,9 +52,9 @@ const KnownKeys kPlaneKeys = {
 
 // Keys of an object of objects.json.
 const KnownKeys kObjectKeys = {
-    {"id", "label", "support_plane", "center", "quaternion_xyzw", "half_axes", "mirror_symmetric",
-     "mirror_symmetric_yz", "rotationally_symmetric", "model", "name", "description", "comment",
-     "source"},
+    {"id", "label", "support_plane", "center", "quaternion_xyzw", "half_axes", "rests_on",
+     "mirror_symmetric", "mirror_symmetric_yz", "rotationally_symmetric", "model", "name",
+     "description", "comment", "source"},
     WithPlaceHints({{{"plane"}, "the plane is read as \"support_plane\", an id of planes.json"},
                     {{"object_id"}, "the id is read as \"id\""},
                     {{"ignored"},
@@ -127,9 +127,19 @@ bool HasLandmark(const Entry& entry) {
   return entry.Has("center") || entry.Has("quaternion_xyzw") || entry.Has("half_axes");
 }
 
+RestingFace ParseRestingFace(const Entry& entry) {
+  if (!entry.Has("rests_on")) return RestingFace::kBottom;
+  const std::string name = entry.Text("rests_on");
+  const auto* const face = std::ranges::find(kRestingFaceNames, name);
+  if (face == kRestingFaceNames.end()) entry.Refuse("rests_on", "bottom, back or side");
+  return kRestingFaces[static_cast<size_t>(face - kRestingFaceNames.begin())];
+}
+
 GroundTruth ParseGroundTruth(const Entry& entry) {
-  return {ParseLandmark(entry), entry.Flag("mirror_symmetric", true),
-          entry.Flag("mirror_symmetric_yz", false), entry.Flag("rotationally_symmetric", false)};
+  Landmark landmark = ParseLandmark(entry);
+  landmark.rests_on = ParseRestingFace(entry);
+  return {landmark, entry.Flag("mirror_symmetric", true), entry.Flag("mirror_symmetric_yz", false),
+          entry.Flag("rotationally_symmetric", false)};
 }
 
 ListedObject ParseObject(const Entry& entry) {

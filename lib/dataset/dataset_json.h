@@ -54,11 +54,12 @@ struct ListedObjects {
 };
 
 // Reads [{"id", "label", "support_plane" (may be absent), and, all or none: "center",
-// "quaternion_xyzw" (world from object), "half_axes"}], with optional "mirror_symmetric" (default
-// true), "mirror_symmetric_yz" and "rotationally_symmetric" (default false). Ignored keys: "model",
-// "name", "description", "comment", "source". Or {"objects": such a list, "ignored": [{"label", or
-// the volume "center", "quaternion_xyzw", "half_axes", or both}]}, ignored keys: "name",
-// "description", "comment", "source".
+// "quaternion_xyzw" (world from object), "half_axes"}], with optional "rests_on" (a name of
+// kRestingFaceNames; default "bottom"), "mirror_symmetric" (default true), "mirror_symmetric_yz"
+// and "rotationally_symmetric" (default false). Ignored keys: "model", "name", "description",
+// "comment", "source". Or {"objects": such a list, "ignored": [{"label", or the volume "center",
+// "quaternion_xyzw", "half_axes", or both}]}, ignored keys: "name", "description", "comment",
+// "source".
 ListedObjects ReadObjects(const std::filesystem::path& path);
 
 }  // namespace soslam

@@ -56,6 +56,15 @@ double YawError(const Eigen::Quaterniond& frame_from_estimate,
   return std::abs(YawDifferenceModuloPi(std::atan2(front.y(), front.x()), 0.0));
 }
 
+double AttitudeError(const Landmark& estimate, const Landmark& truth_in_frame) {
+  const Eigen::Quaterniond own_difference =
+      InOwnAxes(truth_in_frame).frame_from_object.rotation.conjugate() *
+      InOwnAxes(estimate).frame_from_object.rotation;
+  // The coefficients of a rotation are the cosines of half the angles that are left after half
+  // turns about x, y and z, and after none.
+  return 2.0 * std::acos(std::min(1.0, own_difference.coeffs().cwiseAbs().maxCoeff()));
+}
+
 namespace {
 
 // The landmark, rotated about its z axis until its x axis points as that of `other` does.
@@ -80,6 +89,7 @@ LandmarkErrors CompareLandmarks(const Landmark& estimate, const GroundTruth& tru
   errors.iou = BoxIou(estimate, truth_in_frame);
   errors.rotation_deg = kDegPerRad * RotationError(estimated, exact);
   errors.yaw_deg = kDegPerRad * YawError(estimated, exact);
+  errors.attitude_deg = kDegPerRad * AttitudeError(estimate, truth_in_frame);
   return errors;
 }
 

@@ -21,13 +21,19 @@ double RotationError(const Eigen::Quaterniond& frame_from_estimate,
 double YawError(const Eigen::Quaterniond& frame_from_estimate,
                 const Eigen::Quaterniond& frame_from_truth);
 
-// Errors of one landmark. Rotation and yaw are absent for rotationally symmetric objects, whose yaw
-// has no meaning; for IoU the truth is then rotated to the estimate's yaw.
+// The smallest rotation (rad) that brings the estimate's own axes (InOwnAxes) onto those of the
+// truth up to half turns, to which bodies are symmetric. It detects quarter turns and objects that
+// rest on another face.
+double AttitudeError(const Landmark& estimate, const Landmark& truth_in_frame);
+
+// Errors of one landmark. Angles are absent for rotationally symmetric objects, whose yaw has no
+// meaning; for IoU the truth is then rotated to the estimate's yaw.
 struct LandmarkErrors {
   double iou = 0.0;
   double centre_m = 0.0;
   std::optional<double> rotation_deg;  // RotationError
   std::optional<double> yaw_deg;       // YawError
+  std::optional<double> attitude_deg;  // AttitudeError
 };
 
 LandmarkErrors CompareLandmarks(const Landmark& estimate, const GroundTruth& truth,

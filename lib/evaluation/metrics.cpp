@@ -14,7 +14,7 @@ ObjectMetrics Average(int object_index, int observations,
   ObjectMetrics metrics;
   metrics.object_index = object_index;
   metrics.observations = observations;
-  std::vector<double> ious, centres, rotations, yaws;
+  std::vector<double> ious, centres, rotations, yaws, attitudes;
   for (const auto& error : errors) {
     ious.push_back(error ? error->iou : 0.0);
     if (!error) continue;
@@ -22,11 +22,13 @@ ObjectMetrics Average(int object_index, int observations,
     centres.push_back(error->centre_m);
     if (error->rotation_deg) rotations.push_back(*error->rotation_deg);
     if (error->yaw_deg) yaws.push_back(*error->yaw_deg);
+    if (error->attitude_deg) attitudes.push_back(*error->attitude_deg);
   }
   metrics.iou = MeanOf(ious).value_or(0.0);
   metrics.centre_m = MeanOf(centres);
   metrics.rotation_deg = MeanOf(rotations);
   metrics.yaw_deg = MeanOf(yaws);
+  metrics.attitude_deg = MeanOf(attitudes);
   return metrics;
 }
 

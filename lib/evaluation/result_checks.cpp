@@ -44,7 +44,10 @@ std::vector<RelativeHeight> RelativeHeights(const LandmarkEstimates& estimates,
   for (const auto& [index, heights] : HeightsByObject(estimates, sequence)) {
     const Object& object = sequence.objects[index];
     const auto prior = table.Find(object.label);
-    if (!prior || !prior->height_m || prior->mount != Mount::kStanding) continue;
+    if (!prior || !prior->height_m || prior->mount != Mount::kStanding ||
+        prior->attitude != Attitude::kStanding) {
+      continue;
+    }
     relative.push_back({fmt::format("{} ({})", object.id, object.label),
                         std::log(*MedianOf(heights) / prior->height_m->median),
                         prior->height_m->log_sigma});

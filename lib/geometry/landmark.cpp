@@ -31,6 +31,18 @@ Landmark Transform(const Rigid3d& target_from_source, const Landmark& landmark_i
   return landmark_in_target;
 }
 
+Landmark InOwnAxes(const Landmark& landmark) {
+  if (landmark.rests_on == RestingFace::kBottom) return landmark;
+  const Eigen::Matrix3d own_from_object = OwnFromObject(landmark.rests_on);
+  Landmark own = landmark;
+  own.frame_from_object.rotation =
+      (landmark.frame_from_object.rotation * Eigen::Quaterniond(own_from_object).conjugate())
+          .normalized();
+  own.half_axes = own_from_object.cwiseAbs() * landmark.half_axes;
+  own.rests_on = RestingFace::kBottom;
+  return own;
+}
+
 Eigen::Matrix4d DualQuadric(const Landmark& landmark) {
   const Eigen::Matrix4d pose = landmark.frame_from_object.Matrix();
   Eigen::Vector4d diagonal;

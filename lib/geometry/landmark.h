@@ -8,6 +8,7 @@
 #include "geometry/box.h"
 #include "geometry/camera.h"
 #include "geometry/plane.h"
+#include "geometry/resting_face.h"
 #include "geometry/rigid3.h"
 #include "geometry/support_function.h"
 
@@ -16,17 +17,22 @@ namespace soslam {
 // An object as a convex superquadric, in the paper an ellipsoid: 9 degrees of freedom and a shape
 // exponent. Variables name their frame: landmark_in_world, landmark_in_camera. Object frame: origin
 // at the centre, z away from the support plane, x the front, so that the mirror plane of a
-// symmetric object is its xz plane.
+// symmetric object that stands is its xz plane. See RestingFace for objects that lie.
 struct Landmark {
   Rigid3d frame_from_object;
   Eigen::Vector3d half_axes = Eigen::Vector3d::Ones();  // (a, b, c) along x, y, z, metres, > 0
   double shape_exponent = kEllipsoidExponent;           // p of SupportFunction, in [1, 2]
+  RestingFace rests_on = RestingFace::kBottom;
 
   const Eigen::Vector3d& Centre() const { return frame_from_object.translation; }
 };
 
 // The same landmark in the target frame.
 Landmark Transform(const Rigid3d& target_from_source, const Landmark& landmark_in_source);
+
+// The same body in the frame of its own axes, whose xz plane is the mirror plane of a symmetric
+// object; it rests on its bottom there.
+Landmark InOwnAxes(const Landmark& landmark);
 
 // Dual quadric of the ellipsoid with the landmark's half axes, whatever its shape exponent: Q* = Z
 // diag(a^2, b^2, c^2, -1) Z^T, Z = frame_from_object; pi^T Q* pi = 0 iff the plane pi is tangent.

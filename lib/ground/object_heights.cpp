@@ -182,7 +182,8 @@ std::vector<MeasuredObject> MeasureObjects(const Sequence& sequence,
     for (const auto& [label, votes] : object.votes) {
       if (votes < kLeastVotes || moving.contains(NormalisedLabel(label))) continue;
       const auto prior = table.Contains(label) ? table.Find(label) : std::nullopt;
-      if (prior && prior->height_m) measurement.Add(label, *prior, votes);
+      const bool has_height = prior && prior->height_m && prior->attitude == Attitude::kStanding;
+      if (has_height) measurement.Add(label, *prior, votes);
     }
     measurement.Finish();
     if (object.evidence.hypotheses.empty()) return;

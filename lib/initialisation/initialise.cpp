@@ -73,15 +73,20 @@ LandmarkEstimates InitialiseUpright(const Sequence& sequence,
       estimate.failure = "no_ratio_for_label";
       return;
     }
-    UprightObservation observation = MakeUprightObservation(sequence, detection, *prior, options);
-    if (!yaw_priors.empty()) observation.yaw_prior = yaw_priors[i];
-    const YawObjective objective;
-    const YawSweep sweep = SweepYaw(observation, objective, options.yaw_grid_deg * kRadPerDeg);
-    for (const UprightSolution& optimum :
-         LocalOptima(observation, objective, sweep, sweep.yaw.size())) {
-      estimate.hypotheses.push_back({optimum.landmark, optimum.cost});
+    for (const auto& on_face : OnPossibleFaces(prior)) {
+      UprightObservation observation =
+          MakeUprightObservation(sequence, detection, *on_face, options);
+      if (!yaw_priors.empty()) observation.yaw_prior = yaw_priors[i];
+      const YawObjective objective;
+      const YawSweep sweep = SweepYaw(observation, objective, options.yaw_grid_deg * kRadPerDeg);
+      for (const UprightSolution& optimum :
+           LocalOptima(observation, objective, sweep, sweep.yaw.size())) {
+        estimate.hypotheses.push_back({optimum.landmark, optimum.cost});
+      }
+      estimate.failure = WhyNoSolution(observation);
     }
-    if (estimate.hypotheses.empty()) estimate.failure = WhyNoSolution(observation);
+    if (!estimate.hypotheses.empty()) estimate.failure.clear();
+    std::ranges::stable_sort(estimate.hypotheses, {}, &Hypothesis::cost);
   });
   return estimates;
 }
@@ -109,8 +114,14 @@ LandmarkEstimates InitialiseMultiView(const Sequence& sequence,
         sequence, detections[index], priors[index], options.upright.detection_sigma_fraction,
         options.view_correlation_deg * kRadPerDeg);
     observation.axes_weight = options.upright.axes_weight;
-    if (const auto found = SolveViews(observation, options.upright.yaw_grid_deg * kRadPerDeg)) {
-      object.landmark_in_world = found->landmark;
+    std::optional<UprightSolution> best;
+    for (const auto& on_face : OnPossibleFaces(priors[index])) {
+      observation.prior = on_face;
+      const auto found = SolveViews(observation, options.upright.yaw_grid_deg * kRadPerDeg);
+      if (found && (!best || found->cost < best->cost)) best = found;
+    }
+    if (best) {
+      object.landmark_in_world = best->landmark;
     } else {
       object.failure = "not_determined_by_its_views";
     }

@@ -185,7 +185,8 @@ class LinearViews {
   Landmark LandmarkOf(const Body& body) const {
     UprightVector parameters;
     parameters << body.yaw, body.foot, body.half_axes.array().log().matrix();
-    Landmark landmark = ground_.LandmarkAt(parameters, observation_.ShapeExponent());
+    Landmark landmark =
+        ground_.LandmarkAt(parameters, observation_.ShapeExponent(), observation_.RestsOn());
     landmark.frame_from_object.translation += body.height_m * ground_.normal;
     return landmark;
   }

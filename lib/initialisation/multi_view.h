@@ -33,6 +33,7 @@ struct MultiViewObservation {
   double axes_weight = 0.0;  // see AxisTerm
   double huber_delta = 1.0;
 
+  RestingFace RestsOn() const { return prior ? prior->rests_on : RestingFace::kBottom; }
   double ShapeExponent() const { return prior ? prior->shape_exponent : kCuboidExponent; }
 };
 // Observation of one object from its detections (indices into Sequence::detections, at least one),

@@ -31,7 +31,7 @@ std::optional<ShapePrior> ObjectPrior(const Object& object, const SemanticTable&
     return shape;
   }
   if (!object.ground_truth) return std::nullopt;
-  const Eigen::Vector3d& half_axes = object.ground_truth->landmark_in_world.half_axes;
+  const Eigen::Vector3d half_axes = InOwnAxes(object.ground_truth->landmark_in_world).half_axes;
   shape.ratio = half_axes.head<2>() / half_axes.z();
   shape.log_sigma.setConstant(kTrueRatioLogSigma);
   shape.log_correlation = 0.0;
@@ -40,19 +40,38 @@ std::optional<ShapePrior> ObjectPrior(const Object& object, const SemanticTable&
 
 }  // namespace
 
-ShapePrior TurnedToSupport(const ShapePrior& prior) {
-  if (prior.mount != Mount::kOnWall) return prior;
-  // Maps (log(a / c), log(b / c)) to (log(c / a), log(b / a)).
-  const Eigen::Matrix2d turn{{-1.0, 0.0}, {-1.0, 1.0}};
-  const Eigen::Matrix2d covariance = turn * RatioCovariance(prior) * turn.transpose();
-  ShapePrior turned = prior;
-  turned.ratio = (turn * prior.ratio.array().log().matrix()).array().exp();
+ShapePrior OnFace(const ShapePrior& standing, RestingFace face) {
+  ShapePrior turned = standing;
+  turned.rests_on = face;
+  if (face == RestingFace::kBottom) return turned;
+  // Logarithms of half axes along the object frame by those of (a / c, b / c) and of c.
+  Eigen::Matrix<double, 3, 2> by_ratios;
+  by_ratios << Eigen::Matrix2d::Identity(), Eigen::RowVector2d::Zero();
+  const Eigen::Matrix<double, 3, 2> logs = OwnFromObject(face).cwiseAbs().transpose() * by_ratios;
+  const Eigen::Matrix2d turn = logs.topRows<2>().rowwise() - logs.row(2);
+  const Eigen::Matrix2d covariance = turn * RatioCovariance(standing) * turn.transpose();
+  turned.ratio = (turn * standing.ratio.array().log().matrix()).array().exp();
   turned.log_sigma = covariance.diagonal().cwiseSqrt();
   turned.log_correlation = covariance(0, 1) / turned.log_sigma.prod();
-  if (prior.height_m) {
-    turned.height_m = {prior.height_m->median * prior.ratio.x(),
-                       std::hypot(prior.height_m->log_sigma, prior.log_sigma.x())};
+  if (standing.height_m) {
+    const Eigen::Index up = face == RestingFace::kBack ? 0 : 1;  // own axis
+    turned.height_m = {standing.height_m->median * standing.ratio[up],
+                       std::hypot(standing.height_m->log_sigma, standing.log_sigma[up])};
   }
+  return turned;
+}
+
+std::vector<std::optional<ShapePrior>> OnPossibleFaces(const std::optional<ShapePrior>& standing) {
+  if (!standing || standing->attitude == Attitude::kStanding) return {standing};
+  std::vector<std::optional<ShapePrior>> priors;
+  for (const RestingFace face : kRestingFaces) priors.emplace_back(OnFace(*standing, face));
+  return priors;
+}
+
+ShapePrior TurnedToSupport(const ShapePrior& prior) {
+  ShapePrior turned =
+      OnFace(prior, prior.mount == Mount::kOnWall ? RestingFace::kBack : RestingFace::kBottom);
+  turned.rests_on = RestingFace::kBottom;  // the side of its mount is where it stands
   return turned;
 }
 
@@ -86,6 +105,7 @@ ShapePrior MomentsOfMixture(const std::vector<WeightedPrior>& priors) {
   for (const auto& [weight, prior] : priors) {
     mean += weight * prior.ratio.array().log().matrix();
     mixture.shape_exponent += weight * prior.shape_exponent;
+    mixture.attitude = std::max(mixture.attitude, prior.attitude);
     for (size_t i = 0; i < mixture.edge_bias.size(); ++i) {
       mixture.edge_bias[i] += weight * prior.edge_bias[i];
     }

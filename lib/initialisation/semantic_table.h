@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "constraints/edge_bias.h"
+#include "geometry/resting_face.h"
 #include "geometry/support_function.h"
 #include "model/sequence.h"
 
@@ -29,6 +30,14 @@ enum class Mount {
 };
 inline constexpr std::array kMountNames = {"standing", "hanging", "on_wall"};
 
+// How an object may be held by its support plane.
+enum class Attitude {
+  kStanding,  // with the face of its mount on the plane
+  kAnyFace,   // with its bottom, back or side on the plane
+  kFree,      // leaning: the plane only touches it
+};
+inline constexpr std::array kAttitudeNames = {"standing", "any_face", "free"};
+
 // Prior of an object's size and shape. Ratios are log-normal.
 struct ShapePrior {
   Eigen::Vector2d ratio = Eigen::Vector2d::Ones();      // (a / c, b / c), medians
@@ -38,6 +47,8 @@ struct ShapePrior {
   std::optional<LogNormal> height_m = {};  // 2 c; none if the size is unknown
   Mount mount = Mount::kStanding;
   EdgeBias edge_bias = {};  // of detected boxes, for this shape
+  Attitude attitude = Attitude::kStanding;
+  RestingFace rests_on = RestingFace::kBottom;  // the face that a, b and c are for
 };
 
 // The prior in the object frame, whose z points away from the support plane, from a prior of
@@ -46,8 +57,14 @@ struct ShapePrior {
 // heights, so the variance of the logarithm of a depth is the sum of those of height and ratio.
 ShapePrior TurnedToSupport(const ShapePrior& prior);
 
+// The same for an object that rests on a face, from the prior of one that stands.
+ShapePrior OnFace(const ShapePrior& standing, RestingFace face);
+
+// OnFace for each face that the prior's attitude allows; none for no prior.
+std::vector<std::optional<ShapePrior>> OnPossibleFaces(const std::optional<ShapePrior>& standing);
+
 // Log-normal prior with the moments of a mixture of priors of one mount; the height is that of the
-// priors that have one. Their weights have the sum 1.
+// priors that have one, the attitude the freest. Their weights have the sum 1.
 struct WeightedPrior {
   double weight;
   ShapePrior prior;
@@ -111,7 +128,8 @@ inline constexpr std::array kShapeSourceNames = {"table", "cuboid", "ellipsoid"}
 // log_sigma of a true ratio: the error of the annotation, assumed to be 2 %.
 inline constexpr double kTrueRatioLogSigma = 0.02;
 
-// Prior of each object of the sequence, in the object frame; none if there is no ratio. kUnit
+// Prior of each object of the sequence, in the object frame of one that stands; none if there is no
+// ratio. kUnit
 // replaces the ratio of the table's prior, kGroundTruth also its log_sigma and log_correlation; if
 // the table has no prior, those of a default ShapePrior.
 std::vector<std::optional<ShapePrior>> ObjectPriors(const Sequence& sequence,

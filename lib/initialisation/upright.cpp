@@ -19,10 +19,12 @@ UprightGround::UprightGround(const Plane& plane)
       normal(plane.normal),
       origin(-plane.offset * plane.normal) {}
 
-Landmark UprightGround::LandmarkAt(const UprightVector& parameters, double shape_exponent) const {
+Landmark UprightGround::LandmarkAt(const UprightVector& parameters, double shape_exponent,
+                                   RestingFace rests_on) const {
   Landmark landmark;
   landmark.half_axes = parameters.tail<3>().array().exp();
   landmark.shape_exponent = shape_exponent;
+  landmark.rests_on = rests_on;
   const double half_yaw = 0.5 * parameters[0];
   const Eigen::Quaterniond turn(std::cos(half_yaw), 0.0, 0.0, std::sin(half_yaw));
   landmark.frame_from_object = {
@@ -59,9 +61,11 @@ QuadraticModel<6> UprightModel(const LandmarkCosts& costs, const UprightGround& 
 std::optional<UprightSolution> FitUpright(const Plane& plane, const Landmark& start,
                                           const LandmarkCosts& costs, bool yaw_is_free) {
   const UprightGround ground(plane);
-  const double shape_exponent = start.shape_exponent;
+  const auto landmark_at = [&](const UprightVector& at) {
+    return ground.LandmarkAt(at, start.shape_exponent, start.rests_on);
+  };
   const auto evaluate = [&](const UprightVector& at) {
-    QuadraticModel<6> sum = UprightModel(costs, ground, ground.LandmarkAt(at, shape_exponent));
+    QuadraticModel<6> sum = UprightModel(costs, ground, landmark_at(at));
     if (!yaw_is_free) sum.Hold(0);
     return sum;
   };
@@ -73,7 +77,7 @@ std::optional<UprightSolution> FitUpright(const Plane& plane, const Landmark& st
       MinimiseSquares(evaluate, plus, {kMaxIterations, NegligibleDecrease(costs)}, &parameters)
           .cost;
   if (!std::isfinite(cost) || !parameters.allFinite()) return std::nullopt;
-  return UprightSolution{ground.LandmarkAt(parameters, shape_exponent), cost + ConstantCost(costs)};
+  return UprightSolution{landmark_at(parameters), cost + ConstantCost(costs)};
 }
 
 }  // namespace soslam

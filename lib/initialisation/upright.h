@@ -21,7 +21,8 @@ using UprightJacobian = Eigen::Matrix<double, kLandmarkDof, 6>;  // d landmark /
 struct UprightGround {
   explicit UprightGround(const Plane& plane);
 
-  Landmark LandmarkAt(const UprightVector& parameters, double shape_exponent) const;
+  Landmark LandmarkAt(const UprightVector& parameters, double shape_exponent,
+                      RestingFace rests_on = RestingFace::kBottom) const;
   // Parameters of a landmark that is upright on the plane; for any other, those of the nearest
   // upright landmark.
   UprightVector ParametersOf(const Landmark& landmark) const;

@@ -6,11 +6,13 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <utility>
 
 #include "geometry/angles.h"
 #include "initialisation/closed_form.h"
+#include "initialisation/leaning.h"
 
 namespace soslam {
 namespace {
@@ -105,8 +107,24 @@ class Fitter {
     return best;
   }
 
+  // The upright landmark tilted to where its cost is lowest.
+  UprightSolution Lean(const UprightSolution& upright) const {
+    UprightSolution at = upright;
+    for (int round = 0; round < objective_.rounds; ++round) {
+      LandmarkCosts costs = ObservationTerms(observation_, at.landmark);
+      std::ranges::move(FurtherCosts(at.landmark), std::back_inserter(costs));
+      costs.push_back(std::make_unique<LeaningTerm>(observation_.plane_in_camera));
+      const auto tilted = FitLeaning(observation_.plane_in_camera, at.landmark, costs);
+      if (!tilted || !IsInFront(tilted->landmark)) return upright;
+      at = *tilted;
+    }
+    if (objective_.extra_cost) at.cost += objective_.extra_cost(at.landmark);
+    return at.cost < upright.cost ? at : upright;
+  }
+
   Landmark LandmarkAt(const UprightVector& parameters) const {
-    return ground_.LandmarkAt(parameters, observation_.prior.shape_exponent);
+    return ground_.LandmarkAt(parameters, observation_.prior.shape_exponent,
+                              observation_.prior.rests_on);
   }
 
  private:
@@ -237,7 +255,12 @@ std::vector<UprightSolution> LocalOptima(const UprightObservation& observation,
   std::vector<UprightSolution> solutions;
   for (const UprightFit& fit : optima) {
     solutions.push_back({fitter.LandmarkAt(fit.parameters), fit.cost});
+    if (observation.prior.attitude == Attitude::kFree) {
+      solutions.back() = fitter.Lean(solutions.back());
+    }
   }
+  std::ranges::stable_sort(solutions, {},
+                           [](const auto& one) { return static_cast<float>(1.0 + one.cost); });
   return solutions;
 }
 

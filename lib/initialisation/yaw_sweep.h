@@ -54,7 +54,8 @@ YawSweep SweepYaw(const UprightObservation& observation, const YawObjective& obj
 // index. NaN counts as infinite.
 std::vector<size_t> CircularMinima(const std::vector<double>& values);
 
-// The best local optima of the sweep, with refined yaw, lowest cost first (if 1 + cost is equal in
+// The best local optima of the sweep, with refined yaw, each then tilted (FitLeaning) if the
+// prior's attitude is free, lowest cost first (if 1 + cost is equal in
 // single precision, the lower yaw first), at most `max_count`. The max(max_count, 6) lowest minima
 // of the grid are refined; optima that coincide are returned once.
 std::vector<UprightSolution> LocalOptima(const UprightObservation& observation,

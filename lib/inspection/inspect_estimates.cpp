@@ -35,6 +35,7 @@ std::vector<ValueColumn> EstimateColumns() {
           {"c", "m", 3},
           {"p"},
           {"yaw", "deg", 1},
+          {"rests_on"},
           {"sigma_centre", "m", 3},
           {"sigma_yaw", "deg", 2},
           {"sigma_size", "%", 1},
@@ -43,15 +44,16 @@ std::vector<ValueColumn> EstimateColumns() {
           {"failure"}};
 }
 
-// Centre, half axes, shape exponent and yaw about the object's own z axis; empty cells if there is
-// no landmark.
+// Centre, half axes, shape exponent, yaw about the z axis of the object's frame, and the face that
+// it rests on; empty cells if there is no landmark.
 std::vector<Value> CellsOf(const std::optional<Landmark>& landmark) {
-  if (!landmark) return std::vector<Value>(8);
+  if (!landmark) return std::vector<Value>(9);
   const Eigen::Quaterniond& rotation = landmark->frame_from_object.rotation;
   std::vector<Value> cells(landmark->Centre().begin(), landmark->Centre().end());
   cells.insert(cells.end(), landmark->half_axes.begin(), landmark->half_axes.end());
   cells.insert(cells.end(), {landmark->shape_exponent,
-                             kDegPerRad * Yaw(rotation * Eigen::Vector3d::UnitZ(), rotation)});
+                             kDegPerRad * Yaw(rotation * Eigen::Vector3d::UnitZ(), rotation),
+                             kRestingFaceNames[static_cast<size_t>(landmark->rests_on)]});
   return cells;
 }
 

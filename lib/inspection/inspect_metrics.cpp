@@ -130,6 +130,7 @@ ValueTable ObjectTable(const json& document) {
                   {"centre_error", "m", 3, "centre_m"},
                   {"rotation_error", "deg", 2, "rotation_deg"},
                   {"yaw_error", "deg", 2, "yaw_error_deg"},
+                  {"attitude_error", "deg", 2, "attitude_error_deg"},
                   {"held_out_in_sight", "", 2, "in_sight"},
                   {"held_out_matched", "", 2, "matched"},
                   {"held_out_iou", "", 3, "iou_mean"}},

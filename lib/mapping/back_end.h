@@ -23,7 +23,7 @@ struct BackEndInput {
   // Initial landmarks, one per object of the sequence, in the world frame of
   // Frame::world_from_camera. Objects without one are left out.
   std::vector<std::optional<Landmark>> initial_landmarks;
-  // Prior of each object's ratio; without one, it has no ratio constraint.
+  // Prior of each object's ratio as it stands; without one, it has no ratio constraint.
   std::vector<std::optional<ShapePrior>> priors;
   // Images whose texture symmetry has a cost, by index of the observation in Sequence::detections.
   std::map<int, std::shared_ptr<const SymmetryImage>> symmetry_images;

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "constraints/detection.h"
+#include "constraints/leaning_on_plane.h"
 #include "constraints/manifolds.h"
 #include "constraints/odometry.h"
 #include "constraints/plane_height.h"
@@ -120,10 +121,16 @@ void BackEndProblem::AddStanding(size_t object_index) {
   const bool is_new_normal = !problem_.HasParameterBlock(normal);
   const bool is_new_plane = !problem_.HasParameterBlock(offset);
   const double side = variables_.NormalSide(plane_index);
-  problem_.AddResidualBlock(
-      new UprightOnPlaneResidual(options_.standing_angle_sigma_deg * kRadPerDeg,
-                                 options_.standing_height_sigma_m, side),
-      nullptr, variables_.Landmark(object_index), normal, offset);
+  ceres::CostFunction* standing = nullptr;
+  const auto& prior = input_.priors[object_index];
+  if (prior && prior->attitude == Attitude::kFree) {
+    standing = new LeaningOnPlaneResidual(input_.initial_landmarks[object_index]->shape_exponent,
+                                          {.height_m = options_.standing_height_sigma_m}, side);
+  } else {
+    standing = new UprightOnPlaneResidual(options_.standing_angle_sigma_deg * kRadPerDeg,
+                                          options_.standing_height_sigma_m, side);
+  }
+  problem_.AddResidualBlock(standing, nullptr, variables_.Landmark(object_index), normal, offset);
   const SupportPlane& plane = input_.sequence.planes[plane_index];
   if (!plane.attitude_information || !options_.refine_planes) {
     problem_.SetParameterBlockConstant(normal);
@@ -164,19 +171,20 @@ void BackEndProblem::AddLandmark(size_t object_index) {
 }
 
 void BackEndProblem::AddRatio(size_t object_index) {
-  const auto& prior = input_.priors[object_index];
-  if (!prior) {
+  if (!input_.priors[object_index]) {
     ++summary_.gated["object_without_ratio"];
     return;
   }
+  const ShapePrior prior =
+      OnFace(*input_.priors[object_index], input_.initial_landmarks[object_index]->rests_on);
   double* landmark = variables_.Landmark(object_index);
   if (IsTangency()) {
     // No loss: a ratio far from the prior is as unlikely as its spread says.
-    problem_.AddResidualBlock(new LandmarkTermResidual(std::make_unique<RatioTerm>(*prior)),
-                              nullptr, landmark);
+    problem_.AddResidualBlock(new LandmarkTermResidual(std::make_unique<RatioTerm>(prior)), nullptr,
+                              landmark);
   } else {
-    problem_.AddResidualBlock(new ScaleRatioResidual(prior->ratio, options_.variances.ratio),
-                              &loss_, landmark);
+    problem_.AddResidualBlock(new ScaleRatioResidual(prior.ratio, options_.variances.ratio), &loss_,
+                              landmark);
   }
   ++summary_.residuals["ratio"];
 }

@@ -63,6 +63,7 @@ Landmark BackEndVariables::LandmarkValue(size_t object_index) const {
   soslam::Landmark landmark =
       UnpackLandmark(&values_[first_landmark_ + kLandmarkSize * object_index]);
   landmark.shape_exponent = input_.initial_landmarks[object_index]->shape_exponent;
+  landmark.rests_on = input_.initial_landmarks[object_index]->rests_on;
   return landmark;
 }
 

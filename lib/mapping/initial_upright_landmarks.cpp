@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "base/upper_median.h"
 #include "geometry/angles.h"
+#include "initialisation/leaning.h"
 #include "initialisation/multi_view.h"
 #include "initialisation/upright.h"
 #include "mapping/initial_landmarks.h"
@@ -49,14 +50,14 @@ constexpr FitCost kCostOfNone = {std::numeric_limits<size_t>::max(),
 // The cost of one object's landmark in the world over views of it, with constant poses.
 class ObjectFit {
  public:
-  // `views` index Sequence::detections.
+  // `views` index Sequence::detections. The prior is that of the object on one face.
   ObjectFit(const BackEndInput& input, size_t object_index, const std::vector<int>& views,
-            const OptimiseOptions& options)
+            const std::optional<ShapePrior>& prior, const OptimiseOptions& options)
       : input_(input),
         options_(options),
         object_index_(object_index),
         detections_(views),
-        boxes_(MakeMultiViewObservation(input.sequence, views, input.priors[object_index],
+        boxes_(MakeMultiViewObservation(input.sequence, views, prior,
                                         options.detection_sigma_fraction,
                                         options.view_correlation_deg * kRadPerDeg)) {
     boxes_.ratio_is_free = !options.ratio;
@@ -95,10 +96,15 @@ class ObjectFit {
   }
 
   std::optional<Landmark> Fit(const Landmark& start_in_world) const {
+    const Plane& plane = boxes_.plane_in_world;
     Landmark landmark = start_in_world;
     for (int round = 0; round < kRounds; ++round) {
-      const auto solution =
-          FitUpright(boxes_.plane_in_world, landmark, Terms(landmark), /*yaw_is_free=*/true);
+      const auto solution = FitUpright(plane, landmark, Terms(landmark), /*yaw_is_free=*/true);
+      if (!solution) return std::nullopt;
+      landmark = solution->landmark;
+    }
+    for (int round = 0; MayLean() && round < kRounds; ++round) {
+      const auto solution = FitLeaning(plane, landmark, Terms(landmark));
       if (!solution) return std::nullopt;
       landmark = solution->landmark;
     }
@@ -113,8 +119,11 @@ class ObjectFit {
 
   const Detection& Of(size_t view) const { return input_.sequence.detections[detections_[view]]; }
 
+  bool MayLean() const { return boxes_.prior && boxes_.prior->attitude == Attitude::kFree; }
+
   LandmarkCosts Terms(const Landmark& landmark_in_world) const {
     LandmarkCosts terms = ViewTerms(boxes_, landmark_in_world);
+    if (MayLean()) terms.push_back(std::make_unique<LeaningTerm>(boxes_.plane_in_world));
     for (size_t i = 0; i < detections_.size(); ++i) {
       const BoxView& view = boxes_.views[i];
       const Landmark in_camera = Transform(view.camera_from_world, landmark_in_world);
@@ -160,6 +169,7 @@ std::vector<Candidate> BestOfEachYaw(const std::vector<Landmark>& landmarks, con
   const double first_yaw = FirstYaw(fit.boxes());
   for (Landmark landmark : landmarks) {
     landmark.shape_exponent = fit.boxes().ShapeExponent();  // whatever it was found with
+    landmark.rests_on = fit.boxes().RestsOn();
     const double yaw = Yaw(fit.boxes().plane_in_world.normal, landmark.frame_from_object.rotation);
     const long bin = std::lround(YawDifferenceModuloPi(yaw, first_yaw) / kYawBin);
     const auto known = best.find(bin);
@@ -181,20 +191,27 @@ double MedianSize(const std::vector<Landmark>& landmarks) {
   return UpperMedian(std::move(sizes));
 }
 
-std::optional<Landmark> ChooseLandmark(std::vector<Landmark> hypotheses, ObjectFit* fit) {
-  if (fit->boxes().views.size() >= kMinViews) {
-    for (const UprightSolution& solution : SweepViews(fit->boxes(), kYawStep)) {
+// `fits`: one for each face that the object may rest on. Hypotheses of any face are tried on all of
+// them, as a body seen from few sides may be called by either name.
+std::optional<Landmark> ChooseLandmark(std::vector<Landmark> hypotheses,
+                                       std::vector<ObjectFit>* fits) {
+  for (const ObjectFit& fit : *fits) {
+    if (fit.boxes().views.size() < kMinViews) continue;
+    for (const UprightSolution& solution : SweepViews(fit.boxes(), kYawStep)) {
       hypotheses.push_back(solution.landmark);
     }
   }
   if (hypotheses.empty()) return std::nullopt;
-  fit->SetPointSize(MedianSize(hypotheses));
+  const double point_size_m = MedianSize(hypotheses);
   std::optional<Candidate> best;
-  for (const Candidate& start : BestOfEachYaw(hypotheses, *fit)) {
-    const auto landmark = fit->Fit(start.landmark_in_world);
-    if (!landmark) continue;
-    const auto candidate = fit->IfCheaperThan(best ? best->cost : kCostOfNone, *landmark);
-    if (candidate) best = candidate;
+  for (ObjectFit& fit : *fits) {
+    fit.SetPointSize(point_size_m);
+    for (const Candidate& start : BestOfEachYaw(hypotheses, fit)) {
+      const auto landmark = fit.Fit(start.landmark_in_world);
+      if (!landmark) continue;
+      const auto candidate = fit.IfCheaperThan(best ? best->cost : kCostOfNone, *landmark);
+      if (candidate) best = candidate;
+    }
   }
   return best ? std::optional(best->landmark_in_world) : std::nullopt;
 }
@@ -215,8 +232,12 @@ std::vector<std::optional<Landmark>> ChooseInitialUprightLandmarks(
   ParallelFor("objects", static_cast<int>(initial_landmarks.size()), threads, [&](int index) {
     const auto i = static_cast<size_t>(index);
     if (detections[i].empty() || !sequence.objects[i].is_static) return;
-    ObjectFit fit(input, i, SpreadOver(detections[i], kMaxViews), options);
-    initial_landmarks[i] = ChooseLandmark(hypotheses[i], &fit);
+    const std::vector<int> views = SpreadOver(detections[i], kMaxViews);
+    std::vector<ObjectFit> fits;
+    for (const auto& on_face : OnPossibleFaces(input.priors[i])) {
+      fits.emplace_back(input, i, views, on_face, options);
+    }
+    initial_landmarks[i] = ChooseLandmark(hypotheses[i], &fits);
   });
   return initial_landmarks;
 }

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "orientation/refine_orientation.h"
 
+#include <algorithm>
+#include <iterator>
 #include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "geometry/angles.h"
@@ -50,7 +53,7 @@ class OrientationProfile {
     const auto texture = asymmetry_.Find(landmark);
     if (!texture) return;
     const SymmetryDescriptor descriptor(symmetry_options_.descriptor, symmetry_image_,
-                                        observation_.camera, landmark);
+                                        observation_.camera, InOwnAxes(landmark));
     for (const Eigen::Vector2d& pixel : texture->pixels) {
       const auto pair = descriptor.Evaluate(pixel, std::nullopt, false, texture->mirror_plane);
       record->samples.push_back(pixel.cast<float>());
@@ -102,6 +105,55 @@ YawSweep SweepYaw(const UprightObservation& observation, YawObjective objective,
   return SweepYaw(observation, objective, step);
 }
 
+// The sweep of an object that rests on one face.
+RefinedObservation RefineOnFace(const Sequence& sequence, int detection_index,
+                                const std::shared_ptr<const FrameEdges>& edges,
+                                const ShapePrior& prior, const ProfileOptions& options,
+                                const SymmetryOptions& symmetry_options) {
+  const Detection& detection = sequence.detections[detection_index];
+  const Eigen::Vector3d& normal = detection.plane_in_camera.normal;
+  RefinedObservation result;
+  const OrientationProfile profile(sequence, detection, edges, prior, options, symmetry_options);
+  const YawObjective objective = profile.Objective();
+  std::vector<double> texture_costs;
+  const YawSweep sweep = SweepYaw(profile.observation(), objective,
+                                  options.upright.yaw_grid_deg * kRadPerDeg, &texture_costs);
+  std::vector<YawSweep::Optimum> optima;
+  for (const UprightSolution& optimum :
+       LocalOptima(profile.observation(), objective, sweep, kMaxHypotheses)) {
+    result.estimate.hypotheses.push_back({optimum.landmark, optimum.cost});
+    optima.push_back({Yaw(normal, optimum.landmark.frame_from_object.rotation), optimum.cost});
+  }
+  if (result.estimate.hypotheses.empty()) {
+    result.estimate.failure = WhyNoSolution(profile.observation());
+    return result;
+  }
+  const Landmark& best = result.estimate.hypotheses.front().landmark_in_camera;
+  RecordCurves(sweep, texture_costs, options, &result.record);
+  profile.RecordPairs(best, &result.record);
+  result.record.refined_yaw = Yaw(normal, best.frame_from_object.rotation);
+  if (options.texture_symmetry) {
+    result.record.mirror_planes = MirrorPlanes(sweep.yaw, result.record.cost.at("texture_symmetry"),
+                                               result.record.refined_yaw, options.texture);
+  }
+  result.record.yaw_sigma = sweep.StandardDeviation(optima);
+  return result;
+}
+
+// Joins the hypotheses of two faces; the record is that of the better one.
+RefinedObservation Better(RefinedObservation one, RefinedObservation other) {
+  const auto cost = [](const RefinedObservation& observation) {
+    const std::vector<Hypothesis>& hypotheses = observation.estimate.hypotheses;
+    return hypotheses.empty() ? std::numeric_limits<double>::infinity() : hypotheses.front().cost;
+  };
+  if (cost(other) < cost(one)) std::swap(one, other);
+  std::vector<Hypothesis>& hypotheses = one.estimate.hypotheses;
+  std::ranges::copy(other.estimate.hypotheses, std::back_inserter(hypotheses));
+  std::ranges::stable_sort(hypotheses, {}, &Hypothesis::cost);
+  hypotheses.resize(std::min(hypotheses.size(), kMaxHypotheses));
+  return one;
+}
+
 }  // namespace
 
 RefinedObservation RefineOrientation(const Sequence& sequence, int detection_index,
@@ -111,41 +163,18 @@ RefinedObservation RefineOrientation(const Sequence& sequence, int detection_ind
                                      const SymmetryOptions& symmetry_options) {
   const Detection& detection = sequence.detections[detection_index];
   RefinedObservation result;
+  result.estimate.failure = "no_ratio_for_label";
+  if (prior) {
+    for (const auto& on_face : OnPossibleFaces(prior)) {
+      result = Better(
+          RefineOnFace(sequence, detection_index, edges, *on_face, options, symmetry_options),
+          std::move(result));
+    }
+  }
   result.estimate.detection_index = detection_index;
   result.record.frame_id = sequence.frames[detection.frame_index].id;
   result.record.object_id = sequence.objects[detection.object_index].id;
   result.record.true_yaw = TrueYaw(sequence, detection);
-  if (!prior) {
-    result.estimate.failure = "no_ratio_for_label";
-    return result;
-  }
-  const OrientationProfile profile(sequence, detection, edges, *prior, options, symmetry_options);
-  const YawObjective objective = profile.Objective();
-  std::vector<double> texture_costs;
-  const YawSweep sweep = SweepYaw(profile.observation(), objective,
-                                  options.upright.yaw_grid_deg * kRadPerDeg, &texture_costs);
-  std::vector<YawSweep::Optimum> optima;
-  for (const UprightSolution& optimum :
-       LocalOptima(profile.observation(), objective, sweep, kMaxHypotheses)) {
-    result.estimate.hypotheses.push_back({optimum.landmark, optimum.cost});
-    optima.push_back(
-        {Yaw(detection.plane_in_camera.normal, optimum.landmark.frame_from_object.rotation),
-         optimum.cost});
-  }
-  if (result.estimate.hypotheses.empty()) {
-    result.estimate.failure = WhyNoSolution(profile.observation());
-    return result;
-  }
-  const Landmark& best = result.estimate.hypotheses.front().landmark_in_camera;
-  RecordCurves(sweep, texture_costs, options, &result.record);
-  profile.RecordPairs(best, &result.record);
-  result.record.refined_yaw =
-      Yaw(detection.plane_in_camera.normal, best.frame_from_object.rotation);
-  if (options.texture_symmetry) {
-    result.record.mirror_planes = MirrorPlanes(sweep.yaw, result.record.cost.at("texture_symmetry"),
-                                               result.record.refined_yaw, options.texture);
-  }
-  result.record.yaw_sigma = sweep.StandardDeviation(optima);
   return result;
 }
 

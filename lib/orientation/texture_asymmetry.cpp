@@ -75,7 +75,7 @@ double TextureAsymmetry::Cost(const Landmark& landmark_in_camera) const {
 
 std::optional<MirroredTexture> TextureAsymmetry::Find(const Landmark& landmark_in_camera) const {
   const SymmetryDescriptor descriptor(symmetry_options_.descriptor, image_, camera_,
-                                      landmark_in_camera);
+                                      InOwnAxes(landmark_in_camera));
   const double squared_scale =
       std::pow(Scale(landmark_in_camera, symmetry_options_.descriptor, options_), 2);
   std::vector<Eigen::Vector2d> samples;
@@ -119,12 +119,19 @@ AsymmetryTerm::AsymmetryTerm(std::shared_ptr<const SymmetryImage> image, const C
     : image_(std::move(image)),
       camera_(camera),
       descriptor_(symmetry_options.descriptor),
+      rests_on_(start_in_camera.rests_on),
       texture_(TextureAsymmetry(*image_, camera, options, symmetry_options)
                    .Find(start_in_camera)
                    .value_or(MirroredTexture())),
       scale_(Scale(start_in_camera, descriptor_, options)),
       weight_(2.0 * weight * options.asymmetry_cost /
               static_cast<double>(std::max<size_t>(1, texture_.pixels.size()))) {}
+
+SymmetryDescriptor AsymmetryTerm::DescriptorOf(const Landmark& landmark_in_camera) const {
+  Landmark landmark = landmark_in_camera;
+  landmark.rests_on = rests_on_;
+  return {descriptor_, *image_, camera_, InOwnAxes(landmark)};
+}
 
 double AsymmetryTerm::Residual(const SymmetryDescriptor& descriptor, const Eigen::Vector2d& pixel,
                                LandmarkJacobian1* jacobian) const {
@@ -141,7 +148,7 @@ double AsymmetryTerm::Residual(const SymmetryDescriptor& descriptor, const Eigen
 }
 
 double AsymmetryTerm::Value(const Landmark& landmark_in_camera) const {
-  const SymmetryDescriptor descriptor(descriptor_, *image_, camera_, landmark_in_camera);
+  const SymmetryDescriptor descriptor = DescriptorOf(landmark_in_camera);
   double sum = 0.0;
   for (const Eigen::Vector2d& pixel : texture_.pixels) {
     const double residual = Residual(descriptor, pixel, nullptr);
@@ -151,11 +158,13 @@ double AsymmetryTerm::Value(const Landmark& landmark_in_camera) const {
 }
 
 void AsymmetryTerm::AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) const {
-  const SymmetryDescriptor descriptor(descriptor_, *image_, camera_, landmark_in_camera);
+  const SymmetryDescriptor descriptor = DescriptorOf(landmark_in_camera);
+  const Eigen::Matrix3d own_from_object = OwnFromObject(rests_on_).cwiseAbs();
   LandmarkModel pairs;
   for (const Eigen::Vector2d& pixel : texture_.pixels) {
     LandmarkJacobian1 jacobian;
     const double residual = Residual(descriptor, pixel, &jacobian);
+    jacobian.tail<3>() *= own_from_object;  // logarithms of half axes by those of the object frame
     pairs.Add(residual, jacobian.transpose());
   }
   sum->Add(pairs, weight_);

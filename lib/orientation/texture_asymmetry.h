@@ -38,6 +38,7 @@ class TextureAsymmetry {
   TextureAsymmetry(const SymmetryImage& image, const Camera& camera, const TextureOptions& options,
                    const SymmetryOptions& symmetry_options);
 
+  // Pairs are mirrored in the xz plane of the landmark's own axes (InOwnAxes).
   std::optional<MirroredTexture> Find(const Landmark& landmark_in_camera) const;
   // Cost of a landmark as a negative log likelihood: options.asymmetry_cost times the asymmetry,
   // with an asymmetry of 1 if too few pairs are visible.
@@ -68,13 +69,15 @@ class AsymmetryTerm final : public LandmarkCost {
   bool HasKinks() const override { return true; }
 
  private:
-  // Residual of a pair, and its derivative; the loss is included.
+  SymmetryDescriptor DescriptorOf(const Landmark& landmark_in_camera) const;
+  // Residual of a pair, and its derivative by the landmark in its own axes; the loss is included.
   double Residual(const SymmetryDescriptor& descriptor, const Eigen::Vector2d& pixel,
                   LandmarkJacobian1* jacobian) const;
 
   std::shared_ptr<const SymmetryImage> image_;
   Camera camera_;
   Descriptor descriptor_;
+  RestingFace rests_on_;  // of the initial landmark
   MirroredTexture texture_;
   double scale_;   // s
   double weight_;  // of one pair

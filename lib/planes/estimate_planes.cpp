@@ -91,7 +91,8 @@ class Estimator {
         sequence_, detections, prior, options_.detection_sigma_fraction,
         options_.view_correlation_deg * kRadPerDeg, /*height_is_free=*/true);
     observation.huber_delta = options_.huber_delta;
-    observation.size_is_known = options_.size_prior;
+    observation.ratio_is_free = prior && prior->attitude != Attitude::kStanding;
+    observation.size_is_known = options_.size_prior && !observation.ratio_is_free;
     return observation;
   }
 

@@ -53,6 +53,20 @@ Waypoint Interpolate(const std::vector<Waypoint>& waypoints, double parameter) {
   return {on_curve(&Waypoint::position_in_world), on_curve(&Waypoint::look_at_in_world)};
 }
 
+// How far a solid reaches from its centre in a unit direction along its own axes.
+double Reach(Shape shape, const Eigen::Vector3d& half_axes, const Eigen::Vector3d& direction) {
+  const Eigen::Vector3d along = half_axes.cwiseProduct(direction).cwiseAbs();
+  switch (shape) {
+    case Shape::kBox:
+      return along.sum();
+    case Shape::kEllipsoid:
+      return along.norm();
+    case Shape::kCylinder:
+      return along.head<2>().norm() + along.z();
+  }
+  return 0.0;
+}
+
 // A camera without roll: its x axis is horizontal. None if that does not determine the pose.
 std::optional<Rigid3d> LookingPose(const Waypoint& waypoint, const Eigen::Vector3d& up) {
   constexpr double kMinSine = 1e-6;
@@ -73,14 +87,27 @@ Rigid3d WorldFromPlane(const Plane& plane_in_world) {
           -plane_in_world.offset * plane_in_world.normal};
 }
 
-Body ObjectBody(const Scene& scene, const SceneObject& object) {
+Landmark ObjectLandmark(const Scene& scene, const SceneObject& object) {
   const Plane& plane_in_world = scene.planes.at(object.plane_index).plane_in_world;
-  const Eigen::Vector3d centre_in_plane(object.position_on_plane.x(), object.position_on_plane.y(),
-                                        object.half_axes.z());
-  return {object.shape,
-          {{UprightRotation(plane_in_world.normal, object.yaw),
-            WorldFromPlane(plane_in_world) * centre_in_plane},
-           object.half_axes}};
+  Landmark landmark;
+  landmark.half_axes = HalfAxesOnFace(object.half_axes, object.rests_on);
+  landmark.rests_on = object.rests_on;
+  landmark.frame_from_object.rotation = UprightRotation(plane_in_world.normal, object.yaw);
+  double height = landmark.half_axes.z();
+  if (!object.tilt.isZero()) {
+    const Eigen::Quaterniond tilt = ExpRotation({object.tilt.x(), object.tilt.y(), 0.0});
+    landmark.frame_from_object.rotation = landmark.frame_from_object.rotation * tilt;
+    const Eigen::Vector3d up_in_object = tilt.conjugate() * Eigen::Vector3d::UnitZ();
+    height = Reach(object.shape, object.half_axes, OwnFromObject(object.rests_on) * up_in_object);
+  }
+  landmark.frame_from_object.translation =
+      WorldFromPlane(plane_in_world) *
+      Eigen::Vector3d(object.position_on_plane.x(), object.position_on_plane.y(), height);
+  return landmark;
+}
+
+Body ObjectBody(const Scene& scene, const SceneObject& object) {
+  return {object.shape, InOwnAxes(ObjectLandmark(scene, object))};
 }
 
 std::vector<Body> Furniture(const Scene& scene) {
@@ -198,6 +225,9 @@ std::vector<SceneObject> ParseObjects(const json& entries, const std::vector<Sce
     object.half_axes = VectorFromJson(entry.at("half_axes"));
     object.position_on_plane = Vector2(entry.at("position"));
     object.yaw = entry.value("yaw_deg", 0.0) * kRadPerDeg;
+    object.rests_on = EnumFromName<RestingFace>(kRestingFaceNames,
+                                                entry.value("rests_on", kRestingFaceNames.front()));
+    if (entry.contains("tilt_deg")) object.tilt = Vector2(entry.at("tilt_deg")) * kRadPerDeg;
     object.texture_seed = entry.value("texture_seed", object.id);
     const int plane_id = entry.at("plane").get<int>();
     const auto plane = std::ranges::find(planes, plane_id, &ScenePlane::id);

@@ -35,16 +35,18 @@ struct ScenePlane {
   std::optional<TableTop> table;
 };
 
-// A textured solid standing on a plane.
+// A textured solid on a plane.
 struct SceneObject {
   int id = 0;
   std::string label;
   Shape shape = Shape::kEllipsoid;
-  Eigen::Vector3d half_axes = Eigen::Vector3d::Ones();          // metres
+  Eigen::Vector3d half_axes = Eigen::Vector3d::Ones();          // along its own axes, metres
   Eigen::Vector2d position_on_plane = Eigen::Vector2d::Zero();  // metres, in the plane's frame
   double yaw = 0.0;                                             // about the plane's normal
   int plane_index = 0;                                          // into Scene::planes
   int texture_seed = 0;
+  RestingFace rests_on = RestingFace::kBottom;
+  Eigen::Vector2d tilt = Eigen::Vector2d::Zero();  // rotation vector about x and y of its frame
 };
 
 // Position of the camera, and the point in the middle of its image.
@@ -88,7 +90,11 @@ struct Scene {
 // Transformation from a plane's own frame to the world, see ScenePlane.
 Rigid3d WorldFromPlane(const Plane& plane_in_world);
 
-// The object's solid in the world: tangent to its plane, its z axis along the plane's normal.
+// The object's landmark in the world: tangent to its plane, its z axis along the plane's normal but
+// for the tilt.
+Landmark ObjectLandmark(const Scene& scene, const SceneObject& object);
+
+// The object's solid in the world, in its own axes.
 Body ObjectBody(const Scene& scene, const SceneObject& object);
 
 // Solids that are not objects, in the world: slabs and legs of the tables.

@@ -115,11 +115,12 @@ Simulation Simulate(const Scene& scene, bool noise) {
 
 GroundTruth ObjectGroundTruth(const Scene& scene, const SceneObject& object) {
   GroundTruth truth;
-  truth.landmark_in_world = ObjectBody(scene, object).landmark;
+  truth.landmark_in_world = ObjectLandmark(scene, object);
   truth.mirror_symmetric = true;
   truth.mirror_symmetric_yz = false;
-  truth.rotationally_symmetric =
-      object.shape != Shape::kBox && object.half_axes.x() == object.half_axes.y();
+  truth.rotationally_symmetric = object.shape != Shape::kBox &&
+                                 object.half_axes.x() == object.half_axes.y() &&
+                                 object.rests_on == RestingFace::kBottom && object.tilt.isZero();
   return truth;
 }
 

@@ -51,8 +51,9 @@ bool CentreIsVisible(const std::vector<Body>& bodies_in_world, int body_index,
 std::optional<Box> BoxInImage(const Camera& camera, const Rigid3d& world_from_camera,
                               const Body& body_in_world);
 
-// The exact landmark and symmetries of an object. Shape and texture are symmetric about its xz
-// plane; the texture has no other mirror plane. Rotational symmetry is of the shape alone.
+// The exact landmark and symmetries of an object. Shape and texture are symmetric about the xz
+// plane of its own axes; the texture has no other mirror plane. Rotational symmetry about the
+// plane's normal is of the shape alone.
 GroundTruth ObjectGroundTruth(const Scene& scene, const SceneObject& object);
 
 // The path of a frame's image in its dataset folder.

@@ -98,6 +98,9 @@ std::string ObjectsText(const Scene& scene) {
                        {"mirror_symmetric_yz", truth.mirror_symmetric_yz},
                        {"rotationally_symmetric", truth.rotationally_symmetric},
                        {"support_plane", scene.planes[object.plane_index].id}});
+    if (object.rests_on != RestingFace::kBottom) {
+      entries.back()["rests_on"] = kRestingFaceNames[static_cast<size_t>(object.rests_on)];
+    }
   }
   return ArrayText(entries);
 }

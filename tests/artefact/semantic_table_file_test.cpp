@@ -80,6 +80,7 @@ TEST_F(SemanticTableFileTest, ImpossibleNumbersAreRefused) {
                                                  {"log_correlation", 1},
                                                  {"samples", -1},
                                                  {"edge_bias", 0.1},
+                                                 {"attitude", "upside_down"},
                                                  {"edge_bias", {0.1, 0.1, 0.1}}}) {
     json entry = kRatioOnly;
     entry[field] = value;
@@ -89,6 +90,18 @@ TEST_F(SemanticTableFileTest, ImpossibleNumbersAreRefused) {
   json entry = kRatioOnly;
   entry["edge_bias"] = {0.0, 0.0, 0.0, 0.5};  // two of these would leave no box
   ExpectRefused({{"cup", entry}}, {"table.json: /labels/cup/edge_bias/3 is 0.5"});
+}
+
+TEST_F(SemanticTableFileTest, WhatIsMountedCannotLie) {
+  json entry = kRatioOnly;
+  entry["attitude"] = "any_face";
+  EXPECT_EQ(Read({{"labels", {{"cup", entry}}}}).Find("cup")->attitude, Attitude::kAnyFace);
+  entry["mount"] = "on_wall";
+  ExpectError<InputError>(
+      [&] {
+        Read({{"labels", {{"cup", entry}}}});
+      },
+      {"table.json: labels/cup: attitude is any_face and mount on_wall"});
 }
 
 TEST_F(SemanticTableFileTest, EdgeBiasIsWrittenWhereThereIsOne) {
@@ -103,8 +116,9 @@ TEST_F(SemanticTableFileTest, EdgeBiasIsWrittenWhereThereIsOne) {
 }
 
 TEST_F(SemanticTableFileTest, WrittenRowsAreReadAsTheyWere) {
-  const SemanticRow cup = {
+  SemanticRow cup = {
       "cup", {"mug"}, {{1.2, 0.9}, {0.1, 0.2}, 1.4, 0.5, LogNormal{0.1, 0.3}}, 7, "the test"};
+  cup.prior.attitude = Attitude::kFree;
   const SemanticRow any = {"default", {}, {{1.0, 1.0}, {0.5, 0.5}, 1.1}, 0, "no preference"};
   WriteSemanticRows(file_, {"about cups", any, {cup}}, {});
   const SemanticRows rows = ReadSemanticRows(file_);
@@ -116,6 +130,7 @@ TEST_F(SemanticTableFileTest, WrittenRowsAreReadAsTheyWere) {
   EXPECT_EQ(rows.rows[0].prior.log_sigma, cup.prior.log_sigma);
   EXPECT_EQ(rows.rows[0].prior.log_correlation, 0.5);
   EXPECT_EQ(rows.rows[0].prior.height_m.value().log_sigma, 0.3);
+  EXPECT_EQ(rows.rows[0].prior.attitude, Attitude::kFree);
   EXPECT_EQ(rows.rows[0].samples, 7);
   EXPECT_EQ(rows.rows[0].source, "the test");
   EXPECT_EQ(rows.default_row.value().prior.shape_exponent, 1.1);

@@ -169,6 +169,27 @@ TEST(YawError, IsModuloHalfATurnButNotAQuarter) {
   EXPECT_NEAR(YawError(turned(kPi / 2), truth), kPi / 2, 1e-9);
 }
 
+TEST(AttitudeError, DetectsQuarterTurnsAndOtherFacesButNoHalfTurns) {
+  const Landmark truth{RandomRigid(), RandomVector(0.1, 1.0)};
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double turn : {0.2, kPi / 2, kPi, kPi + 0.2}) {
+      Landmark turned = truth;
+      turned.frame_from_object.rotation =
+          truth.frame_from_object.rotation * Eigen::AngleAxisd(turn, Eigen::Vector3d::Unit(axis));
+      const double expected = std::abs(std::remainder(turn, kPi));
+      EXPECT_NEAR(AttitudeError(turned, truth), expected, 1e-7) << axis << ' ' << turn;
+    }
+  }
+  // The same body in the frame of another face has the same attitude.
+  for (const RestingFace face : kRestingFaces) {
+    Landmark laid{truth.frame_from_object, HalfAxesOnFace(truth.half_axes, face)};
+    laid.frame_from_object.rotation =
+        truth.frame_from_object.rotation * Eigen::Quaterniond(OwnFromObject(face));
+    laid.rests_on = face;
+    EXPECT_NEAR(AttitudeError(laid, truth), 0.0, 1e-7);
+  }
+}
+
 TEST(YawError, OfAnEstimateLyingOnItsFrontIsAQuarterTurn) {
   const Eigen::Quaterniond lying(Eigen::AngleAxisd(kPi / 2, Eigen::Vector3d::UnitY()));
   EXPECT_NEAR(YawError(lying, Eigen::Quaterniond::Identity()), kPi / 2, 1e-9);

@@ -67,14 +67,35 @@ double NormalisedSquared(const ShapePrior& prior, const Eigen::Vector3d& half_ax
   return (sigmas.squaredNorm() - 2.0 * r * sigmas.prod()) / (1.0 - r * r);
 }
 
-TEST(TurnedToSupport, ABodyIsAsLikelyEitherWay) {
+TEST(OnFace, ABodyIsAsLikelyHoweverItIsLaid) {
   for (int i = 0; i < 100; ++i) {
     ShapePrior prior{RandomVector(0.1, 3.0).head<2>(), RandomVector(0.05, 0.5).head<2>()};
     prior.log_correlation = RandomUniform(-0.9, 0.9);
     prior.mount = Mount::kOnWall;
     const Eigen::Vector3d upright = RandomVector(0.1, 3.0);
-    EXPECT_NEAR(NormalisedSquared(TurnedToSupport(prior), upright.reverse()),
-                NormalisedSquared(prior, upright), 1e-9);
+    const double expected = NormalisedSquared(prior, upright);
+    EXPECT_NEAR(NormalisedSquared(TurnedToSupport(prior), upright.reverse()), expected, 1e-9);
+    for (const RestingFace face : kRestingFaces) {
+      const ShapePrior laid = OnFace(prior, face);
+      EXPECT_NEAR(NormalisedSquared(laid, HalfAxesOnFace(upright, face)), expected, 1e-9);
+      EXPECT_EQ(laid.rests_on, face);
+    }
+  }
+}
+
+TEST(OnPossibleFaces, AreThoseOfTheAttitude) {
+  EXPECT_FALSE(OnPossibleFaces(std::nullopt).at(0).has_value());
+  ShapePrior prior;
+  prior.height_m = LogNormal{0.4, 0.3};
+  prior.ratio = {0.5, 0.75};
+  EXPECT_EQ(OnPossibleFaces(prior).size(), 1u);
+  for (const Attitude attitude : {Attitude::kAnyFace, Attitude::kFree}) {
+    prior.attitude = attitude;
+    const auto laid = OnPossibleFaces(prior);
+    ASSERT_EQ(laid.size(), 3u);
+    EXPECT_NEAR(laid[0]->height_m->median, 0.4, 1e-12);
+    EXPECT_NEAR(laid[1]->height_m->median, 0.2, 1e-12);  // its depth
+    EXPECT_NEAR(laid[2]->height_m->median, 0.3, 1e-12);  // its width
   }
 }
 

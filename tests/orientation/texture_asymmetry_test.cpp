@@ -162,10 +162,11 @@ void ExpectCorrectGradients(std::shared_ptr<const SymmetryImage> image,
   SymmetryOptions options = EverywhereInTheImage();
   options.uniform_columns = 12;
   options.descriptor = descriptor;
-  for (int i = 0; i < 10; ++i) {
-    const Landmark landmark = FacingView().LandmarkInCamera();
+  for (int i = 0; i < 12; ++i) {
+    Landmark landmark = FacingView().LandmarkInCamera();
+    landmark.rests_on = kRestingFaces[static_cast<size_t>(i) % kRestingFaces.size()];
     const AsymmetryTerm term(image, TestCamera(), landmark, texture, options, 0.7);
-    ASSERT_GT(term.NumPairs(), 50);
+    ASSERT_GT(term.NumPairs(), landmark.rests_on == RestingFace::kSide ? 10 : 50);
     ExpectCorrectGradient(term, landmark);
   }
 }

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "base/error.h"
 #include "geometry/angles.h"
 #include "support/expect_error.h"
+#include "support/random.h"
 #include "support/scene.h"
 #include "synthesis/scene.h"
 
@@ -128,6 +131,40 @@ TEST(Scene, ObjectsStandUprightOnTheirPlane) {
     const Eigen::Vector3d z_axis = landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ();
     EXPECT_NEAR((z_axis - plane.normal).norm(), 0.0, 1e-12);
     EXPECT_NEAR(Yaw(plane.normal, landmark.frame_from_object.rotation), object.yaw, 1e-12);
+  }
+}
+
+TEST(Scene, LaidAndLeaningObjectsTouchTheirPlane) {
+  for (const char* shape : {"box", "ellipsoid", "cylinder"}) {
+    for (const RestingFace face : kRestingFaces) {
+      json document = ValidScene();
+      document["objects"][1]["shape"] = shape;
+      document["objects"][1]["rests_on"] = kRestingFaceNames[static_cast<size_t>(face)];
+      document["objects"][1]["tilt_deg"] = {10.0, -20.0};
+      const Scene scene = ParseScene(document, "scene.json");
+      const SceneObject& ball = scene.objects[0];
+      EXPECT_EQ(ball.rests_on, face);
+      const Landmark landmark = ObjectLandmark(scene, ball);
+      EXPECT_EQ(landmark.half_axes, HalfAxesOnFace(ball.half_axes, face));
+      // No point of the surface is below the floor, and some is on it.
+      const Body body = ObjectBody(scene, ball);
+      EXPECT_EQ(body.landmark.half_axes, ball.half_axes);
+      const Rigid3d& world_from_own = body.landmark.frame_from_object;
+      double lowest = std::numeric_limits<double>::infinity();
+      for (int i = 0; i < 20000; ++i) {
+        const Eigen::Vector3d direction = RandomVector(-1.0, 1.0);
+        const auto depth =
+            NearestIntersection(body, landmark.Centre() + 2.0 * direction, -direction);
+        if (!depth) continue;
+        lowest = std::min(lowest, (landmark.Centre() + (2.0 - *depth) * direction).z());
+      }
+      EXPECT_GT(lowest, -1e-9);
+      EXPECT_LT(lowest, 0.02);
+      EXPECT_NEAR(AngleBetweenDeg(landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ(),
+                                  Eigen::Vector3d::UnitZ()),
+                  std::hypot(10.0, 20.0), 1e-9);
+      EXPECT_LT((world_from_own.translation - landmark.Centre()).norm(), 1e-12);
+    }
   }
 }
 

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "constraints/leaning_on_plane.h"
+
+#include "geometry/support_function.h"
+
+namespace soslam {
+
+LeaningOnPlane::LeaningOnPlane(const Landmark& landmark, const Plane& plane,
+                               const LeaningSigmas& sigmas) {
+  const Eigen::Matrix3d frame_from_object = landmark.frame_from_object.rotation.toRotationMatrix();
+  const Eigen::Vector3d normal_in_object = frame_from_object.transpose() * plane.normal;
+  // The body is symmetric: it reaches as far down as up.
+  const SupportValue support =
+      SupportFunction(landmark.half_axes, landmark.shape_exponent, normal_in_object);
+  const Eigen::Vector3d contact = frame_from_object * support.contact;
+  residuals << normal_in_object.head<2>(), plane.SignedDistance(landmark.Centre()) - support.extent;
+  d_landmark.setZero();
+  d_landmark.topLeftCorner<2, 3>() =
+      (frame_from_object.transpose() * Skew(plane.normal)).topRows<2>();
+  d_landmark.row(2) << -contact.cross(plane.normal).transpose(), plane.normal.transpose(),
+      -support.d_log_half_axes.transpose();
+  d_normal << frame_from_object.leftCols<2>().transpose(),
+      (landmark.Centre() - contact).transpose();
+  d_offset = Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d weights(1.0 / sigmas.angle_rad, 1.0 / sigmas.angle_rad,
+                                1.0 / sigmas.height_m);
+  residuals = weights.cwiseProduct(residuals);
+  d_landmark = weights.asDiagonal() * d_landmark;
+  d_normal = weights.asDiagonal() * d_normal;
+  d_offset = weights.cwiseProduct(d_offset);
+}
+
+bool LeaningOnPlaneResidual::Evaluate(double const* const* blocks, double* residuals,
+                                      double** jacobians) const {
+  Landmark landmark = UnpackLandmark(blocks[0]);
+  if (!landmark.half_axes.allFinite())
+    return false;  // the step was too large: the solver shortens it
+  landmark.shape_exponent = shape_exponent_;
+  Plane plane = UnpackPlane(blocks[1], blocks[2]);
+  plane.normal *= side_;
+  const LeaningOnPlane leaning(landmark, plane, sigmas_);
+  Eigen::Map<Eigen::Vector3d>(residuals, 3) = leaning.residuals;
+  if (jacobians == nullptr) return true;
+  if (jacobians[0] != nullptr) {
+    WriteLandmarkJacobian<3>(blocks[0], leaning.d_landmark, jacobians[0]);
+  }
+  if (jacobians[1] != nullptr) {
+    Eigen::Map<Eigen::Matrix<double, 3, kNormalSize, Eigen::RowMajor>> d_normal(jacobians[1]);
+    d_normal = side_ * leaning.d_normal;
+  }
+  if (jacobians[2] != nullptr) Eigen::Map<Eigen::Vector3d>(jacobians[2], 3) = leaning.d_offset;
+  return true;
+}
+
+}  // namespace soslam

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "evaluation/landmark_errors.h"
+#include "evaluation/statistics.h"
+#include "geometry/angles.h"
+#include "initialisation/initialise.h"
+#include "mapping/back_end.h"
+#include "mapping/initial_landmarks.h"
+#include "support/random.h"
+
+namespace soslam::any_face {
+namespace {
+
+// Scenes of one cuboid that rests on any of its faces or leans, seen from cameras on an arc.
+struct Body {
+  Eigen::Vector3d own_half_axes = Eigen::Vector3d::Ones();
+  RestingFace rests_on = RestingFace::kBottom;
+  double yaw = 0.0;
+  Eigen::Vector3d tilt = Eigen::Vector3d::Zero();  // rotation vector in the object frame
+};
+
+struct Views {
+  int frames = 12;
+  double arc_rad = 2.5;
+  double box_sigma_fraction = 0.0;
+  unsigned seed = 0;  // of the boxes' noise
+};
+
+Landmark LandmarkOf(const Body& body) {
+  Landmark landmark;
+  landmark.shape_exponent = kCuboidExponent;
+  landmark.rests_on = body.rests_on;
+  landmark.half_axes = HalfAxesOnFace(body.own_half_axes, body.rests_on);
+  landmark.frame_from_object.rotation =
+      UprightRotation(Eigen::Vector3d::UnitZ(), body.yaw) * ExpRotation(body.tilt);
+  landmark.frame_from_object.translation.z() =
+      FindSupportPoint(landmark, Eigen::Vector3d::UnitZ()).distance;
+  return landmark;
+}
+
+Rigid3d LookingAtOrigin(const Eigen::Vector3d& position) {
+  const Eigen::Vector3d z = (Eigen::Vector3d(0.0, 0.0, 0.3) - position).normalized();
+  const Eigen::Vector3d x = z.cross(Eigen::Vector3d::UnitZ()).normalized();
+  Eigen::Matrix3d axes;
+  axes << x, z.cross(x), z;
+  return {Eigen::Quaterniond(axes), position};
+}
+
+Sequence Observe(const Landmark& landmark, const Views& views) {
+  Sequence sequence;
+  sequence.camera = TestCamera();
+  sequence.planes = {{0, Plane()}};
+  Object object;
+  object.plane_index = 0;
+  object.ground_truth = GroundTruth{landmark};
+  sequence.objects = {object};
+  std::mt19937 random(views.seed);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < views.frames; ++i) {
+    const double angle = views.arc_rad * i / (views.frames - 1);
+    Frame frame;
+    frame.id = i;
+    frame.world_from_camera = LookingAtOrigin({3.0 * std::cos(angle), 3.0 * std::sin(angle), 1.5});
+    const Rigid3d camera_from_world = frame.world_from_camera.Inverse();
+    Box box = *OutlineBox(sequence.camera, Transform(camera_from_world, landmark));
+    const double sigma_x = views.box_sigma_fraction * box.Width();
+    const double sigma_y = views.box_sigma_fraction * box.Height();
+    box.x_min += sigma_x * normal(random);
+    box.x_max += sigma_x * normal(random);
+    box.y_min += sigma_y * normal(random);
+    box.y_max += sigma_y * normal(random);
+    Detection detection;
+    detection.frame_index = i;
+    detection.box = box;
+    detection.plane_in_camera = Transform(camera_from_world, Plane());
+    sequence.frames.push_back(frame);
+    sequence.detections.push_back(detection);
+  }
+  return sequence;
+}
+
+// The map of `OursS`: a sweep in each frame, all views, the back end.
+Landmark Estimate(const Sequence& sequence, const ShapePrior& prior) {
+  OptimiseOptions options;
+  options.detection_model = DetectionModel::kTangency;
+  options.hold_poses = true;
+  options.covariances = false;
+  options.axes_weight = 0.0;
+  options.view_correlation_deg = 0.0;  // errors are independent
+  BackEndInput input{sequence, {}, {prior}, {}, {}};
+  const LandmarkEstimates initial = InitialiseUpright(sequence, {prior}, UprightOptions(), 1);
+  input.initial_landmarks = ChooseInitialUprightLandmarks(input, initial, options, 1);
+  return OptimiseMap(input, options).objects[0].landmark_in_world.value_or(Landmark());
+}
+
+ShapePrior PriorOf(const Eigen::Vector3d& own_half_axes, double log_sigma, Attitude attitude) {
+  ShapePrior prior;
+  prior.ratio = own_half_axes.head<2>() / own_half_axes.z();
+  prior.log_sigma = {log_sigma, log_sigma};
+  prior.shape_exponent = kCuboidExponent;
+  prior.attitude = attitude;
+  return prior;
+}
+
+// Half axes of which no two are equal to 20 %, in any order.
+Eigen::Vector3d RandomHalfAxes() {
+  while (true) {
+    const Eigen::Vector3d half_axes = RandomVector(0.1, 0.4);
+    Eigen::Vector3d sorted = half_axes;
+    std::ranges::sort(sorted);
+    if (sorted[1] > 1.2 * sorted[0] && sorted[2] > 1.2 * sorted[1]) return half_axes;
+  }
+}
+
+TEST(AnyFace, SameShapesHoweverTheyAreLaid) {
+  for (int i = 0; i < 10; ++i) {
+    const Eigen::Vector3d half_axes = RandomHalfAxes();
+    const double yaw = RandomUniform(-3.0, 3.0);
+    for (const RestingFace face : kRestingFaces) {
+      const Landmark truth = LandmarkOf({half_axes, face, yaw});
+      const Landmark estimate =
+          Estimate(Observe(truth, Views()), PriorOf(half_axes, 0.1, Attitude::kAnyFace));
+      EXPECT_EQ(estimate.rests_on, face);
+      EXPECT_LT((InOwnAxes(estimate).half_axes - half_axes).norm(), 0.01 * half_axes.norm());
+      EXPECT_LT(AttitudeError(estimate, truth), 1.0 * kRadPerDeg);
+    }
+  }
+}
+
+TEST(AnyFace, LeaningBodiesAreFound) {
+  for (int i = 0; i < 10; ++i) {
+    const Eigen::Vector3d half_axes = RandomHalfAxes();
+    const Landmark truth =
+        LandmarkOf({half_axes, kRestingFaces[static_cast<size_t>(i) % 3], RandomUniform(-3.0, 3.0),
+                    Eigen::Vector3d(RandomUniform(-0.35, 0.35), RandomUniform(-0.35, 0.35), 0.0)});
+    const Landmark estimate =
+        Estimate(Observe(truth, {.arc_rad = 5.0}), PriorOf(half_axes, 0.05, Attitude::kFree));
+    EXPECT_GT(CompareLandmarks(estimate, GroundTruth{truth}, truth).iou, 0.9);
+    EXPECT_LT(AttitudeError(estimate, truth), 3.0 * kRadPerDeg);
+  }
+}
+
+// Of scenes with noisy boxes and objects that differ from their label's ratio: the share with the
+// right face, and by how much IoU is lower than that of the same objects standing.
+struct FaceScore {
+  double right = 0.0;
+  double loss_of_iou = 0.0;
+};
+FaceScore ScoreOf(int scenes, double log_sigma) {
+  std::vector<double> right, losses;
+  for (int i = 0; i < scenes; ++i) {
+    const Eigen::Vector3d of_label = RandomHalfAxes();
+    Body body{of_label, kRestingFaces[static_cast<size_t>(RandomUniform(0.0, 2.999))],
+              RandomUniform(-3.0, 3.0)};
+    for (int axis = 0; axis < 2; ++axis) {
+      body.own_half_axes[axis] *=
+          std::exp(std::normal_distribution<double>(0.0, log_sigma)(TestRandom()));
+    }
+    const Views views{.box_sigma_fraction = 0.015, .seed = static_cast<unsigned>(i)};
+    const auto iou_of = [&](Attitude attitude) {
+      const Landmark truth = LandmarkOf(body);
+      const Landmark estimate =
+          Estimate(Observe(truth, views), PriorOf(of_label, log_sigma, attitude));
+      if (attitude == Attitude::kAnyFace) right.push_back(estimate.rests_on == truth.rests_on);
+      return CompareLandmarks(estimate, GroundTruth{truth}, truth).iou;
+    };
+    const double laid = iou_of(Attitude::kAnyFace);
+    body.rests_on = RestingFace::kBottom;
+    losses.push_back(iou_of(Attitude::kStanding) - laid);
+  }
+  const FaceScore score{*MeanOf(right), *MeanOf(losses)};
+  fmt::print("{} scenes, spread {}: {:.1f} % on the right face, IoU lower by {:.4f}\n", scenes,
+             log_sigma, 100.0 * score.right, score.loss_of_iou);
+  return score;
+}
+
+TEST(SlowAnyFace, FacesOfManyScenes) {
+  const FaceScore score = ScoreOf(500, 0.1);
+  EXPECT_GE(score.right, 0.95);
+  EXPECT_LT(score.loss_of_iou, 0.02);
+}
+
+}  // namespace
+}  // namespace soslam::any_face
