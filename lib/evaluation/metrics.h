@@ -22,7 +22,7 @@ struct ObjectMetrics {
   std::optional<double> centre_m;
   std::optional<double> rotation_deg;
   std::optional<double> yaw_deg;
-  std::optional<double> attitude_deg;
+  std::optional<double> attitude_deg = {};
 };
 
 // Summary over objects. Angles: over the objects that have them.
