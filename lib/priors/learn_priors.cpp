@@ -215,7 +215,7 @@ PriorSource SourceOfSequence(const Sequence& sequence, const SemanticTable& tabl
     const Object& object = sequence.objects[i];
     if (!object.ground_truth) continue;
     LabelFacts& facts = source.facts[object.label];
-    Eigen::Vector3d half_axes = object.ground_truth->landmark_in_world.half_axes;
+    Eigen::Vector3d half_axes = InOwnAxes(object.ground_truth->landmark_in_world).half_axes;
     const bool is_on_wall = table.Find(object.label).value_or(ShapePrior()).mount == Mount::kOnWall;
     if (is_on_wall) std::swap(half_axes.x(), half_axes.z());
     facts.half_axes.push_back(half_axes);
@@ -277,7 +277,7 @@ std::vector<PriorError> PriorErrors(const Sequence& sequence, const SemanticTabl
     std::optional<ShapePrior> prior = table.Find(object.label);
     if (!object.ground_truth || !prior) continue;
     prior = TurnedToSupport(*prior);
-    const Eigen::Vector3d& half_axes = object.ground_truth->landmark_in_world.half_axes;
+    const Eigen::Vector3d half_axes = InOwnAxes(object.ground_truth->landmark_in_world).half_axes;
     PriorError error{object.label, {}, {}};
     error.log_error =
         (half_axes.head<2>().array() / half_axes.z() / prior->ratio.array()).log().matrix();
