@@ -135,6 +135,12 @@ Covariance9 CovarianceFromJson(const json& json) {
   return Eigen::Map<const Eigen::Matrix<double, 9, 9, Eigen::RowMajor>>(rows[0].data());
 }
 
+json PointToJson(const PointPosterior& point) {
+  return {{"point", point.index},
+          {"distance", point.distance},
+          {"responsibility", point.responsibility}};
+}
+
 json EstimateToJson(const ObjectEstimate& estimate, const Sequence& sequence) {
   const auto& landmark = estimate.landmark_in_world;
   const auto& covariance = estimate.covariance;
@@ -146,6 +152,7 @@ json EstimateToJson(const ObjectEstimate& estimate, const Sequence& sequence) {
               {"failure", estimate.failure},
               {"proper_ellipsoid", estimate.proper_ellipsoid}};
   if (!object.labels.empty()) row["labels"] = LabelsToJson(object.labels);
+  if (!estimate.points.empty()) row["points"] = ListToJson(estimate.points, PointToJson);
   return row;
 }
 
@@ -180,6 +187,9 @@ ObjectEstimate ObjectEstimateFromJson(const json& row) {
   if (!covariance.is_null()) estimate.covariance = CovarianceFromJson(covariance);
   row.at("failure").get_to(estimate.failure);
   row.at("proper_ellipsoid").get_to(estimate.proper_ellipsoid);
+  estimate.points = ListFromJson(row, "points", [](const json& point) {
+    return PointPosterior{point.at("point"), point.at("distance"), point.at("responsibility")};
+  });
   return estimate;
 }
 

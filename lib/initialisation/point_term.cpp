@@ -50,26 +50,29 @@ PointTerm::PointTerm(const std::vector<ObjectPoint>& points, const Landmark& sta
     const auto [sigma, rough_sigma] = sigmas_m(normal.dot(point.covariance * normal));
     const auto [least, rough_least] = sigmas_m(LeastVariance(point.covariance));
     const double background = (1.0 - point.prior) / size_m;
-    densities_.push_back({point.position, sigma, rough_sigma,
+    densities_.push_back({point.position, point.index, sigma, rough_sigma,
                           point.prior / Width(sigma, rough_sigma), background,
                           point.prior / Width(least, rough_least) + background});
   }
 }
 
-std::pair<double, double> PointTerm::CostAndWeight(const Density& density, double distance) const {
+PointTerm::Mixture PointTerm::MixtureAt(const Density& density, double distance) const {
   const double near = Bell(distance / density.sigma_m);
-  const bool is_inside = distance < 0.0;
-  const double rough =
-      is_inside ? kRoughShare * density.surface * Bell(distance / density.rough_sigma_m) : 0.0;
-  const double sharp = near * (is_inside ? (1.0 - kRoughShare) * density.surface +
-                                               (1.0 - outlier_probability_) * density.background
-                                         : density.surface);
-  const double constant = density.background * (is_inside ? outlier_probability_ : 1.0);
-  const double sum = sharp + rough + constant;
-  const double weight = (sharp / (density.sigma_m * density.sigma_m) +
-                         rough / (density.rough_sigma_m * density.rough_sigma_m)) /
-                        sum;
-  return {-std::log(sum / density.highest), weight};
+  if (!(distance < 0.0)) {
+    return {near * density.surface, 0.0, density.background, near * density.surface};
+  }
+  const double on_surface = (1.0 - kRoughShare) * density.surface;
+  const double rough = kRoughShare * density.surface * Bell(distance / density.rough_sigma_m);
+  return {near * (on_surface + (1.0 - outlier_probability_) * density.background), rough,
+          outlier_probability_ * density.background, near * on_surface + rough};
+}
+
+std::pair<double, double> PointTerm::CostAndWeight(const Density& density, double distance) const {
+  const Mixture mixture = MixtureAt(density, distance);
+  const double weight = (mixture.sharp / (density.sigma_m * density.sigma_m) +
+                         mixture.rough / (density.rough_sigma_m * density.rough_sigma_m)) /
+                        mixture.Sum();
+  return {-std::log(mixture.Sum() / density.highest), weight};
 }
 
 double PointTerm::Value(const Landmark& landmark_in_camera) const {
@@ -92,6 +95,15 @@ void PointTerm::AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) co
     model.information += weight * jacobian.transpose() * jacobian;
   }
   sum->Add(model, weight_);
+}
+
+std::vector<PointPosterior> PointTerm::Posteriors(const Landmark& landmark_in_camera) const {
+  std::vector<PointPosterior> posteriors;
+  for (const Density& density : densities_) {
+    const double distance = SurfaceDistance(landmark_in_camera, density.position, nullptr);
+    posteriors.push_back({density.index, distance, MixtureAt(density, distance).Responsibility()});
+  }
+  return posteriors;
 }
 
 }  // namespace soslam

@@ -7,6 +7,7 @@
 
 #include "base/options.h"
 #include "initialisation/landmark_cost.h"
+#include "model/estimates.h"
 
 namespace soslam {
 
@@ -15,6 +16,7 @@ struct ObjectPoint {
   Eigen::Vector3d position;                              // in the camera that the landmark is in
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // m^2
   double prior = 0.5;  // probability that it is of the object, whatever its distance from it
+  int index = 0;       // in the list of all points
 };
 
 // Sparse points as evidence for objects.
@@ -72,15 +74,30 @@ class PointTerm final : public LandmarkCost {
   double Value(const Landmark& landmark_in_camera) const override;
   void AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) const override;
 
+  // In the order of the points.
+  std::vector<PointPosterior> Posteriors(const Landmark& landmark_in_camera) const;
+
  private:
   struct Density {
     Eigen::Vector3d position;
+    int index;  // of the point
     double sigma_m;
     double rough_sigma_m;
     double surface;     // p S
     double background;  // (1 - p) B
     double highest;     // no density is higher
   };
+  // Terms of the density at one distance.
+  struct Mixture {
+    double sharp;      // within s, of the object and of the background
+    double rough;      // within t, of the object
+    double constant;   // of the background
+    double of_object;  // part of sharp and rough
+
+    double Sum() const { return sharp + rough + constant; }
+    double Responsibility() const { return of_object / Sum(); }
+  };
+  Mixture MixtureAt(const Density& density, double distance) const;
   // Negative logarithm of the density at a distance, relative to the highest, and the factor w of
   // its derivative w d.
   std::pair<double, double> CostAndWeight(const Density& density, double distance) const;

@@ -129,6 +129,29 @@ std::vector<Fact> SolverInWords(const json& solver) {
   return facts;
 }
 
+// Sparse points that may be of each object, how many of them are expected to be, and the root mean
+// square distance of these from its surface; no values for objects without points.
+void AddPointColumns(const json& objects, ValueTable* table) {
+  for (const ValueColumn& column :
+       {ValueColumn{"points"}, {"of_object", "", 1}, {"rms_distance", "m", 3}}) {
+    table->columns.push_back(column);
+  }
+  for (size_t i = 0; i < objects.size(); ++i) {
+    const std::vector<PointPosterior> points = ObjectEstimateFromJson(objects[i]).points;
+    double of_object = 0.0;
+    double squares = 0.0;
+    for (const PointPosterior& point : points) {
+      of_object += point.responsibility;
+      squares += point.responsibility * point.distance * point.distance;
+    }
+    if (of_object > 0.0) {
+      Append({points.size(), of_object, std::sqrt(squares / of_object)}, &table->rows[i]);
+    } else {
+      Append(std::vector<Value>(3), &table->rows[i]);
+    }
+  }
+}
+
 // Length of the path from frame to frame.
 std::string TrajectoryInWords(const json& trajectory) {
   double length = 0.0;
@@ -174,6 +197,7 @@ Inspection InspectMap(const json& document) {
   inspection.facts.insert(inspection.facts.end(), solver.begin(), solver.end());
   inspection.facts.push_back({"trajectory", TrajectoryInWords(document.at("trajectory"))});
   for (const json& row : objects) inspection.table.rows.push_back(ObjectRow(row));
+  AddPointColumns(objects, &inspection.table);
   return inspection;
 }
 

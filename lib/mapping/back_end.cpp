@@ -63,6 +63,7 @@ void AddObjects(const BackEndInput& input, const BackEndProblem& problem, MapEst
       object.failure = input.sequence.objects[i].is_static ? "no_start" : kMovingObject;
     } else if (HasExtent(*landmarks[i])) {
       object.landmark_in_world = landmarks[i];
+      object.points = problem.PointsOf(i);
     } else {
       object.failure = "collapsed";  // as boxes alone may be explained best
     }

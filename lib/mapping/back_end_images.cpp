@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Residuals of texture, edges and points of BackEndProblem.
+#include <algorithm>
 #include <functional>
+#include <iterator>
 #include <utility>
 
 #include "base/parallel.h"
@@ -111,13 +113,29 @@ BackEndProblem::ImageBlocks BackEndProblem::PairBlocks(
   return blocks;
 }
 
+PointTerm BackEndProblem::PointTermOf(size_t object_index, const PointsInView& view,
+                                      const Landmark& start_in_camera) const {
+  return {view.points, start_in_camera, SizeForPoints(start_in_camera), options_.points,
+          PointWeight(input_.points[object_index], options_.points)};
+}
+
+std::vector<PointPosterior> BackEndProblem::PointsOf(size_t object_index) const {
+  std::vector<PointPosterior> points;
+  if (input_.points.empty() || !input_.initial_landmarks[object_index]) return points;
+  for (const PointsInView& view : input_.points[object_index]) {
+    const Landmark in_camera = LandmarkInCamera(input_.sequence.detections[view.detection_index]);
+    std::ranges::copy(PointTermOf(object_index, view, in_camera).Posteriors(in_camera),
+                      std::back_inserter(points));
+  }
+  std::ranges::stable_sort(points, {}, &PointPosterior::index);
+  return points;
+}
+
 BackEndProblem::ImageBlocks BackEndProblem::PointBlocks(size_t object_index,
                                                         const PointsInView& view) const {
   const Detection& detection = input_.sequence.detections[view.detection_index];
   const Landmark in_camera = LandmarkInCamera(detection);
-  auto points =
-      std::make_unique<PointTerm>(view.points, in_camera, SizeForPoints(in_camera), options_.points,
-                                  PointWeight(input_.points[object_index], options_.points));
+  auto points = std::make_unique<PointTerm>(PointTermOf(object_index, view, in_camera));
   ImageBlocks blocks{kPoints, nullptr, static_cast<int>(view.points.size()), {}, true};
   blocks.functions.push_back(
       std::make_unique<ImageResidual>(std::move(points), in_camera.shape_exponent));

@@ -38,6 +38,9 @@ class BackEndProblem {
   // Leaves the curvature rows of TangencyResidual out of all later Jacobians, as covariances need.
   void DropCurvatureRows() { with_curvature_ = false; }
 
+  // The points of an object at its present landmark; none without a landmark.
+  std::vector<PointPosterior> PointsOf(size_t object_index) const;
+
   const SolverSummary& summary() const { return summary_; }
   ceres::Problem& problem() { return problem_; }
   BackEndVariables& variables() { return variables_; }
@@ -67,6 +70,8 @@ class BackEndProblem {
   void FixPoses();
   ImageBlocks TextureBlocks(size_t index, const std::shared_ptr<const SymmetryImage>& image) const;
   ImageBlocks PairBlocks(size_t index, const std::shared_ptr<const SymmetryImage>& image) const;
+  PointTerm PointTermOf(size_t object_index, const PointsInView& view,
+                        const Landmark& start_in_camera) const;
   ImageBlocks PointBlocks(size_t object_index, const PointsInView& view) const;
   ImageBlocks EdgeBlocks(size_t index, const std::shared_ptr<const EdgeImage>& image) const;
   void AddImageBlocks(size_t index, ImageBlocks blocks);

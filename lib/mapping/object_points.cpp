@@ -7,7 +7,6 @@
 #include <optional>
 #include <utility>
 
-#include "geometry/distortion.h"
 #include "geometry/triangulation.h"
 #include "model/occlusion.h"
 
@@ -49,8 +48,8 @@ class ObjectPointFinder {
     }
   }
 
-  void Add(const MapPoint& point) {
-    for (const auto& [segment, views] : ViewsBySegment(point)) AddViews(views);
+  void Add(int index, const MapPoint& point) {
+    for (const auto& [segment, views] : ViewsBySegment(point)) AddViews(index, views);
   }
 
   std::vector<PointsOfObject> Found() const {
@@ -62,14 +61,15 @@ class ObjectPointFinder {
   }
 
  private:
-  void AddViews(const std::vector<View>& views) {
+  void AddViews(int index, const std::vector<View>& views) {
     std::optional<TriangulatedPoint> triangulated;
     for (const auto& [object_index, places] : PlacesOf(views)) {
       if (places.in_box.size() < kFewestFramesInBox) continue;
       if (!triangulated) triangulated = TriangulateViews(views);
       if (!triangulated) return;
       const int anchor = places.in_box[places.in_box.size() / 2];
-      const ObjectPoint of_object = PointOf(*triangulated, views.size(), places, anchor);
+      ObjectPoint of_object = PointOf(*triangulated, views.size(), places, anchor);
+      of_object.index = index;
       if (!(of_object.prior > kLeastPrior)) continue;
       found_[object_index][anchor].push_back(of_object);
     }
@@ -83,10 +83,7 @@ class ObjectPointFinder {
     for (const PointObservation& observation : point.observations) {
       const auto index = FrameIndexOf(sequence_, observation);
       if (!index) continue;
-      std::optional<Eigen::Vector2d> pixel = observation.pixel;
-      if (sequence_.image_distortion) {
-        pixel = UndistortPixels(sequence_.camera, *sequence_.image_distortion, {*pixel}).front();
-      }
+      const auto pixel = UndistortedPixel(sequence_, observation);
       if (pixel) views[sequence_.frames[*index].segment].push_back({*index, *pixel});
     }
     return views;
@@ -163,7 +160,7 @@ std::vector<PointsOfObject> FindObjectPoints(const Sequence& sequence,
                                              const std::vector<MapPoint>& points,
                                              const PointOptions& options) {
   ObjectPointFinder finder(sequence, options);
-  for (const MapPoint& point : points) finder.Add(point);
+  for (size_t i = 0; i < points.size(); ++i) finder.Add(static_cast<int>(i), points[i]);
   return finder.Found();
 }
 

@@ -35,6 +35,13 @@ inline constexpr const char* kMovingObject = "moving";
 
 using Covariance9 = Eigen::Matrix<double, 9, 9>;
 
+// Sparse point that may be of an object, and what the object's landmark says of it.
+struct PointPosterior {
+  int index = 0;                // in the list of all points
+  double distance = 0.0;        // from the surface, m, positive outside
+  double responsibility = 0.0;  // posterior probability that it is of the object
+};
+
 // Estimate of an object from all its observations. Covariance over (rotation vector in the world
 // frame, rad; centre in the world frame, m; log half axes).
 struct ObjectEstimate {
@@ -42,8 +49,9 @@ struct ObjectEstimate {
   int observations = 0;  // number of detections used
   std::optional<Landmark> landmark_in_world;
   std::optional<Covariance9> covariance;
-  std::string failure;           // reason when there is no landmark
-  bool proper_ellipsoid = true;  // false: see LandmarkFromDualQuadric
+  std::string failure;                      // reason when there is no landmark
+  bool proper_ellipsoid = true;             // false: see LandmarkFromDualQuadric
+  std::vector<PointPosterior> points = {};  // evidence for the landmark, beside the detections
 };
 
 // The landmarks that a stage found: per observation, per object, or both.

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "geometry/distortion.h"
 #include "model/sequence.h"
 
 namespace soslam {
@@ -33,6 +34,13 @@ inline std::optional<size_t> FrameIndexOf(const Sequence& sequence,
       std::ranges::lower_bound(sequence.frames, observation.frame_id, {}, &Frame::id);
   if (frame == sequence.frames.end() || frame->id != observation.frame_id) return std::nullopt;
   return static_cast<size_t>(frame - sequence.frames.begin());
+}
+
+// Image point without lens distortion; none where that has no inverse.
+inline std::optional<Eigen::Vector2d> UndistortedPixel(const Sequence& sequence,
+                                                       const PointObservation& observation) {
+  if (!sequence.image_distortion) return observation.pixel;
+  return UndistortPixels(sequence.camera, *sequence.image_distortion, {observation.pixel}).front();
 }
 
 }  // namespace soslam

@@ -30,7 +30,8 @@ void LeaveOutCurves(json* data) {
 }
 
 void KeepNumbersOnly(json* variant) {
-  for (const char* key : {"objects", "outlines", "trajectory", "solver", "planes", "grids"}) {
+  for (const char* key :
+       {"objects", "outlines", "trajectory", "solver", "planes", "grids", "points"}) {
     variant->erase(key);
   }
   variant->at("metrics")["objects"] = json::array();

@@ -6,9 +6,11 @@
 #include <string>
 
 #include "artefact/landmarks_file.h"
+#include "artefact/points_file.h"
 #include "evaluation/metrics.h"
 #include "geometry/angles.h"
 #include "report/page_parts.h"
+#include "report/page_points.h"
 
 namespace soslam {
 namespace {
@@ -44,6 +46,7 @@ json PageObjectEstimate(const ObjectEstimate& estimate) {
                  {"observations", estimate.observations}};
   if (!estimate.landmark_in_world) return object;
   object["landmark"] = PageLandmark(*estimate.landmark_in_world);
+  object["points"] = PagePointCounts(estimate);
   if (estimate.covariance) {
     AddCovariance(*estimate.covariance, *estimate.landmark_in_world, &object);
   }
@@ -160,11 +163,20 @@ void AddFrames(const LandmarkEstimates& estimates, const Sequence& sequence,
   (*variant)["outlines"] = outlines;
 }
 
+bool HavePoints(const MapEstimate& map) {
+  return std::ranges::any_of(map.objects,
+                             [](const ObjectEstimate& object) { return !object.points.empty(); });
+}
+
 void AddEstimates(const VariantResult& result, const Sequence& sequence,
                   const PageSelection& selection, json* variant) {
   const fs::path& folder = result.folder;
   if (ShowsStage(result, "optimise", "map.json")) {
-    AddMap(ReadMap(folder / "map.json", sequence), sequence, selection, variant);
+    const MapEstimate map = ReadMap(folder / "map.json", sequence);
+    AddMap(map, sequence, selection, variant);
+    if (HavePoints(map) && ShowsStage(result, "track", "points.h5")) {
+      (*variant)["points"] = PagePoints(map, ReadPoints(folder / "points.h5"), sequence, selection);
+    }
     return;
   }
   const char* file = ShowsStage(result, "refine", "refined.json") ? "refined.json" : "initial.json";
@@ -181,7 +193,8 @@ void AddEstimates(const VariantResult& result, const Sequence& sequence,
 json PageVariant(const VariantResult& result, const Sequence& sequence,
                  const PageSelection& selection) {
   json variant = {{"name", result.name}, {"metrics", result.metrics}, {"trajectory", nullptr},
-                  {"solver", nullptr},   {"planes", nullptr},         {"grids", nullptr}};
+                  {"solver", nullptr},   {"planes", nullptr},         {"grids", nullptr},
+                  {"points", nullptr}};
   for (const char* key : {"artefact", "findings"}) variant["metrics"].erase(key);
   AddEstimates(result, sequence, selection, &variant);
   return variant;

@@ -247,6 +247,7 @@ TEST_P(EditedMapTest, IsRefused) {
 const std::vector<Edit> kEditedMapCases = {
     {"/trajectory", "[]", "has 0 poses; expected 5"},
     {"/objects/0/landmark/shape_exponent", "3", "/objects/0/landmark/shape_exponent is 3"},
+    {"/objects/0/points/1/responsibility", "1.5", "/objects/0/points/1/responsibility is 1.5"},
     {"/trajectory/2/frame", "21", "/trajectory/2/frame is 21; expected 20"},
     {"/solver/iterations", "1.5", "/solver/iterations is 1.5"}};
 INSTANTIATE_TEST_SUITE_P(Edits, EditedMapTest, testing::ValuesIn(kEditedMapCases));

@@ -65,13 +65,22 @@ TEST(PointTermTest, IsProportionalToItsWeight) {
   EXPECT_NEAR(PointTerm(points, body, 1.0, {}, 0.25).Value(body), 0.25 * one, 1e-12);
 }
 
-// The cost of a point 4 m in front of the camera at a signed distance from the face of a body of
-// this size (m), which is deep enough for all widths.
-double CostAtDistance(double distance, double prior, double size_m, const PointOptions& options) {
+// A point 4 m in front of the camera, and a body at this signed distance (m) from it, which is deep
+// enough for all widths.
+struct PointAndBody {
+  ObjectPoint point;
+  Landmark body;
+};
+PointAndBody AtDistance(double distance, double prior) {
   constexpr double kHalfAxisM = 10.0;
   Landmark cuboid{{}, Eigen::Vector3d::Constant(kHalfAxisM), kCuboidExponent};
   cuboid.frame_from_object.translation = {-kHalfAxisM - distance, 0.0, 4.0};
-  const ObjectPoint point{{0.0, 0.0, 4.0}, Eigen::Matrix3d::Zero(), prior};
+  return {{{0.0, 0.0, 4.0}, Eigen::Matrix3d::Zero(), prior}, cuboid};
+}
+
+// The cost of that point, of an object of this size (m).
+double CostAtDistance(double distance, double prior, double size_m, const PointOptions& options) {
+  const auto [point, cuboid] = AtDistance(distance, prior);
   return PointTerm({point}, cuboid, size_m, options, 1.0).Value(cuboid);
 }
 
@@ -92,6 +101,38 @@ TEST(PointTermTest, SurfaceDensityHasTheMassOfThePrior) {
       EXPECT_NEAR(mass, prior, 0.01 * prior);
     }
   }
+}
+
+// Where the background has one density everywhere, costs say how much likelier a point is than one
+// of the background far away: by one over the probability that it is of the background.
+TEST(PointTermTest, ResponsibilitiesArePosteriorProbabilities) {
+  PointOptions options;
+  options.point_outlier_probability = 1.0;
+  for (const double prior : {0.05, 0.3, 0.7}) {
+    const double far = CostAtDistance(9.0, prior, 1.0, options);
+    for (const double distance : {-1.0, -0.3, -0.05, 0.0, 0.05, 0.2, 9.0}) {
+      auto [point, cuboid] = AtDistance(distance, prior);
+      point.index = 7;
+      const auto posteriors = PointTerm({point}, cuboid, 1.0, options, 0.5).Posteriors(cuboid);
+      ASSERT_EQ(posteriors.size(), 1u);
+      EXPECT_EQ(posteriors[0].index, 7);
+      EXPECT_NEAR(posteriors[0].distance, distance, 1e-9);
+      EXPECT_NEAR(posteriors[0].responsibility,
+                  1.0 - std::exp(CostAtDistance(distance, prior, 1.0, options) - far), 1e-9);
+    }
+  }
+}
+
+// With outliers that are inside.
+TEST(PointTermTest, ResponsibilitiesAreContinuousAndVanishFarAway) {
+  const auto responsibility = [](double distance) {
+    const auto [point, cuboid] = AtDistance(distance, 0.5);
+    return PointTerm({point}, cuboid, 1.0, {}, 1.0).Posteriors(cuboid)[0].responsibility;
+  };
+  EXPECT_NEAR(responsibility(-1e-9), responsibility(1e-9), 1e-6);
+  EXPECT_GT(responsibility(0.0), 0.5);
+  EXPECT_LT(responsibility(5.0), 1e-9);
+  EXPECT_LT(responsibility(-5.0), 1e-9);
 }
 
 // With the default options: what is swallowed costs more than what is left outside if it is deep

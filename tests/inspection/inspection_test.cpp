@@ -113,6 +113,7 @@ TEST_F(InspectionTest, MapsSayHowSureTheyAre) {
   map.objects[0].covariance = covariance;
   OptimiseOptions options;
   options.max_iterations += 1;
+  map.objects[0].points = {{3, 0.1, 0.5}, {4, 0.0, 0.5}, {9, -2.0, 0.0}};
   WriteMap(File(), map, sequence_, {OptionsToJson(options), {}});
 
   const Inspection inspection = Read();
@@ -121,6 +122,10 @@ TEST_F(InspectionTest, MapsSayHowSureTheyAre) {
   EXPECT_NEAR(At(inspection, 0, "sigma_centre").get<double>(), 0.2, 1e-9);
   EXPECT_NEAR(At(inspection, 0, "sigma_size").get<double>(), 100.0 * std::sqrt(0.03), 1e-9);
   EXPECT_TRUE(At(inspection, 1, "sigma_yaw").is_null());
+  EXPECT_EQ(At(inspection, 0, "points"), 3);
+  EXPECT_NEAR(At(inspection, 0, "of_object").get<double>(), 1.0, 1e-12);
+  EXPECT_NEAR(At(inspection, 0, "rms_distance").get<double>(), 0.1 * std::sqrt(0.5), 1e-12);
+  EXPECT_TRUE(At(inspection, 1, "points").is_null());
   EXPECT_EQ(Said(inspection, "settings"), fmt::format("max_iterations {}", options.max_iterations));
   EXPECT_EQ(Said(inspection, "solver"),
             "converged after 3 iterations; cost 12.5 at first, 0.1 at the end");

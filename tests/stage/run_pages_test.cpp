@@ -11,6 +11,7 @@
 
 #include "artefact/hdf5_artefact.h"
 #include "artefact/landmarks_file.h"
+#include "artefact/points_file.h"
 #include "artefact/sequence_file.h"
 #include "artefact/world_file.h"
 #include "base/error.h"
@@ -85,10 +86,13 @@ class RunPagesTest : public testing::Test {
   void WriteOurs(const std::string& name) const {
     WriteMultiView(name);
     WriteVariant(name, {"import-1", "initialise-2", "refine-4", "optimise-5", "evaluate-6"});
+    WriteMap(Folder(name) / "map.json", Map(), sequence_, {});
+    WriteSymmetry(Folder(name) / "symmetry.h5", {Record()}, {});
+  }
+  MapEstimate Map() const {
     MapEstimate map = EmptyMap(sequence_);
     map.objects = Estimates();
-    WriteMap(Folder(name) / "map.json", map, sequence_, {});
-    WriteSymmetry(Folder(name) / "symmetry.h5", {Record()}, {});
+    return map;
   }
   SymmetryRecord Record() const {
     const Detection& seen = sequence_.detections.front();
@@ -383,6 +387,35 @@ TEST_F(RunPagesTest, ImagesOutsideTheDatasetAreNotShown) {
   WriteMultiView("MultiView");
   EXPECT_THAT(Run().errors, HasSubstr("outside"));
   EXPECT_EQ(PageDataIn(Page())["images"].size(), 5u);
+}
+
+// In the frames that see them, and only of runs with points.
+TEST_F(RunPagesTest, PointsOfObjectsAreInTheirImages) {
+  const Detection& seen = sequence_.detections.front();
+  MapEstimate map = Map();
+  map.objects[seen.object_index].points = {{1, 0.0, 0.873}};
+  const MapPoint of_none{Eigen::Vector3d::Zero(), 0.5, {{sequence_.frames[0].id, {1.0, 2.0}}}};
+  const MapPoint of_object{
+      Eigen::Vector3d::Zero(), 0.5, {{sequence_.FrameOf(seen).id, {33.25, 44.0}}, {90001, {}}}};
+  for (const char* name : {"OursS", "OursSP"}) {
+    WriteOurs(name);
+    WriteMap(Folder(name) / "map.json", map, sequence_, {});
+  }
+  WriteVariant("OursSP", {"import-1", "track-7", "initialise-2", "optimise-5", "evaluate-6"});
+  WritePoints(Folder("OursSP") / "points.h5", {of_none, of_object}, {});
+  EXPECT_EQ(Run().errors, "");
+  const json variants = PageDataIn(Page())["variants"];
+  EXPECT_TRUE(variants[0]["points"].is_null());
+  const json& points = variants[1]["points"];
+  EXPECT_EQ(points.size(), sequence_.detections.size());
+  EXPECT_EQ(points[0], json({33.3, 44.0, 87}));
+  for (size_t i = 1; i < points.size(); ++i) EXPECT_TRUE(points[i].is_null());
+  const json& object = variants[1]["objects"][seen.object_index];
+  EXPECT_EQ(object["points"], json({{"count", 1}, {"of_object", 0.873}}));
+
+  WritePoints(Folder("OursSP") / "points.h5", {of_none}, {});
+  EXPECT_THAT(Run().errors, AllOf(HasSubstr("OursSP failed"), HasSubstr("points.h5: has 1 points"),
+                                  HasSubstr("map.json")));
 }
 
 TEST_F(RunPagesTest, WithoutImagesFramesHaveOutlinesAllTheSame) {

@@ -74,6 +74,7 @@ inline LandmarkEstimates RandomLandmarkEstimates() {
 inline MapEstimate RandomMap() {
   MapEstimate map;
   map.objects = RandomObjectEstimates();
+  map.objects[0].points = {{3, 0.1, 1.0 / 3.0}, {8, -0.02, 1.0}};
   for (int i = 0; i < 5; ++i) map.world_from_camera.push_back(RandomRigid());
   map.planes_in_world = {RandomPlane(), RandomPlane()};
   map.solver = {12.5,

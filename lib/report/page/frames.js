@@ -16,13 +16,17 @@ function shapesInFrame(page, variant, frameIndex, shown) {
     if (shown.box && estimate && estimate.outline.length > 0) {
       shapes.push(boxOutline(boundsOf(estimate.outline), "estimate"));
     }
+    if (shown.points && variant.points) {
+      shapes.push(...pointShapes(variant.points[i], sequence.frames[frameIndex].width / 250));
+    }
   });
   return shapes;
 }
 
 function framesSection(page, variants) {
   const holder = element("div"), caption = element("span", { class: "faint" });
-  const shown = { estimate: true, box: false, truth: true, detection: true, grid: true };
+  const shown = { estimate: true, box: false, truth: true, detection: true, grid: true, points: true };
+  const havePoints = variants.some(({ points }) => points);
   const detections = page.sequences[variants[0].sequence].detections;
   let variant = variants[0];
   const framesOf = () => page.sequences[variant.sequence].frames
@@ -54,9 +58,10 @@ function framesSection(page, variants) {
   return section("frames", "Frames",
     element("p", {}, "Detections are dashed, the thick end of an estimate points to its front. " +
       (page.has_true_objects ? "Estimates over several frames are seen from the estimated camera, the ground truth from the true one."
-        : "Estimates over several frames are seen from the estimated camera.")), note,
+        : "Estimates over several frames are seen from the estimated camera.") +
+      (havePoints ? " Dots are sparse points that may be of an object: the fuller, the more probably they are of it, and not of what is behind it or in front." : "")), note,
     element("div", { class: "bar on-image" }, choose, toggle("estimate", "estimate", "estimate"), toggle("its box", "box", "estimate"),
       page.has_true_objects ? toggle("ground truth", "truth", "truth") : null, toggle("detection", "detection", "detection"),
-      toggle("support planes", "grid", "grid")),
+      toggle("support planes", "grid", "grid"), havePoints ? toggle("points", "points", "point") : null),
     element("div", { class: "bar" }, input, caption), holder);
 }

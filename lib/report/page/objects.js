@@ -25,6 +25,9 @@ function objectNumbers(page, variant, index) {
     rows.push(["sigma of half axes, %", triple(estimate.sigma_log_half_axes.map((value) => 100 * value), 1)]);
     rows.push(["sigma of yaw, °", number(estimate.sigma_yaw_deg, 2)]);
   }
+  if (estimate.points) {
+    rows.push(["points", `${estimate.points.count}, of which ${number(estimate.points.of_object, 0)} are of it`]);
+  }
   if (object.truth) rows.push(["true half axes, m", triple(object.truth.half_axes, 2)]);
   if (metrics && page.has_true_objects) {
     rows.push(["IoU", number(metrics.iou, 3)], ["Rot, °", number(metrics.rotation_deg, 2)],

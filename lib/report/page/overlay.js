@@ -47,6 +47,16 @@ function estimateShapes(shown, name) {
   return shapes;
 }
 
+// Sparse points of a detection: the fuller, the more probably of the object.
+function pointShapes(points, radius) {
+  const shapes = [];
+  for (let i = 0; points && i < points.length; i += 3) {
+    shapes.push(svgElement("circle", { cx: points[i], cy: points[i + 1], r: radius, fill: "var(--point)",
+      "fill-opacity": points[i + 2] / 100, stroke: "var(--point)", "stroke-width": radius / 3 }));
+  }
+  return shapes;
+}
+
 // crop: [x1, y1, x2, y2] px or null for all of it.
 function imageView(page, frame, crop, shapes, label) {
   const [x1, y1, x2, y2] = crop || [-0.5, -0.5, frame.width - 0.5, frame.height - 0.5];
@@ -86,5 +96,6 @@ function detectionView(page, variant, index, label, otherShapes) {
   if (!otherShapes && detection.truth && detection.truth.outline.length > 0) {
     shapes.push(polygon(detection.truth.outline, "truth"));
   }
+  if (!otherShapes && variant.points) shapes.push(...pointShapes(variant.points[index], (crop[2] - crop[0]) / 100));
   return imageView(page, frame, crop, [...estimateShapes(variant.outlines[index], "estimate"), ...shapes], label);
 }
