@@ -14,6 +14,10 @@ namespace {
 // Share of an object's points that may lie far inside its label's shape.
 constexpr double kRoughShare = 0.6;
 
+// Ends and steps of integrals over the distance.
+constexpr double kFarthestSigmas = 5.0;
+constexpr double kStepSigmas = 0.125;
+
 double Bell(double x) { return std::exp(-0.5 * x * x); }
 
 // Integral (m) of the density of an object's points over the distance, where it is 1 at the
@@ -36,8 +40,11 @@ double SizeForPoints(const Landmark& landmark) {
 }
 
 PointTerm::PointTerm(const std::vector<ObjectPoint>& points, const Landmark& start_in_camera,
-                     double size_m, const PointOptions& options, double weight)
-    : outlier_probability_(options.point_outlier_probability), weight_(weight) {
+                     double size_m, const PointOptions& options, double weight,
+                     const bool* for_solver)
+    : outlier_probability_(options.point_outlier_probability),
+      weight_(weight),
+      for_solver_(for_solver) {
   for (const ObjectPoint& point : points) {
     const double of_range_m = options.point_range_fraction * point.position.norm();
     const auto sigmas_m = [&](double variance) {
@@ -75,6 +82,26 @@ std::pair<double, double> PointTerm::CostAndWeight(const Density& density, doubl
   return {-std::log(mixture.Sum() / density.highest), weight};
 }
 
+double PointTerm::MeanSquaredDerivative(const Density& density, double from, double to,
+                                        double step) const {
+  double mean = 0.0;
+  for (double distance = from + 0.5 * step; distance < to; distance += step) {
+    const double derivative = CostAndWeight(density, distance).second * distance;
+    mean += step * derivative * derivative * MixtureAt(density, distance).Sum();
+  }
+  return mean;
+}
+
+double PointTerm::Information(const Density& density, double distance) const {
+  const double near = kFarthestSigmas * density.sigma_m;
+  const double deep = kFarthestSigmas * density.rough_sigma_m;
+  const double information =
+      MeanSquaredDerivative(density, -near, near, kStepSigmas * density.sigma_m) +
+      MeanSquaredDerivative(density, -deep, -near, kStepSigmas * density.rough_sigma_m);
+  const double prior = density.surface * Width(density.sigma_m, density.rough_sigma_m);
+  return information * MixtureAt(density, distance).Responsibility() / prior;
+}
+
 double PointTerm::Value(const Landmark& landmark_in_camera) const {
   double cost = 0.0;
   for (const Density& density : densities_) {
@@ -92,7 +119,8 @@ void PointTerm::AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) co
     const auto [cost, weight] = CostAndWeight(density, distance);
     model.cost += cost;
     model.gradient += weight * distance * jacobian.transpose();
-    model.information += weight * jacobian.transpose() * jacobian;
+    const double information = IsForSolver() ? weight : Information(density, distance);
+    model.information += information * jacobian.transpose() * jacobian;
   }
   sum->Add(model, weight_);
 }

@@ -67,9 +67,10 @@ double SizeForPoints(const Landmark& landmark);
 class PointTerm final : public LandmarkCost {
  public:
   // Widths are those of an object of this size along the normals of `start_in_camera`; the cost is
-  // multiplied by `weight`.
+  // multiplied by `weight`. While `*for_solver` is false, second derivatives are the Fisher
+  // information of the points, as covariances need.
   PointTerm(const std::vector<ObjectPoint>& points, const Landmark& start_in_camera, double size_m,
-            const PointOptions& options, double weight);
+            const PointOptions& options, double weight, const bool* for_solver = nullptr);
 
   double Value(const Landmark& landmark_in_camera) const override;
   void AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) const override;
@@ -98,6 +99,13 @@ class PointTerm final : public LandmarkCost {
     double Responsibility() const { return of_object / Sum(); }
   };
   Mixture MixtureAt(const Density& density, double distance) const;
+  bool IsForSolver() const { return for_solver_ == nullptr || *for_solver_; }
+  // Integral of the squared derivative of the cost, times the density, over a range of distances.
+  double MeanSquaredDerivative(const Density& density, double from, double to, double step) const;
+  // Fisher information (1 / m^2) of a point's distance, shared out by responsibility: its mean over
+  // all distances is that of a point, and points far away have none. That of expectation
+  // maximisation is larger, as it takes for known which points are of the object.
+  double Information(const Density& density, double distance) const;
   // Negative logarithm of the density at a distance, relative to the highest, and the factor w of
   // its derivative w d.
   std::pair<double, double> CostAndWeight(const Density& density, double distance) const;
@@ -105,6 +113,7 @@ class PointTerm final : public LandmarkCost {
   std::vector<Density> densities_;
   double outlier_probability_;
   double weight_;
+  const bool* for_solver_;
 };
 
 }  // namespace soslam

@@ -129,7 +129,7 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
   }
   AddObjects(input, problem, &map);
   if (options.covariances) {
-    problem.DropCurvatureRows();
+    problem.PrepareCovariances();
     const MarginalCovariances covariances(&problem.problem());
     AddLandmarkCovariances(covariances, &problem, &map);
     AddPlaneCovariances(input.sequence, covariances, &problem, &map);

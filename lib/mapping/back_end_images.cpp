@@ -115,8 +115,12 @@ BackEndProblem::ImageBlocks BackEndProblem::PairBlocks(
 
 PointTerm BackEndProblem::PointTermOf(size_t object_index, const PointsInView& view,
                                       const Landmark& start_in_camera) const {
-  return {view.points, start_in_camera, SizeForPoints(start_in_camera), options_.points,
-          PointWeight(input_.points[object_index], options_.points)};
+  return {view.points,
+          start_in_camera,
+          SizeForPoints(start_in_camera),
+          options_.points,
+          PointWeight(input_.points[object_index], options_.points),
+          &for_solver_};
 }
 
 std::vector<PointPosterior> BackEndProblem::PointsOf(size_t object_index) const {

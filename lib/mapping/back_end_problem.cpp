@@ -231,10 +231,10 @@ void BackEndProblem::AddDetection(size_t index, const Landmark& initial_in_camer
       ++summary_.gated["edge_behind_camera"];
       continue;
     }
-    problem_.AddResidualBlock(
-        new TangencyResidual(edges[side], initial_in_camera, &with_curvature_),
-        &view_losses_.back(), Pose(detection), LandmarkOf(detection), variables_.Bias(side),
-        variables_.Misfit(static_cast<size_t>(detection.object_index), side));
+    problem_.AddResidualBlock(new TangencyResidual(edges[side], initial_in_camera, &for_solver_),
+                              &view_losses_.back(), Pose(detection), LandmarkOf(detection),
+                              variables_.Bias(side),
+                              variables_.Misfit(static_cast<size_t>(detection.object_index), side));
   }
 }
 

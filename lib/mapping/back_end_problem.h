@@ -35,8 +35,9 @@ class BackEndProblem {
   // defined there.
   void Solve(int max_iterations = std::numeric_limits<int>::max());
 
-  // Leaves the curvature rows of TangencyResidual out of all later Jacobians, as covariances need.
-  void DropCurvatureRows() { with_curvature_ = false; }
+  // Makes all later Jacobians those that covariances need: without the curvature rows of
+  // TangencyResidual, and with the Fisher information of points.
+  void PrepareCovariances() { for_solver_ = false; }
 
   // The points of an object at its present landmark; none without a landmark.
   std::vector<PointPosterior> PointsOf(size_t object_index) const;
@@ -91,7 +92,7 @@ class BackEndProblem {
   const OptimiseOptions& options_;
   int threads_;
   std::vector<double> view_weights_;  // one per detection
-  bool with_curvature_ = true;
+  bool for_solver_ = true;
   BackEndVariables variables_;
   ceres::HuberLoss loss_;
   std::deque<ceres::ScaledLoss> view_losses_;

@@ -123,6 +123,53 @@ TEST(PointTermTest, ResponsibilitiesArePosteriorProbabilities) {
   }
 }
 
+// The derivatives of the cost by the distance.
+struct Derivatives {
+  double first;
+  double information;
+};
+Derivatives DerivativesAtDistance(double distance, double prior, const PointOptions& options,
+                                  bool for_solver) {
+  const auto [point, cuboid] = AtDistance(distance, prior);
+  LandmarkModel model;
+  PointTerm({point}, cuboid, 1.0, options, 1.0, &for_solver).AddTo(cuboid, &model);
+  // The parameter is the x of the centre, which moves along the normal.
+  return {model.gradient[3], model.information(3, 3)};
+}
+
+// The mean over all points of the object and of what is near it, each as often as its density says,
+// is that of the squares of the derivative, as it is for any density. Steps of the solver take for
+// known which points are of the object, so that theirs is more.
+TEST(PointTermTest, CovariancesHaveTheFisherInformation) {
+  constexpr double kStepM = 2e-3;
+  PointOptions options;
+  options.point_range_fraction = 0.0;
+  for (const double prior : {0.05, 0.3, 0.7}) {
+    double squares = 0.0, information = 0.0, for_steps = 0.0;
+    for (double distance = -2.0; distance < 1.0; distance += kStepM) {
+      const double density = std::exp(-CostAtDistance(distance, prior, 1.0, options));
+      const auto [first, fisher] = DerivativesAtDistance(distance, prior, options, false);
+      squares += density * first * first;
+      information += density * fisher;
+      for_steps += density * DerivativesAtDistance(distance, prior, options, true).information;
+    }
+    EXPECT_NEAR(information, squares, 0.01 * squares);
+    EXPECT_GT(for_steps, 1.2 * squares);
+  }
+}
+
+// Without a background and anything inside, distances are Gaussian.
+TEST(PointTermTest, TheInformationOfASurfaceAloneIsThatOfItsVariance) {
+  PointOptions options;
+  options.point_range_fraction = 0.0;
+  options.point_roughness_fraction = options.point_sigma_fraction;
+  for (const double distance : {-0.05, 0.0, 0.03}) {
+    const auto at = DerivativesAtDistance(distance, 1.0 - 1e-12, options, false);
+    const double expected = 1.0 / (options.point_sigma_fraction * options.point_sigma_fraction);
+    EXPECT_NEAR(at.information, expected, 1e-3 * expected);
+  }
+}
+
 // With outliers that are inside.
 TEST(PointTermTest, ResponsibilitiesAreContinuousAndVanishFarAway) {
   const auto responsibility = [](double distance) {

@@ -15,6 +15,7 @@
 #include "mapping/back_end.h"
 #include "orientation/model_edges.h"
 #include "support/random.h"
+#include "support/simulated_points.h"
 
 namespace soslam::calibration {
 namespace {
@@ -62,12 +63,15 @@ struct Case {
   OptimiseOptions assumed = ModelOptions();
   // What is seen of the body's edges; nothing where it is empty.
   std::function<EdgeImages(const Truth&)> edge_images;
+  // Sparse points; none where it is empty.
+  std::function<PointsOfObject(const Truth&)> points;
+  double ratio_log_sigma = 0.1;
 };
 
 Truth RandomTruth(const Case& c, const OptimiseOptions& options) {
   Truth truth;
   truth.prior.shape_exponent = c.assumed_exponent;
-  truth.prior.log_sigma = {0.1, 0.1};
+  truth.prior.log_sigma = {c.ratio_log_sigma, c.ratio_log_sigma};
   truth.prior.ratio = {RandomUniform(c.ratio_range[0], c.ratio_range[1]),
                        RandomUniform(c.ratio_range[2], c.ratio_range[3])};
   Landmark& landmark = truth.landmark_in_world;
@@ -152,6 +156,7 @@ Nees MeanNees(const Case& c) {
     start.shape_exponent = c.assumed_exponent;
     BackEndInput input{sequence, {start}, {truth.prior}, {}, {}};
     if (c.edge_images) input.edge_images = c.edge_images(truth);
+    if (c.points) input.points = {c.points(truth)};
     const MapEstimate map = OptimiseMap(input, c.assumed);
     const Landmark& found = *map.objects[0].landmark_in_world;
     const auto& covariance = map.objects[0].covariance;
@@ -347,6 +352,60 @@ TEST(EdgeCalibration, CovariancesAreHonestWherePiecesOfEdgesErrIndependently) {
   edges.edge_truncation_px = 20.0 * kSigmaPx;  // no outliers
   edges.edge_direction_tolerance_deg = 90.0;   // no grey values to take directions from
   ExpectHonest(MeanNees(c), c.scenes);
+}
+
+// Covariances of the back end for what points say: nearly half of them are of the object, most
+// others behind it or in front, and some were triangulated to lie inside it. Boxes and ratios are
+// as bad as points are needed for.
+
+struct PointCase {
+  double arc_rad;
+  int points;
+  double range_fraction;  // point_range_fraction
+  bool share_drift;       // whether the errors that grow with the range are the same for all points
+};
+
+Nees MeanNeesWithPoints(const PointCase& with) {
+  Case c;
+  c.arc_rad = with.arc_rad;
+  c.ratio_log_sigma = 0.2;
+  c.actual.detection_sigma_fraction = c.assumed.detection_sigma_fraction = 0.04;
+  const PointOptions& options = c.assumed.points;
+  c.assumed.points.point_range_fraction = with.range_fraction;
+  c.points = [&](const Truth& truth) {
+    PointSimulator simulator(truth.landmark_in_world, truth.world_from_camera, options,
+                             with.share_drift);
+    return simulator.Points(with.points, 0.2, 0.7);
+  };
+  return MeanNees(c);
+}
+
+TEST(SlowPointCalibration, CovariancesAreNearlyHonestWithManyPoints) {
+  for (const double arc_rad : {0.6, 1.2}) {
+    for (const double range_fraction : {0.005, PointOptions().point_range_fraction}) {
+      for (const bool share_drift : {false, true}) {
+        SCOPED_TRACE(testing::Message() << arc_rad << " " << range_fraction << " " << share_drift);
+        const Nees nees = MeanNeesWithPoints({arc_rad, 80, range_fraction, share_drift});
+        for (const double mean : {nees.centre, nees.size}) {
+          EXPECT_GT(mean, 0.85);
+          EXPECT_LT(mean, 1.25);
+        }
+        EXPECT_GT(nees.yaw, 0.8);
+        EXPECT_LT(nees.yaw, 1.7);
+      }
+    }
+  }
+}
+
+// A few points from one side, which weigh as much as many, may all be of something else.
+TEST(SlowPointCalibration, CovariancesAreSomewhatOverconfidentWithFewPoints) {
+  for (const bool share_drift : {false, true}) {
+    const Nees nees = MeanNeesWithPoints({0.6, 20, 0.005, share_drift});
+    EXPECT_GT(nees.size, 1.0);
+    EXPECT_LT(nees.size, 1.5);
+    EXPECT_LT(nees.centre, 1.4);
+    EXPECT_LT(nees.yaw, 2.2);
+  }
 }
 
 }  // namespace

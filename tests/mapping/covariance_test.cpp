@@ -63,7 +63,7 @@ Rows DenseJacobian(const std::vector<double*>& blocks, ceres::Problem* problem) 
 
 TEST_F(MarginalCovariancesTest, AreBlocksOfTheInverseOfTheInformation) {
   problem_.Solve();
-  problem_.DropCurvatureRows();
+  problem_.PrepareCovariances();
   ceres::Problem& problem = problem_.problem();
   BackEndVariables& variables = problem_.variables();
   std::vector<double*> blocks;
