@@ -212,8 +212,9 @@ class ShippedScene : public testing::TestWithParam<const char*> {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Scenes, ShippedScene, testing::Values("room.json", "ellipsoids.json", "laid.json",
-                                                        "leaning.json"));
+INSTANTIATE_TEST_SUITE_P(Scenes, ShippedScene,
+                         testing::Values("room.json", "ellipsoids.json", "laid.json",
+                                         "leaning.json"));
 
 TEST_P(ShippedScene, ShowsEveryObjectOftenEnough) {
   const Scene scene = Read();
