@@ -43,10 +43,10 @@ ShapePrior Prior(const json& entry) {
 SemanticRow Row(const std::string& label, const json& entry, const std::string& where) {
   const ShapePrior prior = Prior(entry);
   if (prior.attitude != Attitude::kStanding && prior.mount != Mount::kStanding) {
-    throw InputError(fmt::format(
-        "{}: attitude is {} and mount {}; expected attitude standing of what hangs or is on a wall",
-        where, kAttitudeNames[static_cast<size_t>(prior.attitude)],
-        kMountNames[static_cast<size_t>(prior.mount)]));
+    throw InputError(
+        fmt::format("{}: attitude is {} and mount {}; expected standing for one of the two", where,
+                    kAttitudeNames[static_cast<size_t>(prior.attitude)],
+                    kMountNames[static_cast<size_t>(prior.mount)]));
   }
   return {label, entry.value("aliases", std::vector<std::string>()), prior,
           entry.value("samples", 0), entry.at("source").get<std::string>()};

@@ -152,11 +152,14 @@ std::optional<FittedObject> FitOnFace(const Sequence& sequence, const std::vecto
 std::optional<FittedObject> FitObject(const Sequence& sequence, const std::vector<int>& detections,
                                       const ShapePrior& prior, const AssociateOptions& options,
                                       const std::variant<Plane, UpEstimate>& support_in_world) {
+  const auto on_faces = OnPossibleFaces(prior);
   std::optional<FittedObject> best;
-  for (const auto& on_face : OnPossibleFaces(prior)) {
+  for (const auto& on_face : on_faces) {
     const auto fit = FitOnFace(sequence, detections, on_face, options, support_in_world);
     if (fit && (!best || fit->cost < best->cost)) best = fit;
   }
+  // All faces are equally probable.
+  if (best) best->cost += std::log(static_cast<double>(on_faces.size()));
   return best;
 }
 

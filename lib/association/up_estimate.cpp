@@ -64,7 +64,7 @@ BoxesOfLabels ObserveLabels(const Sequence& sequence, const Segment& segment,
   BoxesOfLabels boxes;
   for (const auto& [label, detections] : segment.detections) {
     const ShapePrior prior = PriorOfLabel(table, label, options);
-    if (prior.mount == Mount::kOnWall) continue;
+    if (prior.mount == Mount::kOnWall || prior.attitude != Attitude::kStanding) continue;
     boxes.emplace_back();
     for (const int detection : SpreadOver(detections, kBoxesOfLabel)) {
       boxes.back().push_back(MakeMultiViewObservation(

@@ -124,7 +124,8 @@ Landmark ParseLandmark(const Entry& entry) {
 }
 
 bool HasLandmark(const Entry& entry) {
-  return entry.Has("center") || entry.Has("quaternion_xyzw") || entry.Has("half_axes");
+  return entry.Has("center") || entry.Has("quaternion_xyzw") || entry.Has("half_axes") ||
+         entry.Has("rests_on");
 }
 
 RestingFace ParseRestingFace(const Entry& entry) {
@@ -138,6 +139,9 @@ RestingFace ParseRestingFace(const Entry& entry) {
 GroundTruth ParseGroundTruth(const Entry& entry) {
   Landmark landmark = ParseLandmark(entry);
   landmark.rests_on = ParseRestingFace(entry);
+  if (landmark.rests_on != RestingFace::kBottom && entry.Flag("rotationally_symmetric", false)) {
+    entry.Refuse("rotationally_symmetric", "false of what does not rest on its bottom");
+  }
   return {landmark, entry.Flag("mirror_symmetric", true), entry.Flag("mirror_symmetric_yz", false),
           entry.Flag("rotationally_symmetric", false)};
 }

@@ -45,6 +45,9 @@ json ExtrasOf(const WorldObject& object) {
                  {"half_axes", VectorToJson(landmark.half_axes)},
                  {"yaw_deg", YawOf(object) * kDegPerRad},
                  {"shape_exponent", landmark.shape_exponent}};
+  if (landmark.rests_on != RestingFace::kBottom) {
+    extras["rests_on"] = kRestingFaceNames[static_cast<size_t>(landmark.rests_on)];
+  }
   if (object.estimate.covariance) {
     extras["covariance"] = CovarianceToJson(*object.estimate.covariance);
   }

@@ -86,7 +86,8 @@ LandmarkEstimates InitialiseUpright(const Sequence& sequence,
       estimate.failure = WhyNoSolution(observation);
     }
     if (!estimate.hypotheses.empty()) estimate.failure.clear();
-    std::ranges::stable_sort(estimate.hypotheses, {}, &Hypothesis::cost);
+    std::ranges::stable_sort(estimate.hypotheses, {},
+                             [](const Hypothesis& one) { return RankOfCost(one.cost); });
   });
   return estimates;
 }

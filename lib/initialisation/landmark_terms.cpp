@@ -80,10 +80,10 @@ void RatioTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::V
 void HeightTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
                           Jacobian* jacobian) const {
   residuals[0] =
-      std::log(2.0 * landmark_in_camera.half_axes.z() / height_m_.median) / height_m_.log_sigma;
+      std::log(2.0 * landmark_in_camera.half_axes[axis_] / height_m_.median) / height_m_.log_sigma;
   if (jacobian == nullptr) return;
   jacobian->setZero();
-  (*jacobian)(0, 8) = 1.0 / height_m_.log_sigma;
+  (*jacobian)(0, 6 + axis_) = 1.0 / height_m_.log_sigma;
 }
 
 void RobustViewTerm::Evaluate(const Landmark& landmark_in_reference,

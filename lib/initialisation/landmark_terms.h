@@ -85,16 +85,19 @@ class RatioTerm final : public LandmarkTerm {
   RatioRows rows_;
 };
 
-// Residual of the logarithm of the height, 2 c, under the prior's height_m.
+// Residual of the logarithm of the height under the prior's height_m: along the object's own z, 2 c
+// of an object that stands.
 class HeightTerm final : public LandmarkTerm {
  public:
-  explicit HeightTerm(const LogNormal& height_m) : height_m_(height_m) {}
+  explicit HeightTerm(const LogNormal& height_m, RestingFace rests_on = RestingFace::kBottom)
+      : height_m_(height_m), axis_(OwnHeightAxis(rests_on)) {}
   int NumResiduals() const override { return 1; }
   void Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
                 Jacobian* jacobian) const override;
 
  private:
   LogNormal height_m_;
+  Eigen::Index axis_;
 };
 
 // Term in one camera for a landmark in another frame; each residual has a Huber loss (none if delta

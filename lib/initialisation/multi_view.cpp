@@ -115,7 +115,8 @@ LandmarkCosts PriorTerms(const MultiViewObservation& observation) {
   const Plane& plane = observation.plane_in_world;
   if (HasRatio(observation)) terms.push_back(std::make_unique<RatioTerm>(*observation.prior));
   if (HasSize(observation)) {
-    terms.push_back(std::make_unique<HeightTerm>(*observation.prior->height_m));
+    terms.push_back(
+        std::make_unique<HeightTerm>(*observation.prior->height_m, observation.RestsOn()));
   }
   if (observation.scene_axis_in_world) {
     terms.push_back(std::make_unique<AxisTerm>(plane, *observation.scene_axis_in_world,
@@ -262,9 +263,10 @@ class LinearViews {
   template <int kUnknowns>
   void AddSize(const Body& body, LinearSystem<kUnknowns>* system) const {
     const LogNormal& height_m = *observation_.prior->height_m;
-    const double before = body.half_axes.z();
+    const Eigen::Index axis = OwnHeightAxis(observation_.RestsOn());
+    const double before = body.half_axes[axis];
     typename LinearSystem<kUnknowns>::Row row = LinearSystem<kUnknowns>::Row::Zero();
-    row(4) = 1.0 / (height_m.log_sigma * before);
+    row(2 + axis) = 1.0 / (height_m.log_sigma * before);
     system->Add(row, (std::log(2.0 * before / height_m.median) - 1.0) / height_m.log_sigma, 1.0);
   }
 
@@ -277,7 +279,8 @@ class LinearViews {
                   ->Value(landmark);
     }
     if (ratio_) cost += RatioTerm(*observation_.prior).Value(landmark);
-    if (HasSize(observation_)) cost += HeightTerm(*observation_.prior->height_m).Value(landmark);
+    if (HasSize(observation_))
+      cost += HeightTerm(*observation_.prior->height_m, observation_.RestsOn()).Value(landmark);
     return cost;
   }
 

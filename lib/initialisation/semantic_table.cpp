@@ -31,7 +31,9 @@ std::optional<ShapePrior> ObjectPrior(const Object& object, const SemanticTable&
     return shape;
   }
   if (!object.ground_truth) return std::nullopt;
-  const Eigen::Vector3d half_axes = InOwnAxes(object.ground_truth->landmark_in_world).half_axes;
+  const Landmark& truth = object.ground_truth->landmark_in_world;
+  const Eigen::Vector3d half_axes =
+      shape.attitude == Attitude::kStanding ? truth.half_axes : InOwnAxes(truth).half_axes;
   shape.ratio = half_axes.head<2>() / half_axes.z();
   shape.log_sigma.setConstant(kTrueRatioLogSigma);
   shape.log_correlation = 0.0;
@@ -53,11 +55,6 @@ ShapePrior OnFace(const ShapePrior& standing, RestingFace face) {
   turned.ratio = (turn * standing.ratio.array().log().matrix()).array().exp();
   turned.log_sigma = covariance.diagonal().cwiseSqrt();
   turned.log_correlation = covariance(0, 1) / turned.log_sigma.prod();
-  if (standing.height_m) {
-    const Eigen::Index up = face == RestingFace::kBack ? 0 : 1;  // own axis
-    turned.height_m = {standing.height_m->median * standing.ratio[up],
-                       std::hypot(standing.height_m->log_sigma, standing.log_sigma[up])};
-  }
   return turned;
 }
 
@@ -69,9 +66,13 @@ std::vector<std::optional<ShapePrior>> OnPossibleFaces(const std::optional<Shape
 }
 
 ShapePrior TurnedToSupport(const ShapePrior& prior) {
-  ShapePrior turned =
-      OnFace(prior, prior.mount == Mount::kOnWall ? RestingFace::kBack : RestingFace::kBottom);
+  if (prior.mount != Mount::kOnWall) return prior;
+  ShapePrior turned = OnFace(prior, RestingFace::kBack);
   turned.rests_on = RestingFace::kBottom;  // the side of its mount is where it stands
+  if (prior.height_m) {
+    turned.height_m = {prior.height_m->median * prior.ratio.x(),
+                       std::hypot(prior.height_m->log_sigma, prior.log_sigma.x())};
+  }
   return turned;
 }
 
@@ -105,7 +106,6 @@ ShapePrior MomentsOfMixture(const std::vector<WeightedPrior>& priors) {
   for (const auto& [weight, prior] : priors) {
     mean += weight * prior.ratio.array().log().matrix();
     mixture.shape_exponent += weight * prior.shape_exponent;
-    mixture.attitude = std::max(mixture.attitude, prior.attitude);
     for (size_t i = 0; i < mixture.edge_bias.size(); ++i) {
       mixture.edge_bias[i] += weight * prior.edge_bias[i];
     }

@@ -44,7 +44,7 @@ struct ShapePrior {
   Eigen::Vector2d log_sigma = Eigen::Vector2d::Ones();  // standard deviations of their logarithms
   double shape_exponent = kEllipsoidExponent;
   double log_correlation = 0.0;            // of the logarithms of the two ratios, in (-1, 1)
-  std::optional<LogNormal> height_m = {};  // 2 c; none if the size is unknown
+  std::optional<LogNormal> height_m = {};  // along its own z axis; none if the size is unknown
   Mount mount = Mount::kStanding;
   EdgeBias edge_bias = {};  // of detected boxes, for this shape
   Attitude attitude = Attitude::kStanding;
@@ -57,14 +57,15 @@ struct ShapePrior {
 // heights, so the variance of the logarithm of a depth is the sum of those of height and ratio.
 ShapePrior TurnedToSupport(const ShapePrior& prior);
 
-// The same for an object that rests on a face, from the prior of one that stands.
+// The same for an object that rests on a face, from the prior of one that stands; height_m stays
+// that of its own z axis.
 ShapePrior OnFace(const ShapePrior& standing, RestingFace face);
 
 // OnFace for each face that the prior's attitude allows; none for no prior.
 std::vector<std::optional<ShapePrior>> OnPossibleFaces(const std::optional<ShapePrior>& standing);
 
 // Log-normal prior with the moments of a mixture of priors of one mount; the height is that of the
-// priors that have one, the attitude the freest. Their weights have the sum 1.
+// priors that have one, the attitude that of the first. Their weights have the sum 1.
 struct WeightedPrior {
   double weight;
   ShapePrior prior;
@@ -129,9 +130,8 @@ inline constexpr std::array kShapeSourceNames = {"table", "cuboid", "ellipsoid"}
 inline constexpr double kTrueRatioLogSigma = 0.02;
 
 // Prior of each object of the sequence, in the object frame of one that stands; none if there is no
-// ratio. kUnit
-// replaces the ratio of the table's prior, kGroundTruth also its log_sigma and log_correlation; if
-// the table has no prior, those of a default ShapePrior.
+// ratio. kUnit replaces the ratio of the table's prior, kGroundTruth also its log_sigma and
+// log_correlation; if the table has no prior, those of a default ShapePrior.
 std::vector<std::optional<ShapePrior>> ObjectPriors(const Sequence& sequence,
                                                     const SemanticTable& table, RatioPrior prior,
                                                     ShapeSource shape = ShapeSource::kTable);

@@ -74,7 +74,9 @@ std::optional<YawPrior> MotionPrior(const Sequence& sequence, const Detection& d
     return AlongDirection(sequence, detection, *motion,
                           std::atan2(options.yaw_prior.motion_foot_sigma_m, motion->norm()));
   }
-  if (around.size() < kMinPriorViews) return std::nullopt;
+  if (around.size() < kMinPriorViews || (shape && shape->attitude != Attitude::kStanding)) {
+    return std::nullopt;
+  }
   const MultiViewObservation views =
       MakeMultiViewObservation(sequence, around, shape, options.upright.detection_sigma_fraction,
                                options.view_correlation_deg * kRadPerDeg);

@@ -109,17 +109,15 @@ class Fitter {
 
   // The upright landmark tilted to where its cost is lowest.
   UprightSolution Lean(const UprightSolution& upright) const {
-    UprightSolution at = upright;
+    Landmark at = upright.landmark;
     for (int round = 0; round < objective_.rounds; ++round) {
-      LandmarkCosts costs = ObservationTerms(observation_, at.landmark);
-      std::ranges::move(FurtherCosts(at.landmark), std::back_inserter(costs));
-      costs.push_back(std::make_unique<LeaningTerm>(observation_.plane_in_camera));
-      const auto tilted = FitLeaning(observation_.plane_in_camera, at.landmark, costs);
+      const auto tilted = FitLeaning(observation_.plane_in_camera, at, LeaningCosts(at));
       if (!tilted || !IsInFront(tilted->landmark)) return upright;
-      at = *tilted;
+      at = tilted->landmark;
     }
-    if (objective_.extra_cost) at.cost += objective_.extra_cost(at.landmark);
-    return at.cost < upright.cost ? at : upright;
+    double cost = TotalCost(LeaningCosts(at), at);
+    if (objective_.extra_cost) cost += objective_.extra_cost(at);
+    return cost < upright.cost ? UprightSolution{at, cost} : upright;
   }
 
   Landmark LandmarkAt(const UprightVector& parameters) const {
@@ -130,6 +128,13 @@ class Fitter {
  private:
   LandmarkCosts FurtherCosts(const Landmark& start) const {
     return objective_.further_costs ? objective_.further_costs(start) : LandmarkCosts();
+  }
+
+  LandmarkCosts LeaningCosts(const Landmark& start) const {
+    LandmarkCosts costs = ObservationTerms(observation_, start);
+    std::ranges::move(FurtherCosts(start), std::back_inserter(costs));
+    costs.push_back(std::make_unique<LeaningTerm>(observation_.plane_in_camera));
+    return costs;
   }
 
   const UprightObservation& observation_;
@@ -247,7 +252,7 @@ std::vector<UprightSolution> LocalOptima(const UprightObservation& observation,
   // An object with a = b has two yaws of the same cost: they are sorted by yaw, not by rounding
   // errors of the costs.
   const auto rank = [&](const UprightFit& fit) {
-    return std::pair(static_cast<float>(1.0 + fit.cost), yaw_of(fit));
+    return std::pair(RankOfCost(fit.cost), yaw_of(fit));
   };
   std::sort(optima.begin(), optima.end(),
             [&](const auto& one, const auto& other) { return rank(one) < rank(other); });
@@ -259,8 +264,7 @@ std::vector<UprightSolution> LocalOptima(const UprightObservation& observation,
       solutions.back() = fitter.Lean(solutions.back());
     }
   }
-  std::ranges::stable_sort(solutions, {},
-                           [](const auto& one) { return static_cast<float>(1.0 + one.cost); });
+  std::ranges::stable_sort(solutions, {}, [](const auto& one) { return RankOfCost(one.cost); });
   return solutions;
 }
 

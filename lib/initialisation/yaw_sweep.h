@@ -50,14 +50,18 @@ struct YawSweep {
 YawSweep SweepYaw(const UprightObservation& observation, const YawObjective& objective,
                   double step);
 
+// Rank of a cost: those that are equal in single precision are not told apart, as their order would
+// be that of rounding errors.
+inline float RankOfCost(double cost) { return static_cast<float>(1.0 + cost); }
+
 // Indices of the local minima of a circular curve, lowest first; for a flat minimum its first
 // index. NaN counts as infinite.
 std::vector<size_t> CircularMinima(const std::vector<double>& values);
 
-// The best local optima of the sweep, with refined yaw, each then tilted (FitLeaning) if the
-// prior's attitude is free, lowest cost first (if 1 + cost is equal in
-// single precision, the lower yaw first), at most `max_count`. The max(max_count, 6) lowest minima
-// of the grid are refined; optima that coincide are returned once.
+// The best local optima of the sweep, with refined yaw, lowest RankOfCost first (if equal, the
+// lower yaw), at most `max_count`. The max(max_count, 6) lowest minima of the grid are
+// refined; optima that coincide are returned once. If the prior's attitude is free, they are then
+// tilted (FitLeaning).
 std::vector<UprightSolution> LocalOptima(const UprightObservation& observation,
                                          const YawObjective& objective, const YawSweep& sweep,
                                          size_t max_count);

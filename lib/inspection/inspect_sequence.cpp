@@ -228,6 +228,7 @@ std::vector<Value> RowOf(const SemanticRow& row) {
           has_height ? Value(prior.height_m->log_sigma) : Value(),
           prior.shape_exponent,
           kMountNames[static_cast<size_t>(prior.mount)],
+          kAttitudeNames[static_cast<size_t>(prior.attitude)],
           row.samples,
           row.aliases.empty() ? Value() : Value(fmt::format("{}", fmt::join(row.aliases, ", "))),
           row.source};
@@ -254,6 +255,7 @@ Inspection InspectSemanticTable(const std::filesystem::path& file) {
                               {"height_log_sigma"},
                               {"p"},
                               {"mount"},
+                              {"attitude"},
                               {"samples"},
                               {"aliases"},
                               {"source"}};

@@ -115,7 +115,8 @@ struct OptimiseOptions {
         "cost (negative logarithm of a likelihood) of a yaw half-way between the axes of the "
         "scene, along which its straight edges lie; 0 if objects are not aligned with them");
     visit.Real("standing_angle_sigma_deg", &standing_angle_sigma_deg, {1e-6, 90.0},
-               "standard deviation of the tilt of a body on its support plane");
+               "standard deviation of the tilt of a body on its support plane; not of those that "
+               "may lean");
     visit.Real("standing_height_sigma_m", &standing_height_sigma_m, {1e-6, 1e3},
                "standard deviation of the height of a body's foot over its support plane");
     visit.Flag("refine_planes", &refine_planes,

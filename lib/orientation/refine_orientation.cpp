@@ -132,7 +132,8 @@ RefinedObservation RefineOnFace(const Sequence& sequence, int detection_index,
   RecordCurves(sweep, texture_costs, options, &result.record);
   profile.RecordPairs(best, &result.record);
   result.record.refined_yaw = Yaw(normal, best.frame_from_object.rotation);
-  if (options.texture_symmetry) {
+  // The mirror plane of an object on its side is horizontal.
+  if (options.texture_symmetry && prior.rests_on != RestingFace::kSide) {
     result.record.mirror_planes = MirrorPlanes(sweep.yaw, result.record.cost.at("texture_symmetry"),
                                                result.record.refined_yaw, options.texture);
   }
@@ -140,16 +141,18 @@ RefinedObservation RefineOnFace(const Sequence& sequence, int detection_index,
   return result;
 }
 
-// Joins the hypotheses of two faces; the record is that of the better one.
-RefinedObservation Better(RefinedObservation one, RefinedObservation other) {
-  const auto cost = [](const RefinedObservation& observation) {
+// Joins the hypotheses of two faces; the record is that of the better one, if equal of the first.
+RefinedObservation Joined(RefinedObservation one, RefinedObservation other) {
+  const auto rank = [](const RefinedObservation& observation) {
     const std::vector<Hypothesis>& hypotheses = observation.estimate.hypotheses;
-    return hypotheses.empty() ? std::numeric_limits<double>::infinity() : hypotheses.front().cost;
+    return hypotheses.empty() ? std::numeric_limits<float>::infinity()
+                              : RankOfCost(hypotheses.front().cost);
   };
-  if (cost(other) < cost(one)) std::swap(one, other);
+  if (rank(other) < rank(one)) std::swap(one, other);
   std::vector<Hypothesis>& hypotheses = one.estimate.hypotheses;
   std::ranges::copy(other.estimate.hypotheses, std::back_inserter(hypotheses));
-  std::ranges::stable_sort(hypotheses, {}, &Hypothesis::cost);
+  std::ranges::stable_sort(hypotheses, {},
+                           [](const Hypothesis& one) { return RankOfCost(one.cost); });
   hypotheses.resize(std::min(hypotheses.size(), kMaxHypotheses));
   return one;
 }
@@ -162,15 +165,15 @@ RefinedObservation RefineOrientation(const Sequence& sequence, int detection_ind
                                      const ProfileOptions& options,
                                      const SymmetryOptions& symmetry_options) {
   const Detection& detection = sequence.detections[detection_index];
-  RefinedObservation result;
-  result.estimate.failure = "no_ratio_for_label";
-  if (prior) {
-    for (const auto& on_face : OnPossibleFaces(prior)) {
-      result = Better(
-          RefineOnFace(sequence, detection_index, edges, *on_face, options, symmetry_options),
-          std::move(result));
-    }
+  std::optional<RefinedObservation> joined;
+  for (const auto& on_face : OnPossibleFaces(prior)) {
+    if (!on_face) continue;
+    RefinedObservation refined =
+        RefineOnFace(sequence, detection_index, edges, *on_face, options, symmetry_options);
+    joined = joined ? Joined(std::move(*joined), std::move(refined)) : std::move(refined);
   }
+  RefinedObservation result = joined.value_or(RefinedObservation());
+  if (!joined) result.estimate.failure = "no_ratio_for_label";
   result.estimate.detection_index = detection_index;
   result.record.frame_id = sequence.frames[detection.frame_index].id;
   result.record.object_id = sequence.objects[detection.object_index].id;

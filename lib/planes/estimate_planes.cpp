@@ -30,12 +30,13 @@ constexpr double kMaxTilt = 8.0 * kRadPerDeg;
 constexpr double kMaxHeightSigmaBySize = 1.0;
 
 // Expected cost of an object's boxes if they contain only their noise: half the degrees of freedom,
-// that is residuals of edges and two ratios minus the parameters of a body.
+// that is residuals of edges and, if used, two ratios minus the parameters of a body.
 double ExpectedCost(const MultiViewObservation& observation) {
-  constexpr double kParameters = 7.0, kRatios = 2.0;
+  constexpr double kParameters = 7.0;
+  const double ratios = observation.ratio_is_free ? 0.0 : 2.0;
   double edges = 0.0;
   for (const BoxView& view : observation.views) edges += 4.0 * view.weight;
-  return 0.5 * std::max(1.0, edges + kRatios - kParameters);
+  return 0.5 * std::max(1.0, edges + ratios - kParameters);
 }
 
 // Estimates the planes of all objects with one mount. The z axes of their bodies point up as in
@@ -86,7 +87,7 @@ class Estimator {
  private:
   std::optional<MultiViewObservation> Observe(const std::vector<int>& detections,
                                               const std::optional<ShapePrior>& prior) const {
-    if (detections.empty()) return std::nullopt;
+    if (detections.empty() || (prior && prior->attitude == Attitude::kFree)) return std::nullopt;
     MultiViewObservation observation = MakeMultiViewObservation(
         sequence_, detections, prior, options_.detection_sigma_fraction,
         options_.view_correlation_deg * kRadPerDeg, /*height_is_free=*/true);

@@ -92,8 +92,8 @@ struct Result {
 };
 
 // Joint optimisation of poses, landmarks and planes, as odometry also drifts along the plane's
-// normal.
-MapEstimate Adjusted(const Sequence& sequence, const std::vector<std::optional<ShapePrior>>& priors,
+// normal. Objects that may lie have no ratio, and those that may lean are left out.
+MapEstimate Adjusted(const Sequence& sequence, std::vector<std::optional<ShapePrior>> priors,
                      const PlanesOptions& options, int threads) {
   OptimiseOptions optimise;
   optimise.detection_model = DetectionModel::kTangency;
@@ -106,8 +106,16 @@ MapEstimate Adjusted(const Sequence& sequence, const std::vector<std::optional<S
   }
   optimise.axes_weight = 0.0;  // the planes of the scene's axes are not known yet
   optimise.misfit_sigma_fraction = 0.0;
+  std::vector<bool> may_lean;
+  for (auto& prior : priors) {
+    may_lean.push_back(prior && prior->attitude == Attitude::kFree);
+    if (prior && prior->attitude != Attitude::kStanding) prior.reset();
+  }
   BackEndInput input{sequence, {}, priors, {}, {}};
   input.initial_landmarks = ChooseInitialUprightLandmarks(input, {}, optimise, threads);
+  for (size_t i = 0; i < may_lean.size(); ++i) {
+    if (may_lean[i]) input.initial_landmarks[i].reset();
+  }
   return OptimiseMap(input, optimise, threads);
 }
 

@@ -152,7 +152,7 @@ TEST_F(ImportTest, LabelsThatFlickerAreThoseOfMostBoxes) {
 TEST_F(ImportTest, UndetectedObjectsStayAndObjectsAreSortedById) {
   dataset.files["objects.json"] =
       R"([{"id": 9, "label": "lamp", "center": [1, 2, 3], "quaternion_xyzw": [0, 0, 0, 1],
-           "half_axes": [1, 1, 1], "rests_on": "side", "rotationally_symmetric": true},
+           "half_axes": [1, 1, 1], "rotationally_symmetric": true},
           {"id": 1, "label": "cup"}])";
   const Sequence sequence = Import();
   ASSERT_EQ(sequence.objects.size(), 3u);
@@ -161,7 +161,16 @@ TEST_F(ImportTest, UndetectedObjectsStayAndObjectsAreSortedById) {
   EXPECT_EQ(sequence.objects[1].id, 2);
   EXPECT_EQ(sequence.objects[2].id, 9);
   EXPECT_TRUE(sequence.objects[2].ground_truth->rotationally_symmetric);
-  EXPECT_EQ(sequence.objects[2].ground_truth->landmark_in_world.rests_on, RestingFace::kSide);
+}
+
+TEST_F(ImportTest, ObjectsMayRestOnOtherFaces) {
+  dataset.files["objects.json"] =
+      R"([{"id": 9, "label": "lamp", "center": [1, 2, 3], "quaternion_xyzw": [0, 0, 0, 1],
+           "half_axes": [1, 1, 1], "rests_on": "side", "rotationally_symmetric": false}])";
+  EXPECT_EQ(Import().objects.back().ground_truth->landmark_in_world.rests_on, RestingFace::kSide);
+  dataset.Replace("objects.json", "false", "true");
+  ExpectError<InputError>(
+      [&] { Import(); }, {"objects.json", "rotationally_symmetric", "does not rest on its bottom"});
   dataset.Replace("objects.json", "\"side\"", "\"left\"");
   ExpectError<InputError>([&] { Import(); },
                           {"objects.json", "rests_on", "left", "bottom, back or side"});

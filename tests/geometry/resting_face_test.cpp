@@ -17,6 +17,7 @@ TEST(RestingFace, FramesAreRotationsWithTheirAxisUp) {
     EXPECT_EQ(own_from_object * own_from_object.transpose(), Eigen::Matrix3d::Identity());
     EXPECT_EQ(own_from_object.determinant(), 1.0);
     EXPECT_EQ(own_from_object.col(2), up[static_cast<size_t>(face)]);
+    EXPECT_EQ(std::abs(own_from_object(2, OwnHeightAxis(face))), 1.0);
   }
 }
 

@@ -108,7 +108,9 @@ TEST(RatioTerm, JacobianAgreesWithNumbers) {
 TEST(HeightTerm, JacobianAgreesWithNumbers) {
   for (int i = 0; i < 20; ++i) {
     const LogNormal height_m{RandomUniform(0.1, 2.0), RandomUniform(0.05, 0.5)};
-    ExpectCorrectTermJacobian(HeightTerm(height_m), RandomLandmarkInCamera());
+    for (const RestingFace face : kRestingFaces) {
+      ExpectCorrectTermJacobian(HeightTerm(height_m, face), RandomLandmarkInCamera());
+    }
   }
 }
 

@@ -93,9 +93,10 @@ TEST(OnPossibleFaces, AreThoseOfTheAttitude) {
     prior.attitude = attitude;
     const auto laid = OnPossibleFaces(prior);
     ASSERT_EQ(laid.size(), 3u);
-    EXPECT_NEAR(laid[0]->height_m->median, 0.4, 1e-12);
-    EXPECT_NEAR(laid[1]->height_m->median, 0.2, 1e-12);  // its depth
-    EXPECT_NEAR(laid[2]->height_m->median, 0.3, 1e-12);  // its width
+    for (size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(laid[i]->rests_on, kRestingFaces[i]);
+      EXPECT_EQ(laid[i]->height_m->median, 0.4);
+    }
   }
 }
 

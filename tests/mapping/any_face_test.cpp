@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
+#include <utility>
 #include <vector>
 
+#include "association/fit_object.h"
 #include "evaluation/landmark_errors.h"
 #include "evaluation/statistics.h"
 #include "geometry/angles.h"
@@ -134,6 +137,25 @@ TEST(AnyFace, SameShapesHoweverTheyAreLaid) {
   }
 }
 
+TEST(AnyFace, SeveralViewsAloneTellTheFace) {
+  for (int i = 0; i < 6; ++i) {
+    const Eigen::Vector3d half_axes = RandomHalfAxes();
+    const RestingFace face = kRestingFaces[static_cast<size_t>(i) % 3];
+    const Landmark truth = LandmarkOf({half_axes, face, RandomUniform(-3.0, 3.0)});
+    const Sequence sequence = Observe(truth, Views());
+    ShapePrior prior = PriorOf(half_axes, 0.1, Attitude::kAnyFace);
+    prior.height_m = LogNormal{2.0 * half_axes.z(), 0.1};
+    const auto of_views = InitialiseMultiView(sequence, {prior}, InitialiseOptions(), 1);
+    EXPECT_EQ(of_views.objects[0].landmark_in_world.value().rests_on, face);
+    std::vector<int> all(sequence.detections.size());
+    std::iota(all.begin(), all.end(), 0);
+    const auto fitted = FitObject(sequence, all, prior, AssociateOptions(), Plane());
+    ASSERT_TRUE(fitted);
+    EXPECT_EQ(fitted->landmark_in_world.rests_on, face);
+    EXPECT_LT(AttitudeError(fitted->landmark_in_world, truth), 1.0 * kRadPerDeg);
+  }
+}
+
 TEST(AnyFace, LeaningBodiesAreFound) {
   for (int i = 0; i < 10; ++i) {
     const Eigen::Vector3d half_axes = RandomHalfAxes();
@@ -182,9 +204,12 @@ FaceScore ScoreOf(int scenes, double log_sigma) {
 }
 
 TEST(SlowAnyFace, FacesOfManyScenes) {
-  const FaceScore score = ScoreOf(500, 0.1);
-  EXPECT_GE(score.right, 0.95);
-  EXPECT_LT(score.loss_of_iou, 0.02);
+  const std::pair<double, double> least_by_spread[] = {{0.05, 0.99}, {0.1, 0.95}, {0.15, 0.9}};
+  for (const auto& [log_sigma, least] : least_by_spread) {
+    const FaceScore score = ScoreOf(500, log_sigma);
+    EXPECT_GE(score.right, least);
+    EXPECT_LT(score.loss_of_iou, 0.02);
+  }
 }
 
 }  // namespace
