@@ -169,8 +169,8 @@ TEST(AnyFace, LeaningBodiesAreFound) {
   }
 }
 
-// Of scenes with noisy boxes and objects that differ from their label's ratio: the share with the
-// right face, and by how much IoU is lower than that of the same objects standing.
+// Share of scenes with the right face, and by how much IoU is lower than that of the same objects
+// standing. Boxes are noisy, and objects differ from their label's ratio.
 struct FaceScore {
   double right = 0.0;
   double loss_of_iou = 0.0;
