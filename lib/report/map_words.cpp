@@ -111,10 +111,9 @@ bool HasTallObject(const Sequence& sequence, const MapEstimate& map, int plane) 
   });
 }
 
-}  // namespace
-
-std::string SupportInWords(const ObjectEstimate& estimate, const Sequence& sequence,
-                           const MapEstimate& map, const ScaleOfMap& scale) {
+// The plane of an object, and its height.
+std::string PlaneInWords(const ObjectEstimate& estimate, const Sequence& sequence,
+                         const MapEstimate& map, const ScaleOfMap& scale) {
   const int own = sequence.objects[estimate.object_index].plane_index;
   if (own == kNoPlane) return "support unknown";
   // Recordings of vehicles have a plane for each object, all of one ground.
@@ -141,6 +140,18 @@ std::string SupportInWords(const ObjectEstimate& estimate, const Sequence& seque
   if (scale.in_metres) height = std::round(100.0 * height) / 100.0;
   return fmt::format("on plane {}, {} above {}", sequence.planes[own].id,
                      LengthInWords(height, scale.in_metres), name);
+}
+
+}  // namespace
+
+std::string SupportInWords(const ObjectEstimate& estimate, const Sequence& sequence,
+                           const MapEstimate& map, const ScaleOfMap& scale) {
+  const RestingFace face = estimate.landmark_in_world->rests_on;
+  const std::string lies =
+      face == RestingFace::kBottom
+          ? ""
+          : fmt::format("on its {}, ", kRestingFaceNames[static_cast<size_t>(face)]);
+  return lies + PlaneInWords(estimate, sequence, map, scale);
 }
 
 }  // namespace soslam

@@ -85,8 +85,8 @@ std::string LabelsInWords(const Object& object);
 // Least cosine of the angle between up and the normal of a plane that is no wall.
 inline constexpr double kLevel = 0.7;
 
-// "on the floor", "on plane 2, 72 cm above the floor", ... The lowest plane is called the floor if
-// one of its objects is too tall for a table and up is not in doubt.
+// "on the floor", "on its side, on plane 2, 72 cm above the floor", ... The lowest plane is called
+// the floor if one of its objects is too tall for a table and up is not in doubt.
 std::string SupportInWords(const ObjectEstimate& estimate, const Sequence& sequence,
                            const MapEstimate& map, const ScaleOfMap& scale);
 

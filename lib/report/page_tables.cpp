@@ -81,8 +81,9 @@ void AddColumn(const PageColumn& column, const std::vector<json>& variants, Tabl
   }
 }
 
-// Empty where there is nothing that any of the variants could be measured against.
+// Empty where there is nothing that any of the variants could be measured against, or no variant.
 std::string MetricsTable(const std::vector<json>& variants, bool has_true_objects) {
+  if (variants.empty()) return "";
   Table table;
   table.name = "metrics";
   table.header = {"variant"};

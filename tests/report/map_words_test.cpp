@@ -165,6 +165,11 @@ TEST_F(SupportInWordsTest, IsThePlaneAndItsHeight) {
   EXPECT_EQ(Words(1), "on the support plane");  // there is no other level one
 }
 
+TEST_F(SupportInWordsTest, SaysThatAnObjectLies) {
+  map_.objects[1].landmark_in_world->rests_on = RestingFace::kSide;
+  EXPECT_EQ(Words(1), "on its side, on plane 7, 72 cm above the lowest plane");
+}
+
 TEST_F(SupportInWordsTest, IsTheGroundWhereEachObjectHasAPlane) {
   while (sequence_.planes.size() < 9) sequence_.planes.push_back(sequence_.planes.back());
   EXPECT_EQ(Words(1), "on the ground");
