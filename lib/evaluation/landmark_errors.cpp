@@ -127,9 +127,7 @@ Landmark WithPlaceOf(const Landmark& truth, const Landmark& estimate) {
 Landmark Upright(const Landmark& truth, const Landmark& estimate) {
   Landmark corrected = estimate;
   corrected.frame_from_object.rotation =
-      (Eigen::Quaterniond::FromTwoVectors(Up(estimate), Up(truth)) *
-       estimate.frame_from_object.rotation)
-          .normalized();
+      (RotationBetween(Up(estimate), Up(truth)) * estimate.frame_from_object.rotation).normalized();
   return WithFootAt(corrected, Foot(estimate));
 }
 

@@ -63,8 +63,7 @@ json ExtrasOf(const WorldObject& object) {
 class GltfBuilder {
  public:
   GltfBuilder(const World& world, const LabelColours& colours) : colours_(colours) {
-    const auto root_rotation =
-        Eigen::Quaterniond::FromTwoVectors(UpOf(world), Eigen::Vector3d::UnitY());
+    const auto root_rotation = RotationBetween(UpOf(world), Eigen::Vector3d::UnitY());
     document_ = {{"asset", {{"version", "2.0"}, {"generator", "soslam " SOSLAM_VERSION}}},
                  {"scene", 0},
                  {"scenes", json::array({{{"nodes", json::array({0})}}})}};

@@ -24,4 +24,8 @@ Eigen::Vector3d LogRotation(const Eigen::Quaterniond& rotation) {
   return sign * scale * rotation.vec();
 }
 
+Eigen::Quaterniond RotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  return Eigen::Quaterniond::FromTwoVectors(from, to);
+}
+
 }  // namespace soslam

@@ -42,4 +42,7 @@ inline Eigen::Matrix3d Skew(const Eigen::Vector3d& v) {
 Eigen::Quaterniond ExpRotation(const Eigen::Vector3d& rotation_vector);
 Eigen::Vector3d LogRotation(const Eigen::Quaterniond& rotation);
 
+// The smallest rotation that turns the direction `from` into that of `to`.
+Eigen::Quaterniond RotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+
 }  // namespace soslam

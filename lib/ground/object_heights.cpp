@@ -61,7 +61,9 @@ bool IsOverSurface(const PlaneOfPoints& plane, const Eigen::Vector3d& up,
   if (count < kLeastAround) return false;
   const Eigen::Matrix2d spread = squares / count - sum * sum.transpose() / (count * count);
   const double least = kLeastWidth * reach;
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(spread).eigenvalues()(0) > least * least;
+  // Positive definite where the spread is more than the least one in all directions.
+  const Eigen::Matrix2d excess = spread - least * least * Eigen::Matrix2d::Identity();
+  return excess(0, 0) > 0.0 && excess.determinant() > 0.0;
 }
 
 class Measurement {

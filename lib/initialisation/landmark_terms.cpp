@@ -108,8 +108,7 @@ void RobustViewTerm::Evaluate(const Landmark& landmark_in_reference,
 AxisTerm::AxisTerm(const Plane& plane_in_camera, const Eigen::Vector3d& axis_in_camera,
                    double weight)
     : normal_(plane_in_camera.normal),
-      axis_yaw_(Yaw(normal_,
-                    Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), axis_in_camera))),
+      axis_yaw_(Yaw(normal_, RotationBetween(Eigen::Vector3d::UnitX(), axis_in_camera))),
       amplitude_(std::sqrt(2.0 * weight)) {}
 
 void AxisTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,

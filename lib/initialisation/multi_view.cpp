@@ -17,17 +17,17 @@ namespace {
 
 constexpr int kMaxRounds = 20;
 constexpr double kSettled = 1e-6;  // relative change of the half axes
-// Smallest eigenvalue of the normal matrix, relative to the largest, of a determined direction.
-constexpr double kMinInformationShare = 1e-9;
-// Smallest reciprocal condition number of systems that are solved. Below it, rounding errors
-// dominate the solution.
-constexpr double kMinConditionReciprocal = 1e-13;
+// Smallest reciprocal condition number of the first round's system: below it, the boxes do not
+// determine the body.
+constexpr double kMinConditionReciprocal = 1e-9;
+// The same of later rounds, which reweight, drop and add edges: below it, rounding errors dominate
+// the solution.
+constexpr double kMinLaterConditionReciprocal = 1e-13;
 
-// Normal equations in foot x, foot y, a, b, c and, if it is free, the foot's height above the
-// plane.
-template <int kUnknowns>
+// Normal equations in foot x, foot y, a, b, c and the foot's height above the plane.
 struct LinearSystem {
-  using Row = Eigen::Matrix<double, kUnknowns, 1>;
+  using Row = Eigen::Matrix<double, 6, 1>;
+  using Matrix = Eigen::Matrix<double, 6, 6>;
 
   // Adds the cost weight (row . unknowns + constant)^2.
   void Add(const Row& row, double constant, double weight) {
@@ -36,24 +36,19 @@ struct LinearSystem {
     right_side -= constant * weighted;
   }
 
-  bool KnowsAllDirections() const {
-    const Eigen::SelfAdjointEigenSolver<decltype(normal_matrix)> eigen(normal_matrix,
-                                                                       Eigen::EigenvaluesOnly);
-    const Row& information = eigen.eigenvalues();  // ascending, 1 / m^2
-    return information(0) > kMinInformationShare * information(kUnknowns - 1);
-  }
+  // A height of zero, without effect on the condition of the other unknowns.
+  void FixHeight() { normal_matrix(5, 5) = normal_matrix(4, 4); }
 
-  std::optional<Row> Solve() const {
-    const Eigen::LLT<decltype(normal_matrix)> factor(normal_matrix);
-    if (factor.info() != Eigen::Success || !(factor.rcond() > kMinConditionReciprocal)) {
+  std::optional<Row> Solve(double min_condition_reciprocal) const {
+    const Eigen::LLT<Matrix> factor(normal_matrix);
+    if (factor.info() != Eigen::Success || !(factor.rcond() > min_condition_reciprocal)) {
       return std::nullopt;
     }
     const Row unknowns = factor.solve(right_side);
     return unknowns.allFinite() ? std::optional(unknowns) : std::nullopt;
   }
 
-  Eigen::Matrix<double, kUnknowns, kUnknowns> normal_matrix =
-      Eigen::Matrix<double, kUnknowns, kUnknowns>::Zero();
+  Matrix normal_matrix = Matrix::Zero();
   Row right_side = Row::Zero();
 };
 
@@ -72,41 +67,31 @@ double HeightAtUnitDepth(const BoxView& view) {
 
 // Adds a weak equation of each view's depth, for rays that are almost parallel: at this depth an
 // object of the prior's height is as high in the image as the box.
-void AddDepthsOfSize(const MultiViewObservation& observation, Eigen::Matrix3d* normal_matrix,
-                     Eigen::Vector3d* right_side) {
+void AddDepthsOfSize(const MultiViewObservation& observation, PointOnPlanes* point) {
   constexpr double kWeight = 1e-4;  // relative to a ray
   for (const BoxView& view : observation.views) {
     const Eigen::Vector3d axis =
         view.camera_from_world.rotation.conjugate() * Eigen::Vector3d::UnitZ();
     const double depth = observation.prior->height_m->median / HeightAtUnitDepth(view);
-    *normal_matrix += kWeight * axis * axis.transpose();
-    *right_side += kWeight * (depth - view.camera_from_world.translation.z()) * axis;
+    point->Add({axis, view.camera_from_world.translation.z() - depth}, kWeight);
   }
 }
 
 // Least squares point (world frame) of the rays through the centres of all boxes and, as far as
 // they are known, of the support plane and the depths from the size.
 Eigen::Vector3d NearestToAllRays(const MultiViewObservation& observation) {
-  Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right_side = Eigen::Vector3d::Zero();
+  PointOnPlanes point;
   for (const BoxView& view : observation.views) {
     // The ray through the centre lies in the planes half-way between opposite edges.
     for (const size_t i : {0, 1}) {
       const Eigen::Vector3d middle = view.edges[i].plane - view.edges[i + 2].plane;
-      const Eigen::Vector3d normal =
-          view.camera_from_world.rotation.conjugate() * middle.normalized();
-      const double offset = middle.normalized().dot(view.camera_from_world.translation);
-      normal_matrix += normal * normal.transpose();
-      right_side -= offset * normal;
+      point.Add({view.camera_from_world.rotation.conjugate() * middle.normalized(),
+                 middle.normalized().dot(view.camera_from_world.translation)});
     }
   }
-  if (HasSize(observation)) AddDepthsOfSize(observation, &normal_matrix, &right_side);
-  if (!observation.height_is_free) {
-    const Plane& plane = observation.plane_in_world;
-    normal_matrix += plane.normal * plane.normal.transpose();
-    right_side -= plane.offset * plane.normal;
-  }
-  return normal_matrix.completeOrthogonalDecomposition().solve(right_side);
+  if (HasSize(observation)) AddDepthsOfSize(observation, &point);
+  if (!observation.height_is_free) point.Add(observation.plane_in_world);
+  return point.Solve();
 }
 
 // Costs that do not depend on the boxes.
@@ -147,9 +132,7 @@ class LinearViews {
     for (int round = 0; round < kMaxRounds; ++round) {
       const Eigen::Vector3d before = body.half_axes;
       const bool is_first = round == 0;
-      if (!(observation_.height_is_free ? Step<6>(is_first, &body) : Step<5>(is_first, &body))) {
-        return std::nullopt;
-      }
+      if (!Step(is_first, &body)) return std::nullopt;
       if ((body.half_axes - before).norm() < kSettled * before.norm()) break;
     }
     const Landmark landmark = LandmarkOf(body);
@@ -192,36 +175,32 @@ class LinearViews {
     return landmark;
   }
 
-  template <int kUnknowns>
   bool Step(bool is_first, Body* body) const {
-    LinearSystem<kUnknowns> system;
+    LinearSystem system;
     const Landmark landmark = LandmarkOf(*body);
     for (const BoxView& view : observation_.views)
       AddView(view, landmark, *body, is_first, &system);
     if (ratio_) AddRatio(*body, &system);
     if (HasSize(observation_)) AddSize(*body, &system);
-    // Later rounds reweight, drop and add edges; Solve rejects systems that become singular.
-    if (is_first && !system.KnowsAllDirections()) return false;
-    const auto unknowns = system.Solve();
-    if (!unknowns || !(unknowns->template segment<3>(2).minCoeff() > 0.0)) return false;
-    body->foot = unknowns->template head<2>();
-    body->half_axes = unknowns->template segment<3>(2);
-    body->height_m = kUnknowns == 6 ? (*unknowns)(kUnknowns - 1) : 0.0;
+    if (!observation_.height_is_free) system.FixHeight();
+    const auto unknowns =
+        system.Solve(is_first ? kMinConditionReciprocal : kMinLaterConditionReciprocal);
+    if (!unknowns || !(unknowns->segment<3>(2).minCoeff() > 0.0)) return false;
+    body->foot = unknowns->head<2>();
+    body->half_axes = unknowns->segment<3>(2);
+    body->height_m = (*unknowns)(5);
     return true;
   }
 
   // Tangencies of a view's edges to first order about the body, whose tangent points are at their
   // own depths, in the first round at that of the centre.
-  template <int kUnknowns>
   void AddView(const BoxView& view, const Landmark& landmark_in_world, const Body& body,
-               bool is_first, LinearSystem<kUnknowns>* system) const {
-    using Row = typename LinearSystem<kUnknowns>::Row;
+               bool is_first, LinearSystem* system) const {
     const Landmark landmark = Transform(view.camera_from_world, landmark_in_world);
     const Eigen::Matrix3d world_from_camera =
         view.camera_from_world.rotation.toRotationMatrix().transpose();
-    Row at;
-    at << body.foot, body.half_axes,
-        Eigen::Matrix<double, kUnknowns - 5, 1>::Constant(body.height_m);
+    LinearSystem::Row at;
+    at << body.foot, body.half_axes, body.height_m;
     for (const BoxEdge& edge : view.edges) {
       // The initial guess is too rough to decide which bounds are active and which edges are
       // outliers.
@@ -236,11 +215,11 @@ class LinearViews {
                    : EvaluateLoss(ceres::HuberLoss(observation_.huber_delta), residual).weight;
       const Eigen::Vector3d d_centre = world_from_camera * d_landmark.segment<3>(3).transpose();
       const double d_height = d_centre.dot(ground_.normal);
-      Row row;
-      row.template head<2>() << d_centre.dot(ground_.x), d_centre.dot(ground_.y);
-      row.template segment<3>(2) = d_landmark.tail<3>().transpose().cwiseQuotient(body.half_axes);
+      LinearSystem::Row row;
+      row.head<2>() << d_centre.dot(ground_.x), d_centre.dot(ground_.y);
+      row.segment<3>(2) = d_landmark.tail<3>().transpose().cwiseQuotient(body.half_axes);
       row(4) += d_height;
-      if (kUnknowns == 6) row(kUnknowns - 1) = d_height;
+      row(5) = observation_.height_is_free ? d_height : 0.0;
       system->Add(row, residual - row.dot(at), view.weight * robust);
     }
   }
@@ -248,24 +227,21 @@ class LinearViews {
   // RatioTerm to first order about the object of this height with the prior's ratios. There both
   // residuals are zero, and a derivative by a half axis is that by its logarithm divided by the
   // half axis.
-  template <int kUnknowns>
-  void AddRatio(const Body& body, LinearSystem<kUnknowns>* system) const {
+  void AddRatio(const Body& body, LinearSystem* system) const {
     const Eigen::Vector3d of_prior = body.half_axes.z() * observation_.prior->ratio.homogeneous();
     for (int i = 0; i < 2; ++i) {
-      typename LinearSystem<kUnknowns>::Row row = LinearSystem<kUnknowns>::Row::Zero();
-      row.template segment<3>(2) =
-          ratio_->d_log_half_axes.row(i).transpose().cwiseQuotient(of_prior);
+      LinearSystem::Row row = LinearSystem::Row::Zero();
+      row.segment<3>(2) = ratio_->d_log_half_axes.row(i).transpose().cwiseQuotient(of_prior);
       system->Add(row, 0.0, 1.0);
     }
   }
 
   // HeightTerm to first order about the previous height.
-  template <int kUnknowns>
-  void AddSize(const Body& body, LinearSystem<kUnknowns>* system) const {
+  void AddSize(const Body& body, LinearSystem* system) const {
     const LogNormal& height_m = *observation_.prior->height_m;
     const Eigen::Index axis = OwnHeightAxis(observation_.RestsOn());
     const double before = body.half_axes[axis];
-    typename LinearSystem<kUnknowns>::Row row = LinearSystem<kUnknowns>::Row::Zero();
+    LinearSystem::Row row = LinearSystem::Row::Zero();
     row(2 + axis) = 1.0 / (height_m.log_sigma * before);
     system->Add(row, (std::log(2.0 * before / height_m.median) - 1.0) / height_m.log_sigma, 1.0);
   }

@@ -29,17 +29,6 @@ Eigen::Matrix4d SymmetricMatrix(const Eigen::Matrix<double, kCoefficients, 1>& u
   return matrix;
 }
 
-// Least squares point of all planes, roughly the centre of the object.
-Eigen::Vector3d Centre(const std::vector<Plane>& planes) {
-  Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right_side = Eigen::Vector3d::Zero();
-  for (const Plane& plane : planes) {
-    normal_matrix += plane.normal * plane.normal.transpose();
-    right_side -= plane.offset * plane.normal;
-  }
-  return normal_matrix.completeOrthogonalDecomposition().solve(right_side);
-}
-
 }  // namespace
 
 std::optional<DualQuadricLandmark> LandmarkFromTangentPlanes(
@@ -48,7 +37,9 @@ std::optional<DualQuadricLandmark> LandmarkFromTangentPlanes(
 
   // Coordinates centred on the object and scaled by its size, so that all coefficients have the
   // same magnitude.
-  const Eigen::Vector3d centre = Centre(planes_in_world);
+  PointOnPlanes on_planes;
+  for (const Plane& plane : planes_in_world) on_planes.Add(plane);
+  const Eigen::Vector3d centre = on_planes.Solve();
   double squares = 0.0;
   for (const Plane& plane : planes_in_world) {
     squares += std::pow(plane.SignedDistance(centre), 2);

@@ -59,9 +59,9 @@ YawPrior AlongDirection(const Sequence& sequence, const Detection& detection,
                         const Eigen::Vector3d& direction_in_world, double sigma) {
   const Eigen::Vector3d direction =
       sequence.FrameOf(detection).world_from_camera.rotation.conjugate() * direction_in_world;
-  return {Yaw(detection.plane_in_camera.normal,
-              Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), direction)),
-          sigma};
+  return {
+      Yaw(detection.plane_in_camera.normal, RotationBetween(Eigen::Vector3d::UnitX(), direction)),
+      sigma};
 }
 
 // `around`: a detection and those of the same object in neighbouring frames.

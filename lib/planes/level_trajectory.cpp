@@ -40,9 +40,9 @@ class Chain {
   const Eigen::Matrix2d& InformationOfFirst() const { return information_.front(); }
 
   std::vector<Eigen::Vector2d> Solve() const {
-    std::vector<Eigen::Vector2d> tilts = {information_[0].ldlt().solve(right_side_[0])};
+    std::vector<Eigen::Vector2d> tilts = {information_[0].inverse() * right_side_[0]};
     for (size_t i = 1; i < information_.size(); ++i) {
-      tilts.push_back(Tied(i).ldlt().solve(right_side_[i] + stiffness_ * tilts.back()));
+      tilts.push_back(Tied(i).inverse() * (right_side_[i] + stiffness_ * tilts.back()));
     }
     return tilts;
   }
@@ -62,7 +62,7 @@ std::vector<Rigid3d> Joined(const std::vector<Rigid3d>& drifted,
   std::vector<Rigid3d> levelled = {drifted.front()};
   for (size_t i = 1; i < drifted.size(); ++i) {
     const Rigid3d motion = drifted[i - 1].Inverse() * drifted[i];
-    const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(ups[i], ups.front());
+    const Eigen::Quaterniond turn = RotationBetween(ups[i], ups.front());
     levelled.push_back(
         {(turn * drifted[i].rotation).normalized(), levelled.back() * motion.translation});
   }

@@ -15,8 +15,9 @@ namespace {
 
 constexpr int kHeightSteps = 20;
 constexpr double kSettledHeight = 1e-3;  // share of the body's size
-// Eigenvalues below this share of the largest count as unobserved (the yaw of a round body).
-constexpr double kMinInformationShare = 1e-9;
+// Information of a prior of all parameters of a body, as a share of the largest, for those that are
+// not observed (the yaw of a round body).
+constexpr double kPriorShare = 1e-9;
 
 Rigid3d MotionOf(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMotion& motion) {
   const Eigen::Quaterniond level = UprightRotation(plane.normal, 0.0);
@@ -35,15 +36,6 @@ Eigen::Matrix<double, kLandmarkDof, 3> MotionJacobian(const Plane& plane,
   d_motion.block<3, 2>(3, 0) = -Skew(landmark.Centre() - pivot) * level.leftCols<2>();
   d_motion.block<3, 1>(3, 2) = plane.normal;
   return d_motion;
-}
-
-// Pseudo-inverse: zero on unobserved directions.
-Eigen::Matrix<double, 6, 6> InverseOfKnown(const Eigen::Matrix<double, 6, 6>& information) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(information);
-  const double least = kMinInformationShare * eigen.eigenvalues()(5);
-  const Eigen::Matrix<double, 6, 1> inverse = eigen.eigenvalues().unaryExpr(
-      [least](double value) { return value > least ? 1.0 / value : 0.0; });
-  return eigen.eigenvectors() * inverse.asDiagonal() * eigen.eigenvectors().transpose();
 }
 
 StandingBody Raised(StandingBody body, double rise) {
@@ -109,15 +101,16 @@ PlaneEvidence EvidenceOf(const StandingBody& body, const Eigen::Vector3d& pivot)
   LandmarkModel model;
   const LandmarkCosts outlines = OutlineTerms(body.observation);
   for (const auto& outline : outlines) outline->AddTo(body.landmark, &model);
-  const QuadraticModel<6> of_body = model.Chained(d_upright);
-  const Eigen::Matrix<double, 3, 6> mixed = d_motion.transpose() * model.information * d_upright;
-  const Eigen::Matrix<double, 3, 6> follows = mixed * InverseOfKnown(of_body.information);
+  QuadraticModel<6> of_body = model.Chained(d_upright);
+  of_body.information.diagonal().array() += kPriorShare * of_body.information.diagonal().maxCoeff();
+  const Eigen::Matrix<double, 6, 3> mixed = d_upright.transpose() * model.information * d_motion;
+  const Eigen::Matrix<double, 3, 6> follows = of_body.information.llt().solve(mixed).transpose();
   PlaneEvidence evidence;
   evidence.cost = model.cost + ConstantCost(outlines);
   evidence.gradient = d_motion.transpose() * model.gradient;
   evidence.information = d_motion.transpose() * model.information * d_motion;
   evidence.gradient -= follows * of_body.gradient;
-  evidence.information -= follows * mixed.transpose();
+  evidence.information -= follows * mixed;
   return evidence;
 }
 

@@ -151,7 +151,7 @@ Rigid3d CameraAbovePlane(const Sequence& sequence, const Detection& detection) {
   const Rigid3d camera_from_world = frame.world_from_camera.Inverse();
   const Plane by_odometry = Transform(camera_from_world, plane.plane_in_world);
   const Plane& seen = detection.plane_in_camera;
-  const Rigid3d correction = {Eigen::Quaterniond::FromTwoVectors(by_odometry.normal, seen.normal),
+  const Rigid3d correction = {RotationBetween(by_odometry.normal, seen.normal),
                               (by_odometry.offset - seen.offset) * seen.normal};
   return correction * camera_from_world;
 }

@@ -76,8 +76,8 @@ double YawErrorOfPrior(const Sequence& sequence, YawPriorSource source) {
 
 // The yaw of the direction (x, z) in the world.
 double YawAlong(double x, double z) {
-  return Yaw(-Eigen::Vector3d::UnitY(), Eigen::Quaterniond::FromTwoVectors(
-                                            Eigen::Vector3d::UnitX(), Eigen::Vector3d(x, 0, z)));
+  return Yaw(-Eigen::Vector3d::UnitY(),
+             RotationBetween(Eigen::Vector3d::UnitX(), Eigen::Vector3d(x, 0, z)));
 }
 
 TEST(YawPriors, AreNoneUnlessAskedFor) {

@@ -17,7 +17,7 @@ constexpr double kSpacing = 4.0;
 // A body that a camera sees in the middle of its image, from that place in the object frame.
 Landmark SeenFrom(const Eigen::Vector3d& camera_in_object, const Eigen::Vector3d& half_axes,
                   double shape_exponent) {
-  const Eigen::Quaterniond rotation = Eigen::Quaterniond::FromTwoVectors(
+  const Eigen::Quaterniond rotation = RotationBetween(
       camera_in_object, -Eigen::Vector3d::UnitZ());  // of the object, into the camera frame
   return {{rotation, {0.0, 0.0, camera_in_object.norm()}}, half_axes, shape_exponent};
 }
