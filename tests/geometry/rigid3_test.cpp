@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/angles.h"
 #include "geometry/box.h"
+#include "geometry/plane.h"
 #include "support/random.h"
 
 namespace soslam {
@@ -26,6 +28,36 @@ TEST(Rotation, LogIsTheInverseOfExp) {
     const Eigen::Quaterniond negated(-rotation.coeffs());
     EXPECT_LT((LogRotation(negated) - vector).norm(), 1e-9) << angle;
   }
+}
+
+TEST(Rotation, BetweenDirectionsTurnsOneIntoTheOtherByTheAngleBetween) {
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector3d from = RandomRotation() * Eigen::Vector3d::UnitX();
+    const Eigen::Vector3d to =
+        i == 0 ? Eigen::Vector3d(-from) : RandomRotation() * Eigen::Vector3d::UnitX();
+    const Eigen::Quaterniond rotation = RotationBetween(from, to);
+    EXPECT_LT((rotation * from - to).norm(), 1e-9);
+    EXPECT_NEAR(LogRotation(rotation).norm(), AngleBetween(from, to), 1e-6);
+  }
+}
+
+TEST(PointOnPlanes, IsThePointThatAllPlanesShare) {
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector3d point = RandomRigid().translation;
+    PointOnPlanes on_planes;
+    for (int plane = 0; plane < 4; ++plane) {
+      const Eigen::Vector3d normal = RandomRotation() * Eigen::Vector3d::UnitX();
+      on_planes.Add({normal, -normal.dot(point)}, RandomUniform(0.1, 2.0));
+    }
+    EXPECT_LT((on_planes.Solve() - point).norm(), 1e-6);
+  }
+}
+
+TEST(PointOnPlanes, IsNearestToTheOriginOfThoseOnOnePlane) {
+  const Plane plane = {Eigen::Vector3d(1.0, 2.0, 2.0) / 3.0, -6.0};
+  PointOnPlanes on_planes;
+  on_planes.Add(plane);
+  EXPECT_LT((on_planes.Solve() - 6.0 * plane.normal).norm(), 1e-12);
 }
 
 TEST(Camera, RayAndBackProjectedPlanesUndoProjection) {
