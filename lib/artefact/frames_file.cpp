@@ -2,6 +2,9 @@
 #include "artefact/frames_file.h"
 
 namespace soslam {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FocalHint, focal_px, images)
+
 namespace {
 
 using nlohmann::json;
@@ -13,17 +16,12 @@ json SourceToJson(const SourceFrame& frame) {
           {"sharpness", frame.sharpness}};
 }
 
-json HintToJson(const std::optional<FocalHint>& hint) {
-  if (!hint) return {};
-  return {{"focal_px", hint->focal_px}, {"images", hint->images}};
-}
-
 }  // namespace
 
 std::string FramesText(const std::filesystem::path& path, const FramesRecord& record,
                        const ArtefactInfo& info) {
   json body = {{"name", record.name},     {"width", record.width},
-               {"height", record.height}, {"focal_hint", HintToJson(record.focal_hint)},
+               {"height", record.height}, {"focal_hint", record.focal_hint},
                {"frames", json::array()}, {"left_out", json::array()}};
   for (const SourceFrame& frame : record.frames) {
     json entry = SourceToJson(frame);

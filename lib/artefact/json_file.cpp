@@ -204,7 +204,7 @@ json ReadArtefact(const std::filesystem::path& path, const std::string& kind) {
 std::string ArtefactText(const std::filesystem::path& path, const std::string& kind,
                          const ArtefactInfo& info, json body) {
   body["artefact"] = ArtefactHeader(kind, info);
-  if (!info.findings.empty()) body["findings"] = FindingsToJson(info.findings);
+  if (!info.findings.empty()) body["findings"] = info.findings;
   RefuseNonFinite(body, json::json_pointer(), path.string());
   if (const auto violation = SchemaViolation(body, kind)) {
     throw std::logic_error(fmt::format("{}: would break the schema of kind '{}': {}", path.string(),

@@ -13,24 +13,8 @@ namespace soslam {
 
 using nlohmann::json;
 
-json FindingsToJson(const std::vector<Finding>& findings) {
-  return ListToJson(findings, [](const Finding& finding) -> json {
-    return {{"check", finding.check},
-            {"severity", kSeverityNames[static_cast<size_t>(finding.severity)]},
-            {"found", finding.found},
-            {"expected", finding.expected},
-            {"cause", finding.cause},
-            {"remedy", finding.remedy}};
-  });
-}
-
 std::vector<Finding> FindingsFromJson(const json& artefact) {
-  return ListFromJson(artefact, "findings", [](const json& entry) {  // since version 1.6
-    const bool is_error = entry.at("severity") == kSeverityNames[1];
-    return Finding{entry.at("check"), is_error ? Severity::kError : Severity::kWarning,
-                   entry.at("found"), entry.at("expected"),
-                   entry.at("cause"), entry.at("remedy")};
-  });
+  return artefact.value("findings", std::vector<Finding>());  // since version 1.6
 }
 
 Eigen::Vector3d VectorFromJson(const json& json) {
@@ -151,7 +135,7 @@ json EstimateToJson(const ObjectEstimate& estimate, const Sequence& sequence) {
               {"covariance", covariance ? CovarianceToJson(*covariance) : json()},
               {"failure", estimate.failure},
               {"proper_ellipsoid", estimate.proper_ellipsoid}};
-  if (!object.labels.empty()) row["labels"] = LabelsToJson(object.labels);
+  if (!object.labels.empty()) row["labels"] = object.labels;
   if (!estimate.points.empty()) row["points"] = ListToJson(estimate.points, PointToJson);
   return row;
 }
@@ -164,12 +148,6 @@ json CovarianceToJson(const Covariance9& covariance) {
     rows.push_back(std::vector<double>(row.begin(), row.end()));
   }
   return rows;
-}
-
-json LabelsToJson(const std::vector<LabelProbability>& labels) {
-  return ListToJson(labels, [](const LabelProbability& label) -> json {
-    return {{"label", label.label}, {"probability", label.probability}};
-  });
 }
 
 json ObjectEstimatesToJson(const std::vector<ObjectEstimate>& estimates, const Sequence& sequence) {

@@ -77,10 +77,11 @@ Enum EnumFromName(const Names& names, const std::string& name) {
   return static_cast<Enum>(std::ranges::find(names, name) - std::begin(names));
 }
 
-// The list "findings" of JSON artefacts, which is absent when empty.
-nlohmann::json FindingsToJson(const std::vector<Finding>& findings);
+NLOHMANN_JSON_SERIALIZE_ENUM(Severity, {{Severity::kWarning, kSeverityNames[0]},
+                                        {Severity::kError, kSeverityNames[1]}})
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Finding, check, severity, found, expected, cause, remedy)
 
-// The findings in an artefact of any kind and version.
+// The list "findings", which is absent when empty, of any kind and version.
 std::vector<Finding> FindingsFromJson(const nlohmann::json& artefact);
 
 // Geometry in JSON, for nlohmann's `json = value` and `json.get<Value>()`. Doubles round-trip bit
@@ -100,6 +101,8 @@ void from_json(const nlohmann::json& json, Plane& plane);
 // [x_min, y_min, x_max, y_max] in pixels.
 void to_json(nlohmann::json& json, const Box& box);
 void from_json(const nlohmann::json& json, Box& box);
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HeldOutFrame::LabelledBox, label, score, box)
 
 // {"width", "height", "fx", "fy", "cx", "cy"} in pixels.
 void to_json(nlohmann::json& json, const Camera& camera);
@@ -124,8 +127,7 @@ Landmark LandmarkFromJson(const nlohmann::json& json, const std::string& frame);
 // Covariance as nine rows of nine numbers.
 nlohmann::json CovarianceToJson(const Covariance9& covariance);
 
-// List of {"label", "probability"}.
-nlohmann::json LabelsToJson(const std::vector<LabelProbability>& labels);
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LabelProbability, label, probability)
 
 // The field "objects" of the artefacts "landmarks" and "map": the estimates of each object from all
 // its observations.

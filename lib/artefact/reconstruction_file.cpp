@@ -2,6 +2,9 @@
 #include "artefact/reconstruction_file.h"
 
 namespace soslam {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReconstructionSummary::Component, images, points)
+
 namespace {
 
 using nlohmann::json;
@@ -16,7 +19,7 @@ void WriteReconstruction(const std::filesystem::path& path, const Reconstruction
                {"registered", summary.registered},
                {"points", summary.points},
                {"observations", summary.observations},
-               {"components", json::array()},
+               {"components", summary.components},
                {"median_reprojection_error_px", summary.median_reprojection_error_px},
                {"median_triangulation_angle_deg", summary.median_triangulation_angle_deg},
                {"colmap", summary.colmap.empty() ? json() : json(summary.colmap)},
@@ -24,9 +27,6 @@ void WriteReconstruction(const std::filesystem::path& path, const Reconstruction
                {"camera", summary.camera_is_given ? "given" : "estimated"}};
   if (!summary.images_without_pose.empty()) {
     body["images_without_pose"] = summary.images_without_pose;
-  }
-  for (const ReconstructionSummary::Component& component : summary.components) {
-    body["components"].push_back({{"images", component.images}, {"points", component.points}});
   }
   WriteArtefact(path, kKind, info, std::move(body));
 }
@@ -39,9 +39,7 @@ ReconstructionSummary ReadReconstruction(const std::filesystem::path& path) {
     summary.images_without_pose = document.value("images_without_pose", std::vector<std::string>());
     document.at("points").get_to(summary.points);
     document.at("observations").get_to(summary.observations);
-    for (const json& component : document.at("components")) {
-      summary.components.push_back({component.at("images"), component.at("points")});
-    }
+    document.at("components").get_to(summary.components);
     document.at("median_reprojection_error_px").get_to(summary.median_reprojection_error_px);
     document.at("median_triangulation_angle_deg").get_to(summary.median_triangulation_angle_deg);
     if (document.at("colmap").is_string()) document["colmap"].get_to(summary.colmap);

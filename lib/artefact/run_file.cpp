@@ -64,6 +64,8 @@ Software ThisSoftware() {
            {"openssl", OpenSSL_version(OPENSSL_VERSION_STRING)}}};
 }
 
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunSetting, value, origin)
+
 namespace {
 
 using nlohmann::json;
@@ -77,14 +79,6 @@ json FilesToJson(const std::vector<RunFile>& files) {
             {"path", file.path.string()},
             {"sha256", file.sha256}};
   });
-}
-
-json SettingsToJson(const std::map<std::string, RunSetting>& settings) {
-  json all = json::object();
-  for (const auto& [name, setting] : settings) {
-    all[name] = {{"value", setting.value}, {"origin", setting.origin}};
-  }
-  return all;
 }
 
 std::vector<RunFile> FilesFromJson(const json& list, const RunRecord& record,
@@ -104,28 +98,16 @@ std::vector<RunFile> FilesFromJson(const json& list, const RunRecord& record,
   return files;
 }
 
-std::map<std::string, RunSetting> SettingsFromJson(const json& all) {
-  std::map<std::string, RunSetting> settings;
-  for (const auto& [name, setting] : all.items()) {
-    settings[name] = {setting.at("value"), setting.at("origin")};
-  }
-  return settings;
-}
-
 RunRecord RunFromJson(const json& document) {
   RunRecord record;
   record.stage = document.at("stage");
   record.software = {document.at("artefact").at("software"), document.at("compiler"),
                      document.at("libraries")};
-  if (!document.at("settings").is_null()) {
-    record.settings = SettingsFromJson(document.at("settings"));
-  }
+  document.at("settings").get_to(record.settings);
   record.allow_outside_paths = document.at("allow_outside_paths");
-  if (!document.at("seed").is_null()) record.seed = document.at("seed");
+  document.at("seed").get_to(record.seed);
   record.called_in = document.value("called_in", std::string());
-  for (const auto& [argument, path] : document.at("folders").items()) {
-    record.folders[argument] = path.get<std::string>();
-  }
+  document.at("folders").get_to(record.folders);
   record.inputs = FilesFromJson(document.at("inputs"), record, "/inputs");
   record.outputs = FilesFromJson(document.at("outputs"), record, "/outputs");
   record.exit_code = document.at("exit_code");
@@ -137,17 +119,15 @@ RunRecord RunFromJson(const json& document) {
 }  // namespace
 
 void WriteRun(const std::filesystem::path& path, const RunRecord& record) {
-  json folders = json::object();
-  for (const auto& [argument, folder] : record.folders) folders[argument] = folder.string();
   const json document = {{"artefact", HeaderOfKind(kRunKind)},
                          {"stage", record.stage},
                          {"compiler", record.software.compiler},
                          {"libraries", record.software.libraries},
-                         {"settings", record.settings ? SettingsToJson(*record.settings) : json()},
+                         {"settings", record.settings},
                          {"allow_outside_paths", record.allow_outside_paths},
                          {"seed", record.seed},
                          {"called_in", record.called_in.string()},
-                         {"folders", folders},
+                         {"folders", record.folders},
                          {"inputs", FilesToJson(record.inputs)},
                          {"outputs", FilesToJson(record.outputs)},
                          {"exit_code", record.exit_code},

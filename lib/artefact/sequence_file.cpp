@@ -111,9 +111,7 @@ Object ObjectFromJson(const json& json, const IdTable<SupportPlane>& planes) {
   const auto& truth = json.at("ground_truth");
   if (!truth.is_null()) object.ground_truth = GroundTruthFromJson(truth);
   if (json.contains("is_static")) json["is_static"].get_to(object.is_static);  // since version 1.2
-  object.labels = ListFromJson(json, "labels", [](const auto& row) {           // since version 1.7
-    return LabelProbability{row.at("label"), row.at("probability")};
-  });
+  object.labels = json.value("labels", std::vector<LabelProbability>());       // since version 1.7
   return object;
 }
 
@@ -159,9 +157,8 @@ Detection DetectionFromJson(const json& json, const IdTable<Frame>& frames,
 }
 
 HeldOutFrame HeldOutFromJson(const json& json) {
-  return {FrameFromJson(json.at("frame")), ListFromJson(json, "boxes", [](const auto& box) {
-            return HeldOutFrame::LabelledBox{box.at("label"), box.at("score"), box.at("box")};
-          })};
+  return {FrameFromJson(json.at("frame")),
+          json.at("boxes").get<std::vector<HeldOutFrame::LabelledBox>>()};
 }
 
 // The element of `list` whose index is in a row of rejected detections.

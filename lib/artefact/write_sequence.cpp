@@ -50,7 +50,7 @@ json ObjectToJson(const Object& object, const Sequence& sequence) {
        object.plane_index == kNoPlane ? json() : json(sequence.planes.at(object.plane_index).id)},
       {"ground_truth", object.ground_truth ? GroundTruthToJson(*object.ground_truth) : json()},
       {"is_static", object.is_static}};
-  if (!object.labels.empty()) fields["labels"] = LabelsToJson(object.labels);
+  if (!object.labels.empty()) fields["labels"] = object.labels;
   return fields;
 }
 
@@ -110,11 +110,7 @@ json DetectionToJson(const Detection& detection, const Sequence& sequence) {
 }
 
 json HeldOutToJson(const HeldOutFrame& held_out) {
-  const auto box_to_json = [](const HeldOutFrame::LabelledBox& box) -> json {
-    return {{"label", box.label}, {"score", box.score}, {"box", box.box}};
-  };
-  return {{"frame", FrameToJson(held_out.frame)},
-          {"boxes", ListToJson(held_out.boxes, box_to_json)}};
+  return {{"frame", FrameToJson(held_out.frame)}, {"boxes", held_out.boxes}};
 }
 
 // Rejected detections as rows of numbers, because they may be many: frame, index in `reasons`,
