@@ -7,6 +7,7 @@
 #include <array>
 #include <fstream>
 #include <memory>
+#include <sstream>
 #include <stdexcept>
 #include <vector>
 
@@ -15,48 +16,36 @@
 namespace soslam {
 namespace {
 
-class Sha256 {
- public:
-  Sha256() : context_(EVP_MD_CTX_new(), &EVP_MD_CTX_free) {
-    Require(context_ && EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1);
+std::string Sha256Of(std::istream& stream) {
+  const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(),
+                                                                        &EVP_MD_CTX_free);
+  bool done = context && EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) == 1;
+  std::vector<char> buffer(1 << 16);
+  while (done && stream) {
+    stream.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
+    const auto count = static_cast<size_t>(stream.gcount());
+    done = EVP_DigestUpdate(context.get(), buffer.data(), count) == 1;
   }
-  void Update(const char* bytes, size_t count) {
-    Require(EVP_DigestUpdate(context_.get(), bytes, count) == 1);
-  }
-  std::string HexDigest() {
-    std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
-    unsigned int size = 0;
-    Require(EVP_DigestFinal_ex(context_.get(), digest.data(), &size) == 1);
-    return fmt::format("{:02x}", fmt::join(digest.begin(), digest.begin() + size, ""));
-  }
-
- private:
-  static void Require(bool done) {
-    if (!done) throw std::runtime_error("OpenSSL cannot compute SHA-256");
-  }
-
-  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
-};
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
+  unsigned int size = 0;
+  done = done && EVP_DigestFinal_ex(context.get(), digest.data(), &size) == 1;
+  if (!done) throw std::runtime_error("OpenSSL cannot compute SHA-256");
+  return fmt::format("{:02x}", fmt::join(digest.begin(), digest.begin() + size, ""));
+}
 
 }  // namespace
 
 std::string Sha256OfText(std::string_view text) {
-  Sha256 sha256;
-  sha256.Update(text.data(), text.size());
-  return sha256.HexDigest();
+  std::istringstream stream{std::string(text)};
+  return Sha256Of(stream);
 }
 
 std::string Sha256OfFile(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
-  Sha256 sha256;
-  std::vector<char> buffer(1 << 16);
-  while (stream) {
-    stream.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
-    sha256.Update(buffer.data(), static_cast<size_t>(stream.gcount()));
-  }
+  std::string digest = Sha256Of(stream);
   // Reading ends at the end of the file, or else it failed: a missing file, a folder, a bad disk.
   if (!stream.eof()) throw InputError(path.string() + ": cannot be read; expected a file");
-  return sha256.HexDigest();
+  return digest;
 }
 
 std::string Base64(std::string_view bytes) {
