@@ -17,14 +17,20 @@ namespace soslam {
 namespace {
 
 // An alternative convention of a pose that was read as world_from_camera with quaternion qx qy qz
-// qw.
+// qw. The true pose is that of the applied function, turned by `read_from_camera`.
 struct PoseReading {
   const char* name;  // "the poses are the inverse, camera_from_world"
   const char* cause;
   const char* remedy;
-  Rigid3d (*Apply)(const Rigid3d& as_read);  // converts to the true world_from_camera
-  bool are_boxes_mirrored = false;           // boxes are also mirrored left to right
-  bool is_turned_in_body = false;            // a rotation that a camera may also have in a body
+  Rigid3d (*Apply)(const Rigid3d& as_read);
+  Eigen::Quaterniond read_from_camera = Eigen::Quaterniond::Identity();
+  bool are_boxes_mirrored = false;  // boxes are also mirrored left to right
+  bool is_turned_in_body = false;   // a rotation that a camera may also have in a body
+
+  Rigid3d WorldFromCamera(const Rigid3d& as_read) const {
+    const Rigid3d pose = Apply(as_read);
+    return {pose.rotation * read_from_camera, pose.translation};
+  }
 };
 
 Rigid3d Inverted(const Rigid3d& pose) { return pose.Inverse(); }
@@ -35,15 +41,7 @@ Rigid3d WithScalarFirst(const Rigid3d& pose) {
   return {Eigen::Quaterniond(q.x(), q.y(), q.z(), q.w()), pose.translation};
 }
 
-// Pose of a camera with x right, y up, z backward.
-Rigid3d OfOpenGlCamera(const Rigid3d& pose) {
-  const Eigen::Quaterniond half_turn_about_x(0.0, 1.0, 0.0, 0.0);
-  return {pose.rotation * half_turn_about_x, pose.translation};
-}
-
 Rigid3d ScalarFirstInverted(const Rigid3d& pose) { return WithScalarFirst(pose).Inverse(); }
-Rigid3d OpenGlInverted(const Rigid3d& pose) { return OfOpenGlCamera(pose.Inverse()); }
-Rigid3d OpenGlScalarFirst(const Rigid3d& pose) { return OfOpenGlCamera(WithScalarFirst(pose)); }
 
 Rigid3d WithInverseRotation(const Rigid3d& pose) {
   return {pose.rotation.conjugate(), pose.translation};
@@ -59,20 +57,6 @@ Rigid3d WithCentreInverted(const Rigid3d& pose) {
   return {pose.rotation, pose.Inverse().translation};
 }
 
-Rigid3d TurnedAboutZ(const Rigid3d& pose, double turns) {
-  const Eigen::AngleAxisd turn(2.0 * std::numbers::pi * turns, Eigen::Vector3d::UnitZ());
-  return {pose.rotation * turn, pose.translation};
-}
-Rigid3d HalfTurned(const Rigid3d& pose) { return TurnedAboutZ(pose, 0.5); }
-Rigid3d QuarterTurned(const Rigid3d& pose) { return TurnedAboutZ(pose, 0.25); }
-Rigid3d QuarterTurnedBack(const Rigid3d& pose) { return TurnedAboutZ(pose, -0.25); }
-
-// Pose of a body with x forward, y left, z up.
-Rigid3d OfRosBody(const Rigid3d& pose) {
-  const Eigen::Quaterniond body_from_camera(0.5, -0.5, 0.5, -0.5);
-  return {pose.rotation * body_from_camera, pose.translation};
-}
-
 Rigid3d WithCentreMirrored(const Rigid3d& pose) {
   const Eigen::Vector3d& t = pose.translation;
   return {pose.rotation, {-t.x(), t.y(), t.z()}};
@@ -85,12 +69,20 @@ Rigid3d WithCentreSwapped(const Rigid3d& pose) {
 
 Rigid3d AsRead(const Rigid3d& pose) { return pose; }
 
+// Rotations of the camera's axes (x right, y down, z forward) in those of other conventions.
+const Eigen::Quaterniond kAsCamera = Eigen::Quaterniond::Identity();
+const Eigen::Quaterniond kAsOpenGl(0.0, 1.0, 0.0, 0.0);     // x right, y up, z backward
+const Eigen::Quaterniond kAsRosBody(0.5, -0.5, 0.5, -0.5);  // x forward, y left, z up
+const Eigen::Quaterniond kUpsideDown(0.0, 0.0, 0.0, 1.0);
+const Eigen::Quaterniond kQuarterTurned(0.5 * std::numbers::sqrt2, 0.0, 0.0,
+                                        0.5 * std::numbers::sqrt2);
+
 constexpr bool kMirrored = true;
 constexpr bool kTurnedInBody = true;
 constexpr const char* kTurned =
     "images or boxes that are turned against the poses, or another camera's axes";
 
-constexpr std::array kReadings = {
+const std::array kReadings = {
     PoseReading{"the poses are the inverse, camera_from_world",
                 "poses the other way round, as COLMAP has them", "invert the poses", &Inverted},
     PoseReading{"the poses are with qw first", "quaternions qw qx qy qz",
@@ -99,16 +91,16 @@ constexpr std::array kReadings = {
                 "write quaternions as qx qy qz qw, and invert the poses", &ScalarFirstInverted},
     PoseReading{"the poses are those of a camera with y up and z backward",
                 "cameras of OpenGL, as NeRFs have them",
-                "turn the cameras by half a turn about their x axis", &OfOpenGlCamera},
+                "turn the cameras by half a turn about their x axis", &AsRead, kAsOpenGl},
     PoseReading{"the poses are the inverse of those of a camera with y up and z backward",
                 "view matrices of OpenGL",
                 "invert the poses, then turn the cameras by half a turn about their x axis",
-                &OpenGlInverted},
+                &Inverted, kAsOpenGl},
     PoseReading{"the poses are with qw first and of a camera with y up and z backward",
                 "cameras of OpenGL, with quaternions qw qx qy qz",
                 "write quaternions as qx qy qz qw, and turn the cameras by half a turn about their "
                 "x axis",
-                &OpenGlScalarFirst},
+                &WithScalarFirst, kAsOpenGl},
     PoseReading{"the poses are with the inverse rotation",
                 "rotation matrices that were transposed, or rotations of camera_from_world beside "
                 "the centres of the cameras",
@@ -121,26 +113,26 @@ constexpr std::array kReadings = {
                 "keep the translations when the rotations are inverted", &WithCentreInverted},
     PoseReading{"the poses are turned by half a turn about the camera's z axis", kTurned,
                 "turn the cameras by half a turn about their z axis, or the boxes with the images",
-                &HalfTurned, !kMirrored, kTurnedInBody},
+                &AsRead, kUpsideDown, !kMirrored, kTurnedInBody},
     PoseReading{"the poses are turned by a quarter about the camera's z axis", kTurned,
                 "turn the cameras by 90 degrees about their z axis, or the boxes with the images",
-                &QuarterTurned, !kMirrored, kTurnedInBody},
+                &AsRead, kQuarterTurned, !kMirrored, kTurnedInBody},
     PoseReading{"the poses are turned back by a quarter about the camera's z axis", kTurned,
                 "turn the cameras by -90 degrees about their z axis, or the boxes with the images",
-                &QuarterTurnedBack, !kMirrored, kTurnedInBody},
+                &AsRead, kQuarterTurned.conjugate(), !kMirrored, kTurnedInBody},
     PoseReading{"the poses are those of a body with x forward, y left and z up",
                 "poses of a robot's body, as ROS has them",
-                "give the poses of the camera, with x right, y down and z forward", &OfRosBody,
-                !kMirrored, kTurnedInBody},
+                "give the poses of the camera, with x right, y down and z forward", &AsRead,
+                kAsRosBody, !kMirrored, kTurnedInBody},
     PoseReading{"boxes are mirrored left to right",
                 "images or boxes are mirrored, as selfie cameras do, or poses of a left-handed "
                 "world",
                 "mirror the boxes (x to width - 1 - x) or take images that are not mirrored",
-                &AsRead, kMirrored},
+                &AsRead, kAsCamera, kMirrored},
     PoseReading{"boxes are mirrored top to bottom",
                 "boxes with y up, or poses of a left-handed world, as Unity has them",
                 "write boxes with y down, and poses of a right-handed world, camera y down",
-                &HalfTurned, kMirrored},
+                &AsRead, kUpsideDown, kMirrored},
     PoseReading{"the poses are with x of the other sign",
                 "translations of a left-handed world beside rotations of a right-handed one",
                 "turn the sign of the translations' x", &WithCentreMirrored},
@@ -224,7 +216,7 @@ std::vector<Explanation> Explanations(const ImportView& view, const Things& thin
     if (reading.is_turned_in_body && view.content.may_have_poses_of_body) continue;
     const auto pose_as_meant = [&](size_t frame) -> std::optional<Rigid3d> {
       const auto pose = PoseAt(view, frame);
-      return pose ? std::optional(reading.Apply(*pose)) : std::nullopt;
+      return pose ? std::optional(reading.WorldFromCamera(*pose)) : std::nullopt;
     };
     const auto error =
         MedianRayError(reading.are_boxes_mirrored ? mirrored : things, pose_as_meant);
@@ -399,7 +391,7 @@ std::string InWords(const TrajectoryGap& gap) {
 }
 
 std::vector<PosePair> ReadAs(const PoseReading& reading, std::vector<PosePair> pairs) {
-  for (PosePair& pair : pairs) pair.estimated = reading.Apply(pair.estimated);
+  for (PosePair& pair : pairs) pair.estimated = reading.WorldFromCamera(pair.estimated);
   return pairs;
 }
 

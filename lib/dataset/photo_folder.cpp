@@ -43,33 +43,22 @@ bool HasNameOfOtherImage(const fs::path& path) {
   return kExtensions.contains(LowerCase(path.extension().string()));
 }
 
-bool IsDigit(char character) { return character >= '0' && character <= '9'; }
-
-// The digits at `begin` without leading zeros; moves `begin` behind them.
-std::string_view TakeNumber(std::string_view text, size_t* begin) {
-  while (*begin < text.size() && text[*begin] == '0') ++*begin;
-  const size_t first = *begin;
-  while (*begin < text.size() && IsDigit(text[*begin])) ++*begin;
-  return text.substr(first, *begin - first);
-}
-
-// True if `one` comes before `other`, where numbers in names compare as numbers.
-bool IsNamedBefore(const std::string& one, const std::string& other) {
-  size_t i = 0, j = 0;
-  while (i < one.size() && j < other.size()) {
-    if (IsDigit(one[i]) && IsDigit(other[j])) {
-      const std::string_view number = TakeNumber(one, &i), other_number = TakeNumber(other, &j);
-      if (number.size() != other_number.size()) return number.size() < other_number.size();
-      if (number != other_number) return number < other_number;
-    } else if (one[i] != other[j]) {
-      return one[i] < other[j];
-    } else {
-      ++i;
-      ++j;
-    }
+// Compares like the name, with numbers as numbers: they are all made equally long. Of two equal
+// ones the name counts: a7 after a007, in any folder.
+std::pair<std::string, std::string> OrderOf(const fs::path& path) {
+  constexpr const char* kDigits = "0123456789";
+  constexpr size_t kMaxName = 255;  // bytes of a file's name
+  const std::string name = path.filename().string();
+  std::string order;
+  for (size_t begin = 0; begin < name.size();) {
+    const size_t number = std::min(name.find_first_of(kDigits, begin), name.size());
+    const size_t end = std::min(name.find_first_not_of(kDigits, number), name.size());
+    order.append(name, begin, number - begin);
+    if (number < end) order.append(kMaxName - (end - number), '0');
+    order.append(name, number, end - number);
+    begin = end;
   }
-  const size_t rest = one.size() - i, other_rest = other.size() - j;
-  return rest != other_rest ? rest < other_rest : one < other;  // a007 after a7, in any folder
+  return {order, name};
 }
 
 struct FilesOfFolder {
@@ -91,8 +80,7 @@ FilesOfFolder PhotosAndOthersIn(const fs::path& folder) {
       files.images.push_back(path);
     }
   }
-  std::ranges::sort(files.images, &IsNamedBefore,
-                    [](const fs::path& path) { return path.filename().string(); });
+  std::ranges::sort(files.images, {}, &OrderOf);
   return files;
 }
 
