@@ -403,9 +403,7 @@ std::vector<NamedPose> ReadColmapPoses(const std::filesystem::path& path) {
 std::vector<ColmapPoint> ReadColmapPoints(const std::filesystem::path& path) {
   constexpr size_t kLeastBytes = 51;
   if (IsBinary(path)) return ReadBinary(path, "point", kLeastBytes, &TakePoint);
-  std::vector<ColmapPoint> points;
-  for (const TextLine& line : ReadTextLines(path)) points.push_back(ParsePoint(line));
-  return points;
+  return ParseTextLines(path, &ParsePoint);
 }
 
 bool IsColmapModel(const std::filesystem::path& folder) {

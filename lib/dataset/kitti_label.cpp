@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <regex>
 #include <span>
 
 #include "base/error.h"
@@ -21,19 +22,14 @@
 namespace soslam {
 namespace {
 
-int ParseRecording(const std::string& option, std::string_view text) {
-  constexpr const char* kExpected = "the number of a recording, or two as in 0003-0005";
-  const bool is_number =
-      !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
-  if (!is_number || text.size() > 9) RefuseSetting(option, text, kExpected);
-  return ParseInteger(text, option, "recording");
-}
-
 RecordingRange ParseRange(const std::string& option, std::string_view text) {
-  const size_t dash = text.find('-');
-  const int first = ParseRecording(option, text.substr(0, dash));
-  if (dash == std::string_view::npos) return {first, first};
-  const int last = ParseRecording(option, text.substr(dash + 1));
+  static const std::regex kRange("([0-9]{1,9})(?:-([0-9]{1,9}))?");
+  std::cmatch match;
+  if (!std::regex_match(text.begin(), text.end(), match, kRange)) {
+    RefuseSetting(option, text, "the number of a recording, or two as in 0003-0005");
+  }
+  const int first = std::stoi(match[1]);
+  const int last = match[2].matched ? std::stoi(match[2]) : first;
   if (last < first) RefuseSetting(option, text, "the lower number first");
   return {first, last};
 }
@@ -196,9 +192,7 @@ LabelledBox ParseKittiBox(const TextLine& line, const std::string& label) {
 
 std::vector<LabelledBox> ReadKittiBoxes(const fs::path& path) {
   const std::string label = fs::absolute(path).parent_path().filename().string();
-  std::vector<LabelledBox> boxes;
-  for (const TextLine& line : ReadTextLines(path)) boxes.push_back(ParseKittiBox(line, label));
-  return boxes;
+  return ParseTextLines(path, [&](const TextLine& line) { return ParseKittiBox(line, label); });
 }
 
 std::vector<std::optional<size_t>> MatchBoxes(const std::vector<LabelledBox>& found,
@@ -252,18 +246,15 @@ Camera WithImageSize(Camera camera, const std::optional<fs::path>& image,
     camera.height = pixels.rows;
     return camera;
   }
+  static const std::regex kSize("([0-9]{1,9})x([0-9]{1,9})");
   const std::string& text = image_size.Of(recording);
-  std::string words = text;
-  std::ranges::replace(words, 'x', ' ');
-  const auto numbers = ParseNumbers(words);
-  const bool is_plain = text.find_first_not_of("0123456789x") == std::string::npos &&
-                        std::ranges::count(text, 'x') == 1;
-  if (!is_plain || !numbers || numbers->size() != 2 ||
-      !IsWholeImageSize((*numbers)[0], (*numbers)[1])) {
+  std::smatch match;
+  const bool is_size = std::regex_match(text, match, kSize);
+  camera.width = is_size ? std::stoi(match[1]) : 0;
+  camera.height = is_size ? std::stoi(match[2]) : 0;
+  if (!IsImageSize(camera.width, camera.height)) {
     RefuseSetting("image_size", text, "width and height, as in 1242x375");
   }
-  camera.width = static_cast<int>((*numbers)[0]);
-  camera.height = static_cast<int>((*numbers)[1]);
   return camera;
 }
 
@@ -279,6 +270,14 @@ Landmark LandmarkInCamera(const KittiLabel& label, const KittiCalibration& calib
       label.bottom_centre + calibration.camera2_from_camera0 + landmark.half_axes.z() * up};
   landmark.shape_exponent = kCuboidExponent;
   return landmark;
+}
+
+void AddLabelledObject(Object object, int segment, DatasetContent* content) {
+  const GroundTruth& truth = *object.ground_truth;
+  object.plane_index = static_cast<int>(content->planes.size());
+  content->planes.push_back({object.id, SupportPlaneOf(truth.landmark_in_world)});
+  content->true_objects.push_back({object.id, object.label, truth, segment, object.is_static});
+  content->objects.push_back(std::move(object));
 }
 
 DetectionRow RowOfLabel(const KittiLabel& label, const Box& box, double score,

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "dataset/gate.h"
+#include "dataset/dataset_content.h"
 #include "dataset/labelled_box.h"
 #include "geometry/camera.h"
 #include "model/image_orientation.h"
@@ -111,6 +111,10 @@ Camera WithImageSize(Camera camera, const std::optional<std::filesystem::path>& 
 
 // The labelled cuboid in the frame of camera 2: x along the length, z up.
 Landmark LandmarkInCamera(const KittiLabel& label, const KittiCalibration& calibration);
+
+// Adds an object with a true landmark, and its support plane with the same id: the bottom face of
+// that landmark.
+void AddLabelledObject(Object object, int segment, DatasetContent* content);
 
 // Converts a label to a detection: `box` cut to the image; plane (the label's bottom face) and
 // landmark from the label.

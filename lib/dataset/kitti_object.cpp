@@ -35,17 +35,6 @@ Frame ReadFrame(const fs::path& folder, const NumberedPath& labels) {
   return frame;
 }
 
-void AddObject(const KittiLabel& label, const DetectionRow& row, DatasetContent* content) {
-  Object object;
-  object.id = row.object_id;
-  object.label = LowerCase(label.type);
-  object.plane_index = static_cast<int>(content->planes.size());
-  object.ground_truth.emplace().landmark_in_world = *row.true_landmark_in_camera;
-  content->planes.push_back({object.id, *row.plane_in_camera});
-  content->true_objects.push_back({object.id, object.label, *object.ground_truth, row.frame_id});
-  content->objects.push_back(object);
-}
-
 void AddFrame(const fs::path& folder, const NumberedPath& label_file, ImageOrientation orientation,
               const RecordingValues& image_size, DatasetContent* content) {
   const fs::path calibration_file = RequiredFile(folder / "calib" / label_file.path.filename());
@@ -65,7 +54,9 @@ void AddFrame(const fs::path& folder, const NumberedPath& label_file, ImageOrien
     DetectionRow row = RowOfLabel(label, label.box, label.score, calibration, camera);
     row.frame_id = frame.id;
     row.object_id = frame.id * kIdsPerFrame + label.track;
-    AddObject(label, row, content);
+    Object object{row.object_id, row.label, kNoPlane, GroundTruth()};
+    object.ground_truth->landmark_in_world = *row.true_landmark_in_camera;
+    AddLabelledObject(std::move(object), frame.id, content);
     content->rows.push_back(std::move(row));
   }
   content->frames.push_back({std::move(frame), true});

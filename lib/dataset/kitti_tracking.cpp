@@ -174,13 +174,8 @@ class Recording {
       Object object;
       object.id = Id(track);
       object.label = LowerCase(labels.front()->type);
-      object.plane_index = static_cast<int>(content_->planes.size());
       SetTruth(in_world, options_, &object);
-      content_->planes.push_back(
-          {object.id, SupportPlaneOf(object.ground_truth->landmark_in_world)});
-      content_->true_objects.push_back(
-          {object.id, object.label, *object.ground_truth, number_, object.is_static});
-      content_->objects.push_back(object);
+      AddLabelledObject(std::move(object), number_, content_);
     }
   }
 

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 namespace soslam {
@@ -31,6 +32,14 @@ struct TextLine {
 // carriage returns, or with a carriage return in a text without line feeds. Throws InputError when
 // the file cannot be read, is not a regular file, is larger than 1 GiB, or is not UTF-8.
 std::vector<TextLine> ReadTextLines(const std::filesystem::path& path);
+// What `parse` makes of each line of ReadTextLines.
+template <typename Parse>
+auto ParseTextLines(const std::filesystem::path& path, const Parse& parse) {
+  std::vector<std::invoke_result_t<Parse, const TextLine&>> items;
+  for (const TextLine& line : ReadTextLines(path)) items.push_back(parse(line));
+  return items;
+}
+
 // ReadTextLines for a text that is not a file of its own; `name` stands for it in error messages.
 std::vector<TextLine> TextLines(const std::string& text, const std::string& name);
 

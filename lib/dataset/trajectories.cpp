@@ -156,9 +156,7 @@ std::string TrajectoryLine(const TimedPose& pose) {
 }
 
 std::vector<TimedPose> ReadTrajectory(const std::filesystem::path& path) {
-  std::vector<TimedPose> trajectory;
-  for (const TextLine& line : ReadTextLines(path)) trajectory.push_back(ParseTumPose(line));
-  return SortedTrajectory(std::move(trajectory), path);
+  return SortedTrajectory(ParseTextLines(path, &ParseTumPose), path);
 }
 
 std::optional<TimedPose> NearestPose(const std::vector<TimedPose>& trajectory, double timestamp,
@@ -198,9 +196,7 @@ TimedPose ParseEurocPose(const TextLine& line) {
 }  // namespace
 
 std::vector<TimedPose> ReadEurocTrajectory(const std::filesystem::path& path) {
-  std::vector<TimedPose> trajectory;
-  for (const TextLine& line : ReadTextLines(path)) trajectory.push_back(ParseEurocPose(line));
-  return SortedTrajectory(std::move(trajectory), path);
+  return SortedTrajectory(ParseTextLines(path, &ParseEurocPose), path);
 }
 
 Eigen::Matrix<double, 3, 4> ParseMatrix34(std::span<const std::string_view> words,
@@ -218,11 +214,10 @@ Eigen::Matrix<double, 3, 4> ParseMatrix34(std::span<const std::string_view> word
 }
 
 std::vector<Rigid3d> ReadKittiTrajectory(const std::filesystem::path& path) {
-  std::vector<Rigid3d> poses;
-  for (const TextLine& line : ReadTextLines(path)) {
+  std::vector<Rigid3d> poses = ParseTextLines(path, [](const TextLine& line) {
     const Eigen::Matrix<double, 3, 4> pose = ParseMatrix34(SplitWords(line.text), line.place);
-    poses.push_back({NearestRotation(pose.leftCols<3>(), line.place), pose.col(3)});
-  }
+    return Rigid3d{NearestRotation(pose.leftCols<3>(), line.place), pose.col(3)};
+  });
   if (poses.empty()) throw InputError(path.string() + ": has no pose");
   return poses;
 }
