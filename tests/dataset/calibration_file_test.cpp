@@ -183,8 +183,7 @@ const Camera kCamera = {640, 480, 500, 510, 319.5, 239.5};
 class CalibrationFileTest : public testing::Test {
  protected:
   Calibration Read(const std::string& text, const std::string& name = "a.yaml") {
-    WriteBytes(folder_ / name, text);
-    return ReadCameraFile(folder_ / name);
+    return ReadCameraFile(WriteBytes(folder_ / name, text));
   }
   void ExpectRefused(const std::string& from, const std::string& to,
                      const std::vector<std::string>& words) {

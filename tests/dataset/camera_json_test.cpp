@@ -12,10 +12,10 @@ namespace {
 class CameraJsonTest : public testing::Test {
  protected:
   LensCamera Read(const std::string& more) {
-    WriteBytes(folder_ / "camera.json", R"({"width": 640, "height": 480, "fx": 500, "fy": 500,
+    return ReadCamera(
+        WriteBytes(folder_ / "camera.json", R"({"width": 640, "height": 480, "fx": 500, "fy": 500,
                                             "cx": 320, "cy": 240)" +
-                                            more + "}");
-    return ReadCamera(folder_ / "camera.json");
+                                                more + "}"));
   }
   void ExpectRefused(const std::string& more, const std::vector<std::string>& words) {
     ExpectError<InputError>([&] { Read(more); }, words);

@@ -53,12 +53,10 @@ std::string ColmapCamerasBinary(int model, const std::vector<double>& parameters
 class ColmapModelTest : public testing::Test {
  protected:
   LensCamera Cameras(const std::string& lines) {
-    WriteBytes(folder_ / "cameras.txt", "# Camera list\n" + lines);
-    return ReadColmapCamera(folder_ / "cameras.txt");
+    return ReadColmapCamera(WriteBytes(folder_ / "cameras.txt", "# Camera list\n" + lines));
   }
   std::vector<NamedPose> Images(const std::string& lines) {
-    WriteBytes(folder_ / "images.txt", "# Image list\n" + lines);
-    return ReadColmapPoses(folder_ / "images.txt");
+    return ReadColmapPoses(WriteBytes(folder_ / "images.txt", "# Image list\n" + lines));
   }
   TemporaryFolder folder_;
 };

@@ -47,12 +47,10 @@ TEST(RecordingValues, RefusesWhatIsNoValue) {
 class KittiLabelTest : public testing::Test {
  protected:
   KittiLabel Read(const std::string& columns) {
-    WriteBytes(folder_ / "000000.txt", columns);
-    return ReadKittiObjectLabels(folder_ / "000000.txt").at(0);
+    return ReadKittiObjectLabels(WriteBytes(folder_ / "000000.txt", columns)).at(0);
   }
   KittiCalibration ReadCalibration(const std::string& text = KittiCalibrationText()) {
-    WriteBytes(folder_ / "calib.txt", text);
-    return ReadKittiCalibration(folder_ / "calib.txt");
+    return ReadKittiCalibration(WriteBytes(folder_ / "calib.txt", text));
   }
   void ExpectRefused(const std::string& columns, const std::vector<std::string>& words) {
     ExpectError<InputError>([&] { Read(columns); }, words);

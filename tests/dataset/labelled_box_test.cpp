@@ -19,8 +19,7 @@ namespace {
 class DetectionsCsvTest : public testing::Test {
  protected:
   std::filesystem::path Write(const std::string& text) {
-    WriteBytes(folder_ / "detections.csv", text);
-    return folder_ / "detections.csv";
+    return WriteBytes(folder_ / "detections.csv", text);
   }
   TemporaryFolder folder_;
 };
@@ -118,13 +117,11 @@ constexpr const char* kDataset = R"({
 class CocoResultsTest : public testing::Test {
  protected:
   std::vector<LabelledBox> Read(const std::string& results) {
-    WriteBytes(folder_ / "results.json", results);
-    return ReadCocoResults(folder_ / "results.json");
+    return ReadCocoResults(WriteBytes(folder_ / "results.json", results));
   }
   std::vector<LabelledBox> ReadWith(const std::string& dataset, const std::string& results) {
-    WriteBytes(folder_ / "results.json", results);
-    WriteBytes(folder_ / "dataset.json", dataset);
-    return ReadCocoResults(folder_ / "results.json", folder_ / "dataset.json");
+    return ReadCocoResults(WriteBytes(folder_ / "results.json", results),
+                           WriteBytes(folder_ / "dataset.json", dataset));
   }
   TemporaryFolder folder_;
 };
@@ -208,16 +205,8 @@ TEST_F(CocoResultsTest, LongValuesAreCutInMessages) {
   }
 }
 
-class OaSlamBoxesTest : public testing::Test {
- protected:
-  std::vector<LabelledBox> Read(const std::string& text) {
-    WriteBytes(folder_ / "boxes.json", text);
-    return ReadOaSlamBoxes(folder_ / "boxes.json", CocoLabels());
-  }
-  TemporaryFolder folder_;
-};
-
-TEST_F(OaSlamBoxesTest, BadFilesAreNamed) {
+TEST(OaSlamBoxesTest, BadFilesAreNamed) {
+  const TemporaryFolder folder;
   const auto detection = [](const std::string& fields) {
     return R"([{"file_name": "a.png", "detections": []},
                {"file_name": "b.png", "detections": [{)" +
@@ -238,14 +227,15 @@ TEST_F(OaSlamBoxesTest, BadFilesAreNamed) {
        {where, "bbox is [1,2,\"3\",4]"}},
       {detection(R"("category_id": 1, "detection_score": 1, "bbox": [300, 68, 59, 97])"),
        {where, "x1 <= x2"}}};
-  ExpectBadTexts(cases, "boxes.json", [&](const std::string& text) { Read(text); });
+  ExpectBadTexts(cases, "boxes.json", [&](const std::string& text) {
+    ReadOaSlamBoxes(WriteBytes(folder / "boxes.json", text), CocoLabels());
+  });
 }
 
 class LabelFileTest : public testing::Test {
  protected:
   std::vector<std::string> Read(const std::string& text) {
-    WriteBytes(folder_ / "labels.txt", text);
-    return ReadLabelFile(folder_ / "labels.txt");
+    return ReadLabelFile(WriteBytes(folder_ / "labels.txt", text));
   }
   TemporaryFolder folder_;
 };

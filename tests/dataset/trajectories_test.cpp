@@ -12,18 +12,14 @@
 namespace soslam {
 namespace {
 
-class EurocTrajectoryTest : public testing::Test {
- protected:
-  std::vector<TimedPose> Read(const std::string& text) {
-    WriteBytes(folder_ / "data.csv", text);
-    return ReadEurocTrajectory(folder_ / "data.csv");
-  }
-  TemporaryFolder folder_;
-};
+std::vector<TimedPose> ReadEuroc(const std::string& text) {
+  const TemporaryFolder folder;
+  return ReadEurocTrajectory(WriteBytes(folder / "data.csv", text));
+}
 
 // A body at (1, 2, 3), turned by a quarter about z: x becomes y.
-TEST_F(EurocTrajectoryTest, NanosecondsAndScalarFirst) {
-  const auto poses = Read(
+TEST(EurocTrajectoryTest, NanosecondsAndScalarFirst) {
+  const auto poses = ReadEuroc(
       "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],"
       "q_RS_z [],v_RS_R_x [m s^-1]\r\n"
       "2500000000,1,2,3,0.70710678,0,0,0.70710678,9\r\n"
@@ -36,25 +32,21 @@ TEST_F(EurocTrajectoryTest, NanosecondsAndScalarFirst) {
   EXPECT_TRUE(poses[1].world_from_camera.rotation.isApprox(Eigen::Quaterniond::Identity()));
 }
 
-TEST_F(EurocTrajectoryTest, BadLinesAreNamed) {
+TEST(EurocTrajectoryTest, BadLinesAreNamed) {
   const BadTexts cases = {{"1,1,2,3,1,0,0", {"data.csv:1", "7 fields", "timestamp,x,y,z,qw"}},
                           {"1.5,1,2,3,1,0,0,0", {"timestamp is 1.5", "nanoseconds"}},
                           {"1,1,2,3,1,1,0,0", {"norm"}},
                           {"1,1,2,z,1,0,0,0", {"z is 'z'"}},
                           {"# nothing", {"no pose"}}};
-  ExpectBadTexts(cases, "data.csv", [&](const std::string& line) { Read(line); });
+  ExpectBadTexts(cases, "data.csv", &ReadEuroc);
 }
 
-class KittiTrajectoryTest : public testing::Test {
- protected:
-  std::vector<Rigid3d> Read(const std::string& text) {
-    WriteBytes(folder_ / "poses.txt", text);
-    return ReadKittiTrajectory(folder_ / "poses.txt");
-  }
-  TemporaryFolder folder_;
-};
+std::vector<Rigid3d> ReadKitti(const std::string& text) {
+  const TemporaryFolder folder;
+  return ReadKittiTrajectory(WriteBytes(folder / "poses.txt", text));
+}
 
-TEST_F(KittiTrajectoryTest, RoundedMatricesBecomeRotations) {
+TEST(KittiTrajectoryTest, RoundedMatricesBecomeRotations) {
   for (int i = 0; i < 50; ++i) {
     const Rigid3d pose = RandomRigid();
     std::string line;
@@ -63,14 +55,14 @@ TEST_F(KittiTrajectoryTest, RoundedMatricesBecomeRotations) {
         line += fmt::format("{:.4f} ", pose.Matrix()(row, column));
       }
     }
-    const Rigid3d read = Read(line).front();
+    const Rigid3d read = ReadKitti(line).front();
     EXPECT_NEAR(read.rotation.norm(), 1.0, 1e-12);
     // Rounding to four digits is 5e-5 in each of the numbers.
     EXPECT_LT((read.Matrix() - pose.Matrix()).norm(), 4e-4);
   }
 }
 
-TEST_F(KittiTrajectoryTest, BadLinesAreNamed) {
+TEST(KittiTrajectoryTest, BadLinesAreNamed) {
   const BadTexts cases = {{"1 0 0 0 0 1 0 0 0 0 1", {"has 11 numbers", "12"}},
                           {"1 0 0 0 0 1 0 0 0 0 1 0 0", {"has 13 numbers"}},
                           {"1 0 0 0 0 1 0 x 0 0 1 0", {"number 8 is 'x'"}},
@@ -80,8 +72,8 @@ TEST_F(KittiTrajectoryTest, BadLinesAreNamed) {
                           {"0 0 0 0 0 0 0 0 0 0 0 0", {"not orthonormal"}},
                           {"1 0 0 0 0 -1 0 0 0 0 1 0", {"determinant -1"}}};
   ExpectBadTexts(cases, "poses.txt:2",
-                 [&](const std::string& line) { Read("1 0 0 0 0 1 0 0 0 0 1 0\n" + line); });
-  ExpectError<InputError>([&] { Read("\n"); }, {"poses.txt", "no pose"});
+                 [&](const std::string& line) { ReadKitti("1 0 0 0 0 1 0 0 0 0 1 0\n" + line); });
+  ExpectError<InputError>([&] { ReadKitti("\n"); }, {"poses.txt", "no pose"});
 }
 
 const Camera kPublished = {640, 480, 481.2, -480.0, 319.5, 239.5};

@@ -17,8 +17,7 @@ const cv::Mat kImage(40, 60, CV_8UC1, cv::Scalar(90));
 class ImageHeaderTest : public testing::Test {
  protected:
   std::optional<ImageHeader> Read(const std::string& bytes) {
-    WriteBytes(folder_ / "image", bytes);
-    return ReadImageHeader(folder_ / "image");
+    return ReadImageHeader(WriteBytes(folder_ / "image", bytes));
   }
   void ExpectHeader(const std::string& bytes, int orientation) {
     const auto header = Read(bytes);

@@ -13,8 +13,7 @@ namespace {
 class YoloFormatTest : public testing::Test {
  protected:
   NetworkFile Read(const std::string& bytes) {
-    WriteBytes(folder_ / "net.onnx", bytes);
-    return ReadNetworkFile(folder_ / "net.onnx");
+    return ReadNetworkFile(WriteBytes(folder_ / "net.onnx", bytes));
   }
   YoloFormat Find(const std::string& bytes, int classes = 2, const cv::Size& image = {128, 96}) {
     return FindFormat(Read(bytes), classes, options_, image);

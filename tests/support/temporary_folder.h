@@ -36,8 +36,11 @@ inline std::string FileBytes(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-inline void WriteBytes(const std::filesystem::path& path, const std::string& bytes) {
+// Writes a file; returns its path.
+inline std::filesystem::path WriteBytes(const std::filesystem::path& path,
+                                        const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
+  return path;
 }
 
 }  // namespace soslam
