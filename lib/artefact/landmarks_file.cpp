@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "artefact/landmarks_file.h"
-
 #include <fmt/format.h>
 
 #include <map>
 #include <string>
 #include <utility>
 
+#include "artefact/files.h"
 #include "artefact/model_json.h"
 #include "base/error.h"
 

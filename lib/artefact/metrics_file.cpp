@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "artefact/metrics_file.h"
-
+#include "artefact/files.h"
 #include "artefact/json_file.h"
 #include "artefact/model_json.h"
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "artefact/planes_file.h"
-
 #include <cmath>
 
+#include "artefact/files.h"
 #include "artefact/model_json.h"
 #include "geometry/angles.h"
 

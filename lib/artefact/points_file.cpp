@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "artefact/points_file.h"
-
 #include <fmt/format.h>
 
 #include <limits>
@@ -8,6 +6,7 @@
 #include <string>
 
 #include "artefact/atomic_file.h"
+#include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
 #include "base/error.h"
 

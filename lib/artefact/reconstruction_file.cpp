@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "artefact/reconstruction_file.h"
+#include "artefact/files.h"
 
 namespace soslam {
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "artefact/semantic_table_file.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <string>
 
+#include "artefact/files.h"
 #include "artefact/json_file.h"
 #include "artefact/model_json.h"
 #include "base/error.h"

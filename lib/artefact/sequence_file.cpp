@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "artefact/sequence_file.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "artefact/files.h"
 #include "artefact/model_json.h"
 #include "base/error.h"
 #include "model/occlusion.h"

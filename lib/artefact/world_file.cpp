@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "artefact/world_file.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -8,8 +6,8 @@
 #include <map>
 #include <set>
 
+#include "artefact/files.h"
 #include "artefact/model_json.h"
-#include "artefact/planes_file.h"
 #include "evaluation/result_checks.h"
 #include "geometry/angles.h"
 #include "ground/ground_checks.h"

@@ -2,8 +2,8 @@
 #include <map>
 #include <utility>
 
+#include "artefact/files.h"
 #include "artefact/model_json.h"
-#include "artefact/sequence_file.h"
 
 namespace soslam {
 namespace {

@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "artefact/points_file.h"
-#include "artefact/reconstruction_file.h"
+#include "artefact/files.h"
 #include "base/text.h"
 #include "evaluation/statistics.h"
 #include "inspection/inspection.h"

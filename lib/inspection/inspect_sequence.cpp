@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <set>
 
+#include "artefact/files.h"
 #include "artefact/json_file.h"
 #include "artefact/model_json.h"
-#include "artefact/semantic_table_file.h"
-#include "artefact/sequence_file.h"
 #include "inspection/inspection.h"
 #include "model/label_groups.h"
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "artefact/files.h"
 #include "artefact/json_file.h"
-#include "artefact/world_file.h"
 #include "base/text.h"
 #include "inspection/inspection.h"
 

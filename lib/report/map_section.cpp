@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "artefact/files.h"
 #include "artefact/json_file.h"
-#include "artefact/landmarks_file.h"
 #include "base/paths.h"
 #include "base/text.h"
 #include "inspection/doubts.h"

@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-#include "artefact/world_file.h"
+#include "artefact/files.h"
 #include "base/text.h"
 #include "evaluation/statistics.h"
 #include "model/segments.h"

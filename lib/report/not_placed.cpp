@@ -6,8 +6,8 @@
 #include <iterator>
 #include <map>
 
+#include "artefact/files.h"
 #include "artefact/json_file.h"
-#include "artefact/landmarks_file.h"
 #include "base/error.h"
 #include "base/paths.h"
 #include "inspection/doubts.h"

@@ -10,8 +10,8 @@
 #include <set>
 #include <string>
 
+#include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
-#include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "report/page_html.h"
 #include "report/page_parts.h"

@@ -5,8 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "artefact/landmarks_file.h"
-#include "artefact/points_file.h"
+#include "artefact/files.h"
 #include "evaluation/metrics.h"
 #include "geometry/angles.h"
 #include "report/page_parts.h"

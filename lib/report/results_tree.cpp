@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <fstream>
 
+#include "artefact/files.h"
 #include "artefact/json_file.h"
-#include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "base/paths.h"
 #include "base/run_log.h"

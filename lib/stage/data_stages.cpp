@@ -6,11 +6,9 @@
 #include <iterator>
 #include <set>
 
+#include "artefact/files.h"
 #include "artefact/json_file.h"
 #include "artefact/model_json.h"
-#include "artefact/reconstruction_file.h"
-#include "artefact/semantic_table_file.h"
-#include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "base/paths.h"
 #include "base/run_log.h"

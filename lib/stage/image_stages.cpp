@@ -10,8 +10,8 @@
 #include <opencv2/core/utility.hpp>
 #include <vector>
 
+#include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
-#include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/progress.h"

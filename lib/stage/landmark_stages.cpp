@@ -10,10 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
-#include "artefact/landmarks_file.h"
-#include "artefact/semantic_table_file.h"
-#include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/text.h"

@@ -7,13 +7,9 @@
 #include <set>
 #include <vector>
 
+#include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
 #include "artefact/json_file.h"
-#include "artefact/landmarks_file.h"
-#include "artefact/metrics_file.h"
-#include "artefact/points_file.h"
-#include "artefact/semantic_table_file.h"
-#include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "cli/command_line.h"

@@ -6,9 +6,8 @@
 #include <functional>
 
 #include "artefact/atomic_file.h"
+#include "artefact/files.h"
 #include "artefact/json_file.h"
-#include "artefact/landmarks_file.h"
-#include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "base/hash.h"
 #include "exchange/exports.h"

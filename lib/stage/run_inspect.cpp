@@ -9,10 +9,8 @@
 #include <vector>
 
 #include "artefact/atomic_file.h"
+#include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
-#include "artefact/landmarks_file.h"
-#include "artefact/sequence_file.h"
-#include "artefact/world_file.h"
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/paths.h"

@@ -9,8 +9,7 @@
 #include <vector>
 
 #include "artefact/atomic_file.h"
-#include "artefact/points_file.h"
-#include "artefact/reconstruction_file.h"
+#include "artefact/files.h"
 #include "base/error.h"
 #include "base/paths.h"
 #include "base/text.h"

@@ -6,8 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "artefact/points_file.h"
-#include "artefact/sequence_file.h"
+#include "artefact/files.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/text.h"

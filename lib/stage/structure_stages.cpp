@@ -7,12 +7,7 @@
 #include <map>
 #include <optional>
 
-#include "artefact/associations_file.h"
-#include "artefact/planes_file.h"
-#include "artefact/points_file.h"
-#include "artefact/semantic_table_file.h"
-#include "artefact/sequence_file.h"
-#include "artefact/world_file.h"
+#include "artefact/files.h"
 #include "association/association.h"
 #include "base/error.h"
 #include "base/text.h"

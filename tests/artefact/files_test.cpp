@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The three JSON artefacts of the model: what is written is read back bit for bit.
+#include "artefact/files.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "artefact/landmarks_file.h"
 #include "artefact/model_json.h"
-#include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "model/occlusion.h"
 #include "support/dataset_fixture.h"

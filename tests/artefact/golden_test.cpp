@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include "artefact/files.h"
 #include "artefact/json_file.h"
-#include "artefact/landmarks_file.h"
 #include "artefact/run_file.h"
-#include "artefact/semantic_table_file.h"
-#include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "support/dataset_fixture.h"
 #include "support/expect_error.h"

@@ -8,7 +8,7 @@
 #include <functional>
 #include <opencv2/core.hpp>
 
-#include "artefact/points_file.h"
+#include "artefact/files.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "support/expect_error.h"

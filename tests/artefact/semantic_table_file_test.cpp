@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "artefact/semantic_table_file.h"
-
 #include <gtest/gtest.h>
 
+#include "artefact/files.h"
 #include "base/error.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"

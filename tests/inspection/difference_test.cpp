@@ -6,9 +6,8 @@
 
 #include <cmath>
 
+#include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
-#include "artefact/landmarks_file.h"
-#include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "support/expect_error.h"
 #include "support/random_estimates.h"

@@ -8,15 +8,8 @@
 #include <algorithm>
 #include <numbers>
 
-#include "artefact/associations_file.h"
+#include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
-#include "artefact/landmarks_file.h"
-#include "artefact/metrics_file.h"
-#include "artefact/planes_file.h"
-#include "artefact/points_file.h"
-#include "artefact/reconstruction_file.h"
-#include "artefact/semantic_table_file.h"
-#include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "geometry/angles.h"
 #include "initialisation/options.h"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
-#include "artefact/sequence_file.h"
 #include "support/small_pipeline.h"
 
 namespace soslam {

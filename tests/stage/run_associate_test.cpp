@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "artefact/files.h"
 #include "artefact/json_file.h"
-#include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "report/page_parts.h"
 #include "stage/stages.h"

@@ -5,8 +5,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
-#include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "image/read_image.h"
 #include "stage/image_stages.h"

@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "artefact/landmarks_file.h"
-#include "artefact/sequence_file.h"
+#include "artefact/files.h"
 #include "association/association.h"
 #include "base/error.h"
 #include "dataset/trajectories.h"

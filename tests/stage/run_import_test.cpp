@@ -2,9 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "artefact/files.h"
 #include "artefact/json_file.h"
-#include "artefact/reconstruction_file.h"
-#include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "base/hash.h"
 #include "stage/stages.h"

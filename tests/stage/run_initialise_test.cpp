@@ -6,9 +6,8 @@
 #include <functional>
 #include <opencv2/imgproc.hpp>
 
+#include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
-#include "artefact/landmarks_file.h"
-#include "artefact/sequence_file.h"
 #include "base/error.h"
 #include "geometry/angles.h"
 #include "geometry/iou.h"

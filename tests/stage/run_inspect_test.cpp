@@ -6,11 +6,8 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
-#include "artefact/landmarks_file.h"
-#include "artefact/metrics_file.h"
-#include "artefact/sequence_file.h"
-#include "artefact/world_file.h"
 #include "base/error.h"
 #include "base/options.h"
 #include "ground/ground_checks.h"

@@ -2,8 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "artefact/semantic_table_file.h"
-#include "artefact/sequence_file.h"
+#include "artefact/files.h"
 #include "base/error.h"
 #include "stage/stages.h"
 #include "support/expect_error.h"

@@ -3,9 +3,7 @@
 
 #include <cmath>
 
-#include "artefact/landmarks_file.h"
-#include "artefact/points_file.h"
-#include "artefact/sequence_file.h"
+#include "artefact/files.h"
 #include "base/error.h"
 #include "evaluation/metrics.h"
 #include "stage/stages.h"

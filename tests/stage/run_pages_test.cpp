@@ -9,11 +9,8 @@
 #include <string>
 #include <utility>
 
+#include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
-#include "artefact/landmarks_file.h"
-#include "artefact/points_file.h"
-#include "artefact/sequence_file.h"
-#include "artefact/world_file.h"
 #include "base/error.h"
 #include "base/options.h"
 #include "geometry/angles.h"

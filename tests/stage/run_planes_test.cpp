@@ -7,9 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "artefact/files.h"
 #include "artefact/json_file.h"
-#include "artefact/points_file.h"
-#include "artefact/sequence_file.h"
 #include "association/association.h"
 #include "base/error.h"
 #include "stage/stages.h"

@@ -5,9 +5,8 @@
 #include <cstdlib>
 #include <opencv2/imgcodecs.hpp>
 
+#include "artefact/files.h"
 #include "artefact/model_json.h"
-#include "artefact/points_file.h"
-#include "artefact/reconstruction_file.h"
 #include "base/error.h"
 #include "dataset/dataset_json.h"
 #include "dataset/trajectories.h"

@@ -4,8 +4,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "artefact/points_file.h"
-#include "artefact/sequence_file.h"
+#include "artefact/files.h"
 #include "dataset/text_file.h"
 #include "geometry/distortion.h"
 #include "stage/stages.h"

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "artefact/semantic_table_file.h"
+#include "artefact/files.h"
 #include "geometry/angles.h"
 #include "ground/estimate_ground.h"
 #include "ground/horizontal_planes.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "artefact/sequence_file.h"
+#include "artefact/files.h"
 #include "dataset/calibration_file.h"
 #include "dataset/class_names.h"
 #include "dataset/colmap_model.h"

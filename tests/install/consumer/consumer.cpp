@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "soslam/artefact/semantic_table_file.h"
+#include "soslam/artefact/files.h"
 #include "soslam/geometry/iou.h"
 
 int main(int argc, char** argv) {

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "artefact/json_file.h"
+#include "association/association.h"
+#include "evaluation/map_quality.h"
+#include "evaluation/metrics.h"
+#include "ground/estimate_ground.h"
+#include "ground/ground_checks.h"
+#include "initialisation/semantic_table.h"
+#include "model/estimates.h"
+#include "model/map_points.h"
+#include "model/reconstruction.h"
+#include "model/sequence.h"
+#include "planes/planes_estimate.h"
+
+namespace soslam {
+
+// The artefacts of the pipeline (schemas/<kind>.schema.json). Files refer to frames, planes and
+// objects by id. All writers throw as WriteArtefact, all readers as ReadArtefact.
+
+// Whether a reader needs the support planes of a sequence.
+enum class PlaneNeed { kNeeded, kNotNeeded };
+
+// Kind "sequence". ReadSequence throws InputError also for a file without the planes that are
+// needed.
+Sequence ReadSequence(const std::filesystem::path& path, PlaneNeed need = PlaneNeed::kNeeded);
+// Writes the sequence with its own findings.
+void WriteSequence(const std::filesystem::path& path, const Sequence& sequence,
+                   const ArtefactInfo& info);
+
+// Kind "reconstruction".
+void WriteReconstruction(const std::filesystem::path& path, const ReconstructionSummary& summary,
+                         const ArtefactInfo& info);
+ReconstructionSummary ReadReconstruction(const std::filesystem::path& path);
+
+// Writes points.h5 (layout: schemas/hdf5-layout.md) atomically, points and observations in the
+// given order. Throws SettingsError when it cannot be written.
+void WritePoints(const std::filesystem::path& path, const std::vector<MapPoint>& points,
+                 const ArtefactInfo& info);
+// The points in file order. Throws InputError when the file is missing, damaged, not of kind
+// "points" or too new, when its arrays do not fit each other, or a number is not possible.
+std::vector<MapPoint> ReadPoints(const std::filesystem::path& path);
+
+// Kind "associations": the decision and its reason for each detection, track and object, and the
+// agreement of the objects with those of the sequence. Objects have the ids that AssociatedSequence
+// gives them.
+void WriteAssociations(const std::filesystem::path& path, const Sequence& sequence,
+                       const Association& association, const Agreement& agreement,
+                       const ArtefactInfo& info);
+
+// Kind "planes". `given`: the sequence that the planes were estimated from, with its given planes.
+void WritePlanes(const std::filesystem::path& path, const PlanesEstimate& estimate,
+                 const Sequence& given, const ArtefactInfo& info);
+// A plane in kind "planes" and "world", without its id and error. `tilt_variance` (rad^2) is added
+// to the tilt of the covariance.
+nlohmann::json PlaneToJson(const EstimatedPlane& plane, double tilt_variance);
+
+// Kind "world".
+void WriteWorld(const std::filesystem::path& path, const GroundEstimate& estimate,
+                const Sequence& input, const ArtefactInfo& info);
+// The scale of a world.json that was read; none where it is unknown.
+std::optional<WorldScale> ScaleOfWorld(const nlohmann::json& world);
+// Why up may be wrong by more than its standard deviation, in words; empty where nothing says so.
+std::string DoubtOfUp(const nlohmann::json& world);
+// True if the lengths of a sequence without a world.json are in metres.
+inline bool IsInMetresWithoutWorld(const Sequence& sequence) {
+  return sequence.odometry_world != OdometryWorld::kOwnWithScale;
+}
+
+// A semantic table, written by people or by soslam-learn-priors; written as kind "semantic_table".
+SemanticTable ReadSemanticTable(const std::filesystem::path& path);
+SemanticRows ReadSemanticRows(const std::filesystem::path& path);
+void WriteSemanticRows(const std::filesystem::path& path, const SemanticRows& rows,
+                       const ArtefactInfo& info);
+
+// Kind "landmarks": initial.json, refined.json. `sequence` is the one that the estimates belong to.
+// ReadLandmarks throws InputError also for a detection that the sequence lacks.
+LandmarkEstimates ReadLandmarks(const std::filesystem::path& path, const Sequence& sequence);
+void WriteLandmarks(const std::filesystem::path& path, const LandmarkEstimates& estimates,
+                    const Sequence& sequence, const ArtefactInfo& info);
+// Number of observations and objects with a failure, per reason.
+std::map<std::string, int> CountFailures(const LandmarkEstimates& estimates);
+
+// Kind "map". `sequence` is the one that the map was made from. ReadMap throws InputError also for
+// an object that the sequence lacks, and for a trajectory that does not have exactly its frames.
+MapEstimate ReadMap(const std::filesystem::path& path, const Sequence& sequence);
+void WriteMap(const std::filesystem::path& path, const MapEstimate& map, const Sequence& sequence,
+              const ArtefactInfo& info);
+
+// Kind "metrics".
+void WriteMetrics(const std::filesystem::path& path, const Metrics& metrics,
+                  const Sequence& sequence, const ArtefactInfo& info);
+
+}  // namespace soslam
