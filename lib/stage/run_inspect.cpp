@@ -96,7 +96,7 @@ cv::Mat PictureOfEdges(const InspectRequest& request) {
     if (ids.empty()) throw NothingUsableError(request.file.string() + ": has no frames");
     RefuseFrame(frame_id, request.file, ids.front(), ids.back());
   }
-  return EdgesPicture(reader.Read(frame_id), request.layer, fmt::format("frame {}", frame_id));
+  return EdgesPicture(reader.Read(frame_id), fmt::format("frame {}", frame_id));
 }
 
 cv::Mat PictureOfSymmetry(const InspectRequest& request) {
@@ -210,7 +210,7 @@ std::string Headline(const InspectRequest& request) {
 
 }  // namespace
 
-std::string RunInspect(const InspectRequest& request, bool is_coloured) {
+std::string RunInspect(const InspectRequest& request) {
   if (request.headline) return Headline(request);
   if (request.image) WritePng(*request.image, PictureOf(request));
   if (request.image && !request.csv) return "";
@@ -219,7 +219,7 @@ std::string RunInspect(const InspectRequest& request, bool is_coloured) {
     if (IsOfAnotherSequence(request)) {
       inspection.facts.push_back({"note", "--sequence is not the file that this was made from"});
     }
-    return FormatInspection(inspection, is_coloured);
+    return FormatInspection(inspection);
   }
   std::string csv = FormatCsv(inspection.table);
   if (*request.csv == "-") return csv;
