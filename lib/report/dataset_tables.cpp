@@ -88,10 +88,6 @@ namespace {
 
 using nlohmann::json;
 
-std::string Number(const json& value, int decimals) {
-  return value.is_number() ? fmt::format("{:.{}f}", value.get<double>(), decimals) : kNoValue;
-}
-
 // "2.31", or "2.31 to 2.34".
 std::string Range(const std::vector<double>& values) {
   const auto [least, most] = std::ranges::minmax(values);
@@ -144,13 +140,13 @@ std::vector<Cell> QualityRow(const std::string& name, const json& quality) {
   const auto count = [&](const char* key) { return first.at(key).get<int>(); };
   std::vector<Cell> row = {name, fmt::format("{} ({})", count("true_objects"), count("detectable")),
                            fmt::format("{} ({})", count("landmarks"), count("ignored")),
-                           Number(first.at("recall_of_detectable"), 2)};
+                           NumberText(first.at("recall_of_detectable"), 2)};
   for (const json& score : quality.at("scores")) {
     row.emplace_back(std::to_string(score.at("found").get<int>()));
     for (const char* share : {"precision", "recall", "f1"}) {
-      row.emplace_back(Number(score.at(share), 2));
+      row.emplace_back(NumberText(score.at(share), 2));
     }
-    row.emplace_back(Number(score.at("of_found").at("iou_mean"), 3));
+    row.emplace_back(NumberText(score.at("of_found").at("iou_mean"), 3));
   }
   return row;
 }
@@ -162,19 +158,19 @@ std::vector<Cell> ErrorsRow(const std::string& name, const json& quality) {
   const auto count = [&](const char* key) { return found.at(key).get<int>(); };
   const json& log_size = found.at("log_size_abs_mean");
   return {name,
-          Number(found.at("centre_m_mean"), 3),
-          Number(found.at("centre_relative_mean"), 2),
-          fmt::format("{}, {}, {}", Number(log_size.at(0), 2), Number(log_size.at(1), 2),
-                      Number(log_size.at(2), 2)),
-          Number(found.at("log_scale_abs_mean"), 3),
-          Number(found.at("yaw_error_deg_mean"), 1),
-          Number(found.at("up_error_deg_mean"), 1),
-          Number(found.at("plane_offset_m_abs_mean"), 3),
-          Number(found.at("plane_tilt_deg_mean"), 1),
+          NumberText(found.at("centre_m_mean"), 3),
+          NumberText(found.at("centre_relative_mean"), 2),
+          fmt::format("{}, {}, {}", NumberText(log_size.at(0), 2), NumberText(log_size.at(1), 2),
+                      NumberText(log_size.at(2), 2)),
+          NumberText(found.at("log_scale_abs_mean"), 3),
+          NumberText(found.at("yaw_error_deg_mean"), 1),
+          NumberText(found.at("up_error_deg_mean"), 1),
+          NumberText(found.at("plane_offset_m_abs_mean"), 3),
+          NumberText(found.at("plane_tilt_deg_mean"), 1),
           fmt::format("{} of {}", count("labels_agree"), score.at("found").get<int>()),
           fmt::format("{} of {}", count("ids_agree"), count("ids_known")),
-          Number(in_frames.at("iou_mean"), 3),
-          Number(in_frames.at("iou_mean_in_world"), 3)};
+          NumberText(in_frames.at("iou_mean"), 3),
+          NumberText(in_frames.at("iou_mean_in_world"), 3)};
 }
 
 // Whose the pose estimates are.
@@ -194,9 +190,8 @@ std::string KindOfAlignment(const NamedMetrics& map) {
 void AddMistakes(const char* kind, const json& rows, const char* id, Table* table) {
   for (const json& row : rows) {
     if (row.at("reason").is_null()) continue;
-    table->rows.push_back(
-        {kind, fmt::format("{} {}", row.at("label").get<std::string>(), row.at(id).get<int>()),
-         WithBlanks(row.at("reason")), row.at("detail").get<std::string>()});
+    table->rows.push_back({kind, ObjectName(row, id), WithBlanks(row.at("reason")),
+                           row.at("detail").get<std::string>()});
   }
 }
 

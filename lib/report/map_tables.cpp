@@ -47,18 +47,6 @@ bool IsOfMissed(const json& landmark, const std::set<int>& missed) {
 
 constexpr size_t kNamesInCell = 12;
 
-// Names of objects by the reason for which they are missed or false, reasons in the order in which
-// they are found.
-using NamesByReason = std::vector<std::pair<std::string, std::vector<std::string>>>;
-
-void AddName(const json& row, const char* id, NamesByReason* names) {
-  const std::string reason = WithBlanks(row.at("reason"));
-  auto entry = std::ranges::find(*names, reason, &NamesByReason::value_type::first);
-  if (entry == names->end()) entry = names->insert(names->end(), {reason, {}});
-  entry->second.push_back(
-      fmt::format("{} {}", row.at("label").get<std::string>(), row.at(id).get<int>()));
-}
-
 // Adds a row, or its variant to a row that says the same of another variant.
 void AddOrJoin(const std::vector<Cell>& row, Table* table) {
   constexpr size_t kVariant = 1;
@@ -76,15 +64,10 @@ void AddOrJoin(const std::vector<Cell>& row, Table* table) {
   }
 }
 
-std::string NumberText(const json& value, int decimals) {
-  return value.is_number() ? fmt::format("{:.{}f}", value.get<double>(), decimals) : kNoValue;
-}
-
 std::vector<Cell> LimitsRow(const json& landmark) {
   const json& errors = landmark.at("errors");
   const json& wrong = landmark.at("wrong_part");
-  return {fmt::format("{} {}", landmark.at("label").get<std::string>(),
-                      landmark.at("true_object").get<int>()),
+  return {ObjectName(landmark, "true_object"),
           wrong.is_null() ? kNoValue : WithBlanks(wrong.at("part")),
           NumberText(errors.at("iou"), 3),
           wrong.is_null() ? kNoValue : NumberText(wrong.at("iou_corrected"), 3),
@@ -129,18 +112,18 @@ Table LostTable(const std::vector<DatasetResult>& datasets,
        "each."}};
   ForEachMap(datasets, variants, [&](const DatasetResult& dataset, const VariantResult& variant) {
     const json& quality = variant.metrics["map_quality"];
-    NamesByReason missed, false_ones;
+    NamesByKey missed, false_ones;  // by reason
     std::set<int> missed_ids;
     for (const json& object : quality.at("objects")) {
       if (object.at("reason").is_null()) continue;
-      AddName(object, "true_object", &missed);
+      missed[WithBlanks(object.at("reason"))].push_back(ObjectName(object, "true_object"));
       missed_ids.insert(object.at("true_object").get<int>());
     }
     for (const json& landmark : quality.at("landmarks")) {
       if (landmark.at("reason").is_null() || IsOfMissed(landmark, missed_ids)) continue;
-      AddName(landmark, "object", &false_ones);
+      false_ones[WithBlanks(landmark.at("reason"))].push_back(ObjectName(landmark, "object"));
     }
-    const auto add_rows = [&](const char* mistake, const NamesByReason& names) {
+    const auto add_rows = [&](const char* mistake, const NamesByKey& names) {
       for (const auto& [reason, objects] : names) {
         AddOrJoin(WithMap(dataset, variant, {mistake, reason, NamesInWords(objects, kNamesInCell)}),
                   &table);

@@ -68,6 +68,14 @@ std::string WithBlanks(std::string name) {
   return name;
 }
 
+std::string NumberText(const json& value, int decimals, const char* none) {
+  return value.is_number() ? fmt::format("{:.{}f}", value.get<double>(), decimals) : none;
+}
+
+std::string ObjectName(const json& row, const char* id) {
+  return fmt::format("{} {}", row.at("label").get<std::string>(), row.at(id).get<int>());
+}
+
 std::string HtmlText(const std::string& text) {
   std::string escaped = Escaped(Escaped(Utf8(text), '&', "&amp;"), '<', "&lt;");
   return Escaped(Escaped(Escaped(escaped, '>', "&gt;"), '"', "&quot;"), '\'', "&#39;");
@@ -144,23 +152,21 @@ json PageFindings(const DatasetResult& dataset) {
   std::map<fs::path, json> findings_of;  // by resolved path
   json findings = json::array();
   for (const char* artefact : kArtefacts) {
-    std::vector<std::pair<json, std::vector<std::string>>> found;  // with the variants' names
+    nlohmann::ordered_map<json, std::vector<std::string>> found;  // with the variants' names
     for (const VariantResult& variant : dataset.variants) {
       const fs::path file = fs::weakly_canonical(variant.folder / artefact);
       if (!findings_of.contains(file)) findings_of[file] = FindingsIn(file);
       for (const json& finding : findings_of[file]) {
-        const json texts = TextsOf(finding);
-        auto known = std::ranges::find(found, texts, [](const auto& pair) { return pair.first; });
-        if (known == found.end()) known = found.emplace(known, texts, std::vector<std::string>());
-        known->second.push_back(Utf8(variant.name));
+        found[TextsOf(finding)].push_back(Utf8(variant.name));
       }
     }
-    for (auto& [finding, variants] : found) {
+    for (const auto& [texts, variants] : found) {
       const bool in_all = variants.size() == dataset.variants.size();
+      json finding = texts;
       finding["where"] =
           fmt::format("{} of {}", artefact,
                       in_all ? "all variants" : fmt::to_string(fmt::join(variants, ", ")));
-      findings.push_back(finding);
+      findings.push_back(std::move(finding));
     }
   }
   std::stable_partition(findings.begin(), findings.end(),

@@ -30,6 +30,15 @@ std::string PageText(const nlohmann::json& data);
 // A name of the artefacts as words: "no_support" is "no support".
 std::string WithBlanks(std::string name);
 
+// A number of an artefact; `none` where there is no number.
+std::string NumberText(const nlohmann::json& value, int decimals, const char* none = kNoValue);
+
+// "cup 7": the label and this id of a row of an artefact.
+std::string ObjectName(const nlohmann::json& row, const char* id);
+
+// Names by what they have in common, in the order in which they came.
+using NamesByKey = nlohmann::ordered_map<std::string, std::vector<std::string>>;
+
 // Text escaped for HTML, also within quotes.
 std::string HtmlText(const std::string& text);
 

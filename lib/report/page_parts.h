@@ -210,7 +210,9 @@ Rigid3d CameraAbovePlane(const Sequence& sequence, const Detection& detection);
 //     of residuals used and left out
 //   planes: those of the map, see PageGrids, and grids, by selected frame, see PageGridInFrame;
 //     both null if they are the sequence's
-//   points: see PagePoints; null without any. Of objects that have some: see PagePointCounts
+//   points: by selected detection the image points of the object's points, [x, y, responsibility in
+//     %, ...], or null; null without any. Of objects that have some: their count, and of_object,
+//     the sum of their responsibilities
 // Throws InputError when a file that the variant should have is missing or not valid.
 nlohmann::json PageVariant(const VariantResult& result, const Sequence& sequence,
                            const PageSelection& selection);

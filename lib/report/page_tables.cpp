@@ -24,7 +24,7 @@ using nlohmann::json;
 using Pointer = json::json_pointer;
 
 std::string NumberOrDash(const json& value, int decimals) {
-  return value.is_number() ? fmt::format("{:.{}f}", value.get<double>(), decimals) : "–";
+  return NumberText(value, decimals, "–");
 }
 
 // {"name": count, ...} as "2 name, 1 other name".
@@ -222,7 +222,7 @@ std::string ObjectsTable(const json& objects, const json& variant, bool has_true
       return NumberOrDash(row.metrics.value(key, json()), decimals);
     };
     table.rows.push_back(
-        {fmt::format("{} {}", object.at("label").get<std::string>(), object.at("id").dump()),
+        {ObjectName(object, "id"),
          row.metrics.value("observations", row.estimate.at("observations")).dump()});
     if (has_true_objects) {
       table.rows.back().insert(table.rows.back().end(),
@@ -318,14 +318,11 @@ std::string StagesSection(const json& page) {
 
 // Planned variants that are missing or older than the plan: a row for each state.
 std::string UnfinishedTable(const json& unfinished) {
-  std::vector<std::pair<std::string, std::vector<std::string>>> names_by_state;
+  NamesByKey names_by_state;
   for (const json& variant : unfinished) {
     const std::string state = variant.at("state").get<std::string>() +
                               (variant.at("is_shown") ? " (shown: the last complete run)" : "");
-    auto found =
-        std::ranges::find(names_by_state, state, [](const auto& pair) { return pair.first; });
-    if (found == names_by_state.end()) found = names_by_state.insert(found, {state, {}});
-    found->second.push_back(variant.at("name").get<std::string>());
+    names_by_state[state].push_back(variant.at("name").get<std::string>());
   }
   if (names_by_state.empty()) return "";
   Table table;

@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "artefact/files.h"
+#include "base/error.h"
 #include "evaluation/metrics.h"
 #include "geometry/angles.h"
+#include "model/map_points.h"
 #include "report/page_parts.h"
-#include "report/page_points.h"
 
 namespace soslam {
 namespace {
@@ -37,6 +42,15 @@ void AddCovariance(const Covariance9& covariance, const Landmark& landmark, json
       SigmasOf({covariance(6, 6), covariance(7, 7), covariance(8, 8)});
   (*object)["sigma_yaw_deg"] =
       PageNumber(kDegPerRad * std::sqrt(up.dot(covariance.topLeftCorner<3, 3>() * up)));
+}
+
+// Numbers of an object's points: {"count", "of_object": the sum of their responsibilities}, or null
+// without any.
+json PagePointCounts(const ObjectEstimate& estimate) {
+  if (estimate.points.empty()) return nullptr;
+  double of_object = 0.0;
+  for (const PointPosterior& point : estimate.points) of_object += point.responsibility;
+  return {{"count", estimate.points.size()}, {"of_object", PageNumber(of_object)}};
 }
 
 json PageObjectEstimate(const ObjectEstimate& estimate) {
@@ -160,6 +174,50 @@ void AddFrames(const LandmarkEstimates& estimates, const Sequence& sequence,
   (*variant)["kind"] = "frames";
   (*variant)["objects"] = PageObjects(FirstEstimates(estimates, sequence), sequence);
   (*variant)["outlines"] = outlines;
+}
+
+// Positions in PageSelection::detections, by frame and object.
+std::map<std::pair<int, int>, size_t> PlacesOfDetections(const Sequence& sequence,
+                                                         const PageSelection& selection) {
+  std::map<std::pair<int, int>, size_t> places;
+  for (size_t i = 0; i < selection.detections.size(); ++i) {
+    const Detection& detection = sequence.detections[selection.detections[i]];
+    places[{detection.frame_index, detection.object_index}] = i;
+  }
+  return places;
+}
+
+const MapPoint& PointAt(int index, const std::vector<MapPoint>& points) {
+  if (static_cast<size_t>(index) < points.size()) return points[static_cast<size_t>(index)];
+  throw InputError(fmt::format(
+      "points.h5: has {} points; expected point {} of map.json among them: is the map of other "
+      "points?",
+      points.size(), index));
+}
+
+// Image points of the points that may be of the objects of a map, in the frames that see them: by
+// selected detection [x, y, responsibility in %, ...], or null where there are none. `points` are
+// those that the map was made from. Throws InputError where the map refers to a point that is not
+// among them.
+json PagePoints(const MapEstimate& map, const std::vector<MapPoint>& points,
+                const Sequence& sequence, const PageSelection& selection) {
+  const auto places = PlacesOfDetections(sequence, selection);
+  std::vector<json> page(selection.detections.size());
+  for (const ObjectEstimate& estimate : map.objects) {
+    for (const PointPosterior& posterior : estimate.points) {
+      for (const PointObservation& observation : PointAt(posterior.index, points).observations) {
+        const auto frame = FrameIndexOf(sequence, observation);
+        if (!frame) continue;
+        const auto place = places.find({static_cast<int>(*frame), estimate.object_index});
+        const auto pixel = UndistortedPixel(sequence, observation);
+        if (place == places.end() || !pixel) continue;
+        json& of_detection = page[place->second];
+        for (const json& coordinate : PagePixels({*pixel})) of_detection.push_back(coordinate);
+        of_detection.push_back(std::lround(100.0 * posterior.responsibility));
+      }
+    }
+  }
+  return page;
 }
 
 bool HavePoints(const MapEstimate& map) {
