@@ -32,21 +32,13 @@ void ReportFindings(const std::string& stage, const std::vector<Finding>& findin
   }
 }
 
-namespace {
-
-// Converts InputError to SettingsError, which has another exit code.
-nlohmann::json ParseAsSettings(const std::filesystem::path& path) {
-  try {
-    return ParseJsonFile(path);
-  } catch (const InputError& error) {
-    throw SettingsError(error.what());
-  }
-}
-
-}  // namespace
-
 nlohmann::json ReadSettingsFile(const std::filesystem::path& path) {
-  nlohmann::json settings = ParseAsSettings(path);
+  nlohmann::json settings;
+  try {
+    settings = ParseJsonFile(path);
+  } catch (const InputError& error) {
+    throw SettingsError(error.what());  // which has another exit code
+  }
   if (!settings.is_object()) {
     throw SettingsError(path.string() + ": expected an object of settings, found a JSON " +
                         settings.type_name());
