@@ -32,111 +32,108 @@ TEST(WeightedMean, WeightsByObjects) {
   EXPECT_EQ(mean.observations, 30);
 }
 
-TEST(PaperTables, NoneWithoutAMeasuredValue) {
-  const ResultsFolder results;
-  results.WriteMetrics("room", "InitP-fine", {{.id = 1, .iou = 0.5}});
-  EXPECT_THAT(PaperTables(ReadResults(results.path()), OnePublishedTable()), IsEmpty());
+class PaperTablesTest : public testing::Test {
+ protected:
+  std::vector<DatasetResult> Read() const { return ReadResults(results_.path()); }
+  // The last table.
+  static Table TableOf(const std::vector<DatasetResult>& datasets,
+                       const Published& published = {}) {
+    return PaperTables(datasets, published).back();
+  }
+
+  const ResultsFolder results_;
+};
+
+TEST_F(PaperTablesTest, NoneWithoutAMeasuredValue) {
+  results_.WriteMetrics("room", "InitP-fine", {{.id = 1, .iou = 0.5}});
+  EXPECT_THAT(PaperTables(Read(), OnePublishedTable()), IsEmpty());
 }
 
-TEST(PaperTables, PublishedRowsStandBelowMeasuredOnes) {
-  const ResultsFolder results;
-  results.WriteMetrics("attic", "OursP", {{.id = 1, .iou = 0.5}});
-  results.WriteMetrics("room", "OursP", {{.id = 1, .iou = 0.25, .observations = 7}});
-  results.WriteMetrics("room", "OursSTE", {{.id = 1, .iou = 0.75, .observations = 7}});
-  const auto tables = PaperTables(ReadResults(results.path()), OnePublishedTable());
-  ASSERT_EQ(tables.size(), 1u);
-  EXPECT_EQ(tables[0].title, "Map, IoU (Table III)");
-  EXPECT_THAT(CellTexts(tables[0]), ElementsAre("hall published - 5 - 0.100 - - - - - - -",
-                                                "room measured f 1 7 - 0.250 - - - *0.750* - -",
-                                                "room published - 3 - - 0.250 - - - - - -",
-                                                "attic measured f 1 1 - *0.500* - - - - - -",
-                                                "average published - 8 - - 0.200 - - - - - -"));
-  EXPECT_EQ(tables[0].notes.back(), "Published: A paper, Table III: whole sequences.");
+TEST_F(PaperTablesTest, PublishedRowsStandBelowMeasuredOnes) {
+  results_.WriteMetrics("attic", "OursP", {{.id = 1, .iou = 0.5}});
+  results_.WriteMetrics("room", "OursP", {{.id = 1, .iou = 0.25, .observations = 7}});
+  results_.WriteMetrics("room", "OursSTE", {{.id = 1, .iou = 0.75, .observations = 7}});
+  const Table table = TableOf(Read(), OnePublishedTable());
+  EXPECT_EQ(table.title, "Map, IoU (Table III)");
+  EXPECT_THAT(CellTexts(table), ElementsAre("hall published - 5 - 0.100 - - - - - - -",
+                                            "room measured f 1 7 - 0.250 - - - *0.750* - -",
+                                            "room published - 3 - - 0.250 - - - - - -",
+                                            "attic measured f 1 1 - *0.500* - - - - - -",
+                                            "average published - 8 - - 0.200 - - - - - -"));
+  EXPECT_EQ(table.notes.back(), "Published: A paper, Table III: whole sequences.");
 }
 
-TEST(PaperTables, SingleFrameVariantsHaveARowForTheFirstObservation) {
-  const ResultsFolder results;
-  results.WriteMetrics("room", "SVD", {{.id = 1, .iou = 0.25, .observations = 7}});
-  results.WriteMetrics("room", "InitP", {{.id = 1, .iou = 0.5, .observations = 7}}, true);
-  const auto tables = PaperTables(ReadResults(results.path()), {});
-  ASSERT_EQ(tables.size(), 1u);
-  EXPECT_THAT(CellTexts(tables[0]),
+TEST_F(PaperTablesTest, SingleFrameVariantsHaveARowForTheFirstObservation) {
+  results_.WriteMetrics("room", "SVD", {{.id = 1, .iou = 0.25, .observations = 7}});
+  results_.WriteMetrics("room", "InitP", {{.id = 1, .iou = 0.5, .observations = 7}}, true);
+  const Table table = TableOf(Read());
+  EXPECT_THAT(CellTexts(table),
               ElementsAre("room all observations f 1 7 0.250 - - *0.500* - - - - -",
                           "room first observation f 1 1 - - - *0.500* - - - - -"));
 }
 
-TEST(PaperTables, ValuesOverFewerObjectsSaySo) {
-  const ResultsFolder results;
-  results.WriteMetrics("room", "Quadric", {{.id = 1, .rotation_deg = 5.0}, {.id = 2}});
+TEST_F(PaperTablesTest, ValuesOverFewerObjectsSaySo) {
+  results_.WriteMetrics("room", "Quadric", {{.id = 1, .rotation_deg = 5.0}, {.id = 2}});
   for (const char* variant : {"OursP", "OursPT"}) {
-    results.WriteMetrics("room", variant,
-                         {{.id = 1, .rotation_deg = 2.0}, {.id = 2, .rotation_deg = 4.0}});
+    results_.WriteMetrics("room", variant,
+                          {{.id = 1, .rotation_deg = 2.0}, {.id = 2, .rotation_deg = 4.0}});
   }
-  const auto tables = PaperTables(ReadResults(results.path()), {});
-  ASSERT_EQ(tables.size(), 2u);
-  EXPECT_THAT(CellTexts(tables[1]),
+  const Table table = TableOf(Read());
+  EXPECT_THAT(CellTexts(table),
               ElementsAre("room measured f 2 2 5.00 (1) *3.00* *3.00* - - - - -"));
 }
 
 // Neither the best, which has fewer objects, nor the best of the rest, which it beats.
-TEST(PaperTables, NoValueIsBoldWhereTheBestIsOverFewerObjects) {
-  const ResultsFolder results;
-  results.WriteMetrics("room", "Quadric", {{.id = 1, .rotation_deg = 1.0}, {.id = 2}});
-  results.WriteMetrics("room", "OursP",
-                       {{.id = 1, .rotation_deg = 2.0}, {.id = 2, .rotation_deg = 4.0}});
-  const auto tables = PaperTables(ReadResults(results.path()), {});
-  ASSERT_EQ(tables.size(), 2u);
-  EXPECT_THAT(CellTexts(tables[1]), ElementsAre("room measured f 2 2 1.00 (1) 3.00 - - - - - -"));
+TEST_F(PaperTablesTest, NoValueIsBoldWhereTheBestIsOverFewerObjects) {
+  results_.WriteMetrics("room", "Quadric", {{.id = 1, .rotation_deg = 1.0}, {.id = 2}});
+  results_.WriteMetrics("room", "OursP",
+                        {{.id = 1, .rotation_deg = 2.0}, {.id = 2, .rotation_deg = 4.0}});
+  const Table table = TableOf(Read());
+  EXPECT_THAT(CellTexts(table), ElementsAre("room measured f 2 2 1.00 (1) 3.00 - - - - - -"));
 }
 
-TEST(PaperTables, AverageIsOverDatasetsThatAllVariantsHave) {
-  const ResultsFolder results;
+TEST_F(PaperTablesTest, AverageIsOverDatasetsThatAllVariantsHave) {
   for (const char* variant : {"OursP", "OursS"}) {
-    results.WriteMetrics("attic", variant, {{.id = 1, .iou = 0.2}});
-    results.WriteMetrics("room", variant,
-                         {{.id = 1, .iou = 0.5}, {.id = 2, .iou = 0.6}, {.id = 3, .iou = 0.7}});
+    results_.WriteMetrics("attic", variant, {{.id = 1, .iou = 0.2}});
+    results_.WriteMetrics("room", variant,
+                          {{.id = 1, .iou = 0.5}, {.id = 2, .iou = 0.6}, {.id = 3, .iou = 0.7}});
   }
-  results.WriteMetrics("shed", "OursP", {{.id = 1, .iou = 0.9}});
-  const auto tables = PaperTables(ReadResults(results.path()), {});
-  ASSERT_EQ(tables.size(), 1u);
-  EXPECT_EQ(CellTexts(tables[0]).back(), "average measured - 4 4 - *0.500* - *0.500* - - - -");
-  EXPECT_THAT(tables[0].notes.back(), EndsWith(": attic, room."));
+  results_.WriteMetrics("shed", "OursP", {{.id = 1, .iou = 0.9}});
+  const Table table = TableOf(Read());
+  EXPECT_EQ(CellTexts(table).back(), "average measured - 4 4 - *0.500* - *0.500* - - - -");
+  EXPECT_THAT(table.notes.back(), EndsWith(": attic, room."));
 }
 
 // An attic that was seen instead of the published room.
-TEST(PaperTables, DatasetsStandAboveThePublishedOneThatTheyAreOf) {
-  const ResultsFolder results;
-  results.WriteMetrics("attic", "OursP", {{.id = 1, .iou = 0.5}});
-  results.WriteMetrics("barn", "OursP-slow", {{.id = 1, .iou = 0.5}});
-  std::vector<DatasetResult> datasets = ReadResults(results.path());
+TEST_F(PaperTablesTest, DatasetsStandAboveThePublishedOneThatTheyAreOf) {
+  results_.WriteMetrics("attic", "OursP", {{.id = 1, .iou = 0.5}});
+  results_.WriteMetrics("barn", "OursP-slow", {{.id = 1, .iou = 0.5}});
+  std::vector<DatasetResult> datasets = Read();
   for (DatasetResult& dataset : datasets) {
     dataset.facts.published = "room";
     dataset.facts.differs = "another room";
   }
-  const auto tables = PaperTables(datasets, OnePublishedTable());
-  ASSERT_EQ(tables.size(), 1u);
-  EXPECT_THAT(CellTexts(tables[0]), ElementsAre("hall published - 5 - 0.100 - - - - - - -",
-                                                "attic measured f 1 1 - *0.500* - - - - - -",
-                                                "room published - 3 - - 0.250 - - - - - -",
-                                                "average published - 8 - - 0.200 - - - - - -"));
-  EXPECT_THAT(tables[0].notes,
+  const Table table = TableOf(datasets, OnePublishedTable());
+  EXPECT_THAT(CellTexts(table), ElementsAre("hall published - 5 - 0.100 - - - - - - -",
+                                            "attic measured f 1 1 - *0.500* - - - - - -",
+                                            "room published - 3 - - 0.250 - - - - - -",
+                                            "average published - 8 - - 0.200 - - - - - -"));
+  EXPECT_THAT(table.notes,
               testing::Contains("Measured above published rows: attic (another room)."));
 }
 
-TEST(PaperTables, ADetectorsBoxesHaveARowOverTheObjectsThatAllVariantsHave) {
-  const ResultsFolder results;
+TEST_F(PaperTablesTest, ADetectorsBoxesHaveARowOverTheObjectsThatAllVariantsHave) {
   for (const char* dataset : {"attic", "hall", "room"}) {
-    results.WriteMetrics(dataset, "OursP", {{.id = 1, .iou = 0.2}, {.id = 2, .iou = 0.4}});
-    results.WriteMetrics(dataset, "OursS", {{.id = 2, .iou = 0.6}, {.id = 3, .iou = 1.0}});
+    results_.WriteMetrics(dataset, "OursP", {{.id = 1, .iou = 0.2}, {.id = 2, .iou = 0.4}});
+    results_.WriteMetrics(dataset, "OursS", {{.id = 2, .iou = 0.6}, {.id = 3, .iou = 1.0}});
   }
-  results.WriteMetrics("shed", "OursP", {{.id = 1, .iou = 0.9}});
-  std::vector<DatasetResult> datasets = ReadResults(results.path());
+  results_.WriteMetrics("shed", "OursP", {{.id = 1, .iou = 0.9}});
+  std::vector<DatasetResult> datasets = Read();
   for (const int of_detector : {0, 1, 3}) datasets[of_detector].facts.boxes_of = "detector";
-  const auto tables = PaperTables(datasets, {});
-  ASSERT_EQ(tables.size(), 1u);
-  EXPECT_EQ(CellTexts(tables[0]).back(),
+  const Table table = TableOf(datasets);
+  EXPECT_EQ(CellTexts(table).back(),
             "detector's boxes common objects f 2 - - 0.400 - *0.600* - - - -");
-  EXPECT_THAT(tables[0].notes.back(), EndsWith(" of attic, hall."));
+  EXPECT_THAT(table.notes.back(), EndsWith(" of attic, hall."));
 }
 
 const std::filesystem::path kFile =

@@ -80,10 +80,11 @@ class RunPagesTest : public testing::Test {
     WriteVariant(name, {"import-1", "initialise-2", "evaluate-3"});
     WriteLandmarks(Folder(name) / "initial.json", {{}, Estimates()}, sequence_, {});
   }
-  void WriteOurs(const std::string& name) const {
+  void WriteOurs(const std::string& name) const { WriteOurs(name, Map()); }
+  void WriteOurs(const std::string& name, const MapEstimate& map) const {
     WriteMultiView(name);
     WriteVariant(name, {"import-1", "initialise-2", "refine-4", "optimise-5", "evaluate-6"});
-    WriteMap(Folder(name) / "map.json", Map(), sequence_, {});
+    WriteMap(Folder(name) / "map.json", map, sequence_, {});
     WriteSymmetry(Folder(name) / "symmetry.h5", {Record()}, {});
   }
   MapEstimate Map() const {
@@ -251,9 +252,9 @@ TEST_F(RunPagesTest, TheMapFromAboveKeepsToItsRoom) {
   }
   EXPECT_EQ(section(100), "");
   // Where nothing is placed, all pictures are of what is not.
-  MapEstimate map = ReadMap(Folder("OursS") / "map.json", sequence_);
+  MapEstimate map = Map();
   for (ObjectEstimate& estimate : map.objects) estimate.landmark_in_world.reset();
-  WriteMap(Folder("OursS") / "map.json", map, sequence_, {});
+  WriteOurs("OursS", map);
   expect_fewer_pictures_below(section(kMaxPageBytes), 0);
 }
 
@@ -268,15 +269,14 @@ TEST_F(RunPagesTest, PhotosWithoutAPoseAreListed) {
 }
 
 TEST_F(RunPagesTest, UncertainObjectsAreDashedAndSaidToBe) {
-  WriteOurs("OursS");
-  MapEstimate map = ReadMap(Folder("OursS") / "map.json", sequence_);
-  for (size_t i = 0; i < Estimates().size(); ++i) {
-    map.objects[i].covariance = Covariance9(1e-4 * Covariance9::Identity());
+  MapEstimate map = Map();
+  for (ObjectEstimate& estimate : map.objects) {
+    estimate.covariance = Covariance9(1e-4 * Covariance9::Identity());
   }
-  WriteMap(Folder("OursS") / "map.json", map, sequence_, {});
+  WriteOurs("OursS", map);
   EXPECT_THAT(Markup(), testing::Not(HasSubstr("uncertain: ")));
   map.objects[1].covariance = Covariance9(4.0 * Covariance9::Identity());
-  WriteMap(Folder("OursS") / "map.json", map, sequence_, {});
+  WriteOurs("OursS", map);
   const std::string html = Markup();
   EXPECT_EQ(CountOf("uncertain: it may stand beside its outline; its depth", html), 1u);
   EXPECT_EQ(CountOf("<polygon class=\"uncertain\"", html), 2u);  // on both plans
@@ -394,10 +394,7 @@ TEST_F(RunPagesTest, PointsOfObjectsAreInTheirImages) {
   const MapPoint of_none{Eigen::Vector3d::Zero(), 0.5, {{sequence_.frames[0].id, {1.0, 2.0}}}};
   const MapPoint of_object{
       Eigen::Vector3d::Zero(), 0.5, {{sequence_.FrameOf(seen).id, {33.25, 44.0}}, {90001, {}}}};
-  for (const char* name : {"OursS", "OursSP"}) {
-    WriteOurs(name);
-    WriteMap(Folder(name) / "map.json", map, sequence_, {});
-  }
+  for (const char* name : {"OursS", "OursSP"}) WriteOurs(name, map);
   WriteVariant("OursSP", {"import-1", "track-7", "initialise-2", "optimise-5", "evaluate-6"});
   WritePoints(Folder("OursSP") / "points.h5", {of_none, of_object}, {});
   EXPECT_EQ(Run().errors, "");

@@ -107,11 +107,6 @@ TEST_F(SlowRunPlanesTest, PosesAreRefinedWithThePlanes) {
   EXPECT_LT(error_in_last_frames(true), 0.7 * error_in_last_frames(false));
 }
 
-TEST_F(RunPlanesTest, SizePriorNeedsPosesThatAreNotRefined) {
-  options_.size_prior = true;
-  ExpectError<SettingsError>([&] { Run(); }, {"size_prior", "refine_poses = false"});
-}
-
 TEST_F(RunPlanesTest, ReportSaysHowCamerasAreHeld) {
   sequence_ = Rolled(sequence_, 1);
   WriteSequence(File("sequence"), sequence_, {});
@@ -179,10 +174,19 @@ TEST_F(RunPlanesTest, RefusesObjectsOfWhichNoneIsOnAPlane) {
   EXPECT_FALSE(std::filesystem::exists(File("output")));
 }
 
-TEST_F(RunPlanesTest, RefusesGivenPlanes) {
-  options_.planes = PlaneSource::kGiven;
-  ExpectError<SettingsError>([&] { Run(); },
-                             {"given", "estimated, where_missing or camera_height"});
+TEST_F(RunPlanesTest, RefusesSettingsThatItCannotFollow) {
+  const auto expect_refused = [&](const PlanesOptions& options,
+                                  const std::vector<std::string>& words) {
+    options_ = options;
+    ExpectError<SettingsError>([&] { Run(); }, words);
+  };
+  PlanesOptions given = options_, verticals = options_, sizes = options_;
+  given.planes = PlaneSource::kGiven;
+  expect_refused(given, {"given", "estimated, where_missing or camera_height"});
+  verticals.verticals = true;
+  expect_refused(verticals, {"--dataset", "verticals = false"});
+  sizes.size_prior = true;
+  expect_refused(sizes, {"size_prior", "refine_poses = false"});
 }
 
 TEST_F(RunPlanesTest, WhereMissingKeepsThePlanesThatAreThere) {
@@ -208,11 +212,6 @@ TEST_F(RunPlanesTest, WhereMissingEstimatesPlanesOfASequenceWithout) {
   Run();
   EXPECT_EQ(ReadArtefact(File("report"), "planes").at("planes"), estimated);
   EXPECT_FALSE(estimated.empty());
-}
-
-TEST_F(RunPlanesTest, VerticalsNeedImages) {
-  options_.verticals = true;
-  ExpectError<SettingsError>([&] { Run(); }, {"--dataset", "verticals = false"});
 }
 
 TEST_F(RunPlanesTest, RefusesSeveralSegments) {

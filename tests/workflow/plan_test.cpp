@@ -74,13 +74,6 @@ class PlanTest : public testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(PlanTest, PointEvidenceNeedsTracks) {
-  Write("pipelines/variants/Points.json",
-        R"({"stages": ["import", "initialise", "optimise", "evaluate"],
-            "optimise": {"point_evidence": true}})");
-  ExpectRefused("Points", {"Points.json", "point_evidence", "'track'"});
-}
-
 TEST_F(PlanTest, VariantsShareWhatTheyHaveInCommon) {
   const Plan plan = Make({"Plain", "Mapped", "Full"});
   const auto& plain = plan.variants[0].instances;
@@ -169,22 +162,6 @@ TEST_F(PlanTest, StagesThatASettingAsksForChangeNoKeyButOfTheirReaders) {
   }
 }
 
-TEST_F(PlanTest, SettingsOfAnAssociationThatDoesNotRunDoNotMatter) {
-  const std::string initialise = Id("Plain", "initialise");
-  Write("pipelines/datasets/room.json", R"({"associate": {"min_observations": 5}})");
-  EXPECT_EQ(Id("Plain", "initialise"), initialise);
-  Write("pipelines/datasets/room.json", R"({"associate": {"min_observations": 0}})");
-  ExpectRefused("Plain", {"room.json", "associate", "min_observations"});
-}
-
-TEST_F(PlanTest, StagesThatASettingAsksForAreNotListed) {
-  for (const std::string stage : {"ground", "planes", "associate"}) {
-    Write("pipelines/variants/Listed.json",
-          R"({"stages": ["import", ")" + stage + R"(", "initialise", "evaluate"]})");
-    ExpectRefused("Listed", {"Listed.json", stage, "expected one of import, edges"});
-  }
-}
-
 TEST_F(PlanTest, InputsComeBeforeWhatReadsThem) {
   std::set<std::string> seen;
   for (const StageInstance& instance : Make({"Full", "Plain"}).instances) {
@@ -210,7 +187,8 @@ TEST_F(PlanTest, AKeyChangesWithItsSettingsAndWithThoseUpstreamOnly) {
 TEST_F(PlanTest, AKeyIgnoresWhatItsVariantDoesNotRunAndHowDefaultsAreWritten) {
   const std::string evaluate = Id("Mapped", "evaluate");
   Write("pipelines/datasets/room.json",
-        R"({"refine": {"yaw_step_deg": 5}, "import": {"border_px": 30}, "description": "x"})");
+        R"({"refine": {"yaw_step_deg": 5}, "associate": {"min_observations": 5},
+            "import": {"border_px": 30}, "description": "x"})");
   EXPECT_EQ(Id("Mapped", "evaluate"), evaluate);
 }
 
@@ -242,13 +220,6 @@ TEST_F(PlanTest, VariantWinsOverDatasetOverBase) {
             1);
 }
 
-TEST_F(PlanTest, NullTakesASettingBackToItsDefault) {
-  Write("pipelines/datasets/room.json", R"({"import": {"frame_stride": 7}})");
-  Write("pipelines/variants/Plain.json", R"({"import": {"frame_stride": null}})");
-  EXPECT_EQ(ReadVariant(folder_ / "pipelines", "room", "Plain").options["import"]["frame_stride"],
-            1);
-}
-
 TEST_F(PlanTest, AVariantComesAfterTheOneThatItExtends) {
   Write("pipelines/datasets/room.json", R"({"import": {"frame_stride": 2, "border_px": 2}})");
   Write("pipelines/variants/Plain.json",
@@ -276,6 +247,7 @@ TEST_F(PlanTest, RefusalsNameTheFile) {
       {R"({"initialise": 3})", "initialise"},
       {R"({"initialize": {}})", "initialize"},
       {R"({"stages": ["import", "fly"]})", "fly"},
+      {R"({"stages": ["import", "ground"]})", "expected one of import, edges"},
       {R"({"stages": ["import", "import"]})", "twice"},
       {R"({"stages": []})", "stages"},
       {R"({"stages": null})", "stages"},
@@ -284,6 +256,8 @@ TEST_F(PlanTest, RefusalsNameTheFile) {
       {R"({"stages": ["import", "initialise", "optimise"], "optimise": {"symmetry": true}})",
        "need stage 'edges'"},
       {R"({"initialise": {"method": "cuboid_proposals"}})", "needs stage 'edges'"},
+      {R"({"stages": ["import", "initialise", "optimise"], "optimise": {"point_evidence": true}})",
+       "needs stage 'track'"},
       {R"({"semantic_table": 3})", "semantic_table"},
       {R"({"extends": 3})", "extends"},
       {R"({"extends": "Bad"})", "leads back"},
@@ -300,8 +274,9 @@ TEST_F(PlanTest, RefusalsNameTheFile) {
   ExpectRefused("Full", {"datasets/room.json", "'extends' is for variants only"});
   Write("pipelines/datasets/room.json", R"({"about": {"boxes_of": "hand"}})");
   ExpectRefused("Plain", {"datasets/room.json: about", "boxes_of"});
-  Write("pipelines/datasets/room.json", R"({"import": {"unheard_of": 1}})");
-  ExpectRefused("Plain", {"datasets/room.json: import", "unheard_of"});
+  // Also of a stage that does not run.
+  Write("pipelines/datasets/room.json", R"({"associate": {"min_observations": 0}})");
+  ExpectRefused("Plain", {"datasets/room.json: associate", "min_observations"});
 }
 
 TEST_F(PlanTest, EveryShippedVariantIsValid) {
