@@ -45,61 +45,75 @@ std::vector<ValueColumn> EstimateColumns() {
 }
 
 // Centre, half axes, shape exponent, yaw about the z axis of the object's frame, and the face that
-// it rests on; empty cells if there is no landmark.
-std::vector<Value> CellsOf(const std::optional<Landmark>& landmark) {
-  if (!landmark) return std::vector<Value>(9);
-  const Eigen::Quaterniond& rotation = landmark->frame_from_object.rotation;
-  std::vector<Value> cells(landmark->Centre().begin(), landmark->Centre().end());
-  cells.insert(cells.end(), landmark->half_axes.begin(), landmark->half_axes.end());
-  cells.insert(cells.end(), {landmark->shape_exponent,
-                             kDegPerRad * Yaw(rotation * Eigen::Vector3d::UnitZ(), rotation),
-                             kRestingFaceNames[static_cast<size_t>(landmark->rests_on)]});
-  return cells;
+// it rests on.
+json CellsOf(const Landmark& landmark) {
+  const Eigen::Vector3d &centre = landmark.Centre(), &half_axes = landmark.half_axes;
+  const Eigen::Quaterniond& rotation = landmark.frame_from_object.rotation;
+  return {{"x", centre.x()},
+          {"y", centre.y()},
+          {"z", centre.z()},
+          {"a", half_axes.x()},
+          {"b", half_axes.y()},
+          {"c", half_axes.z()},
+          {"p", landmark.shape_exponent},
+          {"yaw", kDegPerRad * Yaw(rotation * Eigen::Vector3d::UnitZ(), rotation)},
+          {"rests_on", kRestingFaceNames[static_cast<size_t>(landmark.rests_on)]}};
 }
 
 // Standard deviations: of the centre over all directions, of the yaw, and the root mean square over
 // the three half axes.
-std::vector<Value> SigmasOf(const ObjectEstimate& estimate) {
-  if (!estimate.covariance || !estimate.landmark_in_world) return std::vector<Value>(3);
-  const Covariance9& covariance = *estimate.covariance;
-  const Eigen::Vector3d up =
-      estimate.landmark_in_world->frame_from_object.rotation * Eigen::Vector3d::UnitZ();
+json SigmasOf(const Covariance9& covariance, const Landmark& landmark) {
+  const Eigen::Vector3d up = landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ();
   const double yaw_variance = up.dot(covariance.topLeftCorner<3, 3>() * up);
   const double centre_variance = covariance.block<3, 3>(3, 3).trace();
   const double size_variance = covariance.bottomRightCorner<3, 3>().trace() / 3.0;
-  return {std::sqrt(centre_variance), kDegPerRad * std::sqrt(yaw_variance),
-          100.0 * std::sqrt(size_variance)};
+  return {{"sigma_centre", std::sqrt(centre_variance)},
+          {"sigma_yaw", kDegPerRad * std::sqrt(yaw_variance)},
+          {"sigma_size", 100.0 * std::sqrt(size_variance)}};
 }
 
-void Append(const std::vector<Value>& cells, std::vector<Value>* row) {
-  row->insert(row->end(), cells.begin(), cells.end());
+// Sparse points that may be of an object, how many of them are expected to be, and the root mean
+// square distance of these from its surface; no values without points.
+json PointCells(const std::vector<PointPosterior>& points) {
+  double of_object = 0.0;
+  double squares = 0.0;
+  for (const PointPosterior& point : points) {
+    of_object += point.responsibility;
+    squares += point.responsibility * point.distance * point.distance;
+  }
+  if (of_object <= 0.0) return json::object();
+  return {{"points", points.size()},
+          {"of_object", of_object},
+          {"rms_distance", std::sqrt(squares / of_object)}};
 }
 
 Value FailureOf(const std::string& failure) { return failure.empty() ? Value() : Value(failure); }
 
 // The label of an object is that of the sequence, if it is known.
-std::vector<Value> ObservationRow(const json& observation) {
+json ObservationRow(const json& observation) {
   const json& hypotheses = observation.at("hypotheses");
-  std::optional<Landmark> best;
-  Value cost;
-  if (!hypotheses.empty()) {
-    best = LandmarkFromJson(hypotheses[0].at("landmark"), "camera");
-    cost = hypotheses[0].at("cost").get<double>();
-  }
-  std::vector<Value> row = {observation.at("frame"), observation.at("object"), {}, {}};
-  Append(CellsOf(best), &row);
-  Append(std::vector<Value>(3), &row);
-  Append({cost, hypotheses.size(), FailureOf(observation.at("failure"))}, &row);
+  json row = {{"frame", observation.at("frame")},
+              {"object", observation.at("object")},
+              {"hypotheses", hypotheses.size()},
+              {"failure", FailureOf(observation.at("failure"))}};
+  if (hypotheses.empty()) return row;
+  row.update(CellsOf(LandmarkFromJson(hypotheses[0].at("landmark"), "camera")));
+  row["cost"] = hypotheses[0].at("cost").get<double>();
   return row;
 }
 
-std::vector<Value> ObjectRow(const json& fields) {
+json ObjectRow(const json& fields) {
   const ObjectEstimate estimate = ObjectEstimateFromJson(fields);
-  std::vector<Value> row = {{}, fields.at("object"), {}, estimate.observations};
-  Append(CellsOf(estimate.landmark_in_world), &row);
-  Append(SigmasOf(estimate), &row);
-  const bool is_improper = estimate.landmark_in_world && !estimate.proper_ellipsoid;
-  Append({{}, {}, is_improper ? Value("not an ellipsoid") : FailureOf(estimate.failure)}, &row);
+  json row = PointCells(estimate.points);
+  row["object"] = fields.at("object");
+  row["views"] = estimate.observations;
+  row["failure"] = FailureOf(estimate.failure);
+  if (!estimate.landmark_in_world) return row;
+  row.update(CellsOf(*estimate.landmark_in_world));
+  if (estimate.covariance) {
+    row.update(SigmasOf(*estimate.covariance, *estimate.landmark_in_world));
+  }
+  if (!estimate.proper_ellipsoid) row["failure"] = "not an ellipsoid";
   return row;
 }
 
@@ -129,29 +143,6 @@ std::vector<Fact> SolverInWords(const json& solver) {
   return facts;
 }
 
-// Sparse points that may be of each object, how many of them are expected to be, and the root mean
-// square distance of these from its surface; no values for objects without points.
-void AddPointColumns(const json& objects, ValueTable* table) {
-  for (const ValueColumn& column :
-       {ValueColumn{"points"}, {"of_object", "", 1}, {"rms_distance", "m", 3}}) {
-    table->columns.push_back(column);
-  }
-  for (size_t i = 0; i < objects.size(); ++i) {
-    const std::vector<PointPosterior> points = ObjectEstimateFromJson(objects[i]).points;
-    double of_object = 0.0;
-    double squares = 0.0;
-    for (const PointPosterior& point : points) {
-      of_object += point.responsibility;
-      squares += point.responsibility * point.distance * point.distance;
-    }
-    if (of_object > 0.0) {
-      Append({points.size(), of_object, std::sqrt(squares / of_object)}, &table->rows[i]);
-    } else {
-      Append(std::vector<Value>(3), &table->rows[i]);
-    }
-  }
-}
-
 // Length of the path from frame to frame.
 std::string TrajectoryInWords(const json& trajectory) {
   double length = 0.0;
@@ -168,7 +159,6 @@ std::string TrajectoryInWords(const json& trajectory) {
 
 Inspection InspectLandmarks(const json& document) {
   Inspection inspection;
-  inspection.table.columns = EstimateColumns();
   const json& observations = document.at("observations");
   const json& objects = document.at("objects");
   const auto add = [&](const json& rows, const char* name, const char* field) {
@@ -179,16 +169,15 @@ Inspection InspectLandmarks(const json& document) {
   add(objects, "objects have a landmark (world frame)", "landmark");
   inspection.facts.push_back(
       {"failures", CountsInWords(document.at("failures").get<std::map<std::string, int>>())});
-  for (const json& row : observations) {
-    inspection.table.rows.push_back(ObservationRow(row));
-  }
-  for (const json& row : objects) inspection.table.rows.push_back(ObjectRow(row));
+  json rows = json::array();
+  for (const json& row : observations) rows.push_back(ObservationRow(row));
+  for (const json& row : objects) rows.push_back(ObjectRow(row));
+  inspection.table = TableOf(EstimateColumns(), rows);
   return inspection;
 }
 
 Inspection InspectMap(const json& document) {
   Inspection inspection;
-  inspection.table.columns = EstimateColumns();
   const json& objects = document.at("objects");
   inspection.facts = {
       {"found", FoundInWords(objects, "objects have a landmark (world frame)", "landmark")},
@@ -196,8 +185,11 @@ Inspection InspectMap(const json& document) {
   const std::vector<Fact> solver = SolverInWords(document.at("solver"));
   inspection.facts.insert(inspection.facts.end(), solver.begin(), solver.end());
   inspection.facts.push_back({"trajectory", TrajectoryInWords(document.at("trajectory"))});
-  for (const json& row : objects) inspection.table.rows.push_back(ObjectRow(row));
-  AddPointColumns(objects, &inspection.table);
+  json rows = json::array();
+  for (const json& row : objects) rows.push_back(ObjectRow(row));
+  std::vector<ValueColumn> columns = EstimateColumns();
+  columns.insert(columns.end(), {{"points"}, {"of_object", "", 1}, {"rms_distance", "m", 3}});
+  inspection.table = TableOf(columns, rows);
   return inspection;
 }
 
