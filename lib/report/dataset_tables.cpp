@@ -110,11 +110,11 @@ std::optional<double> ResidualOf(const json& alignments) {
 }
 
 // "alignment similarity, scale 2.31 to 2.34, cameras 0.01 m apart", for the maps of a dataset.
-std::string AlignmentInWords(const std::vector<NamedMetrics>& maps) {
+std::string AlignmentInWords(const std::vector<VariantResult>& maps) {
   std::set<std::string> kinds;
   std::vector<double> scales, residuals;
-  for (const auto& [name, metrics] : maps) {
-    const json& alignments = metrics["map_quality"].at("alignments");
+  for (const VariantResult& map : maps) {
+    const json& alignments = map.metrics["map_quality"].at("alignments");
     for (const json& alignment : alignments) {
       kinds.insert(alignment.at("kind").get<std::string>());
       if (alignment.at("kind") == "similarity") scales.push_back(alignment.at("scale"));
@@ -127,10 +127,10 @@ std::string AlignmentInWords(const std::vector<NamedMetrics>& maps) {
   return text;
 }
 
-std::vector<NamedMetrics> MapsAmong(const std::vector<NamedMetrics>& variants) {
-  std::vector<NamedMetrics> maps;
-  std::ranges::copy_if(variants, std::back_inserter(maps), [](const NamedMetrics& variant) {
-    return variant.second.is_object() && variant.second.contains("map_quality");
+std::vector<VariantResult> MapsAmong(const std::vector<VariantResult>& variants) {
+  std::vector<VariantResult> maps;
+  std::ranges::copy_if(variants, std::back_inserter(maps), [](const VariantResult& variant) {
+    return variant.metrics.contains("map_quality");
   });
   return maps;
 }
@@ -174,17 +174,17 @@ std::vector<Cell> ErrorsRow(const std::string& name, const json& quality) {
 }
 
 // Whose the pose estimates are.
-std::string OdometryNote(const std::vector<NamedMetrics>& maps) {
+std::string OdometryNote(const std::vector<VariantResult>& maps) {
   std::set<std::string> sources;
-  for (const auto& [name, metrics] : maps) sources.insert(metrics.value("odometry_source", ""));
+  for (const VariantResult& map : maps) sources.insert(map.metrics.value("odometry_source", ""));
   sources.erase("");
   return fmt::format("Odometry: {}.", sources.empty()
                                           ? "not said whose"
                                           : fmt::format("{}", fmt::join(sources, ", ")));
 }
 
-std::string KindOfAlignment(const NamedMetrics& map) {
-  return map.second["map_quality"].at("alignments").front().at("kind");
+std::string KindOfAlignment(const VariantResult& map) {
+  return map.metrics["map_quality"].at("alignments").front().at("kind");
 }
 
 void AddMistakes(const char* kind, const json& rows, const char* id, Table* table) {
@@ -197,13 +197,12 @@ void AddMistakes(const char* kind, const json& rows, const char* id, Table* tabl
 
 }  // namespace
 
-std::vector<Table> QualityTables(const std::string& dataset,
-                                 const std::vector<NamedMetrics>& variants) {
-  const std::vector<NamedMetrics> maps = MapsAmong(variants);
+std::vector<Table> QualityTables(const DatasetResult& dataset) {
+  const std::vector<VariantResult> maps = MapsAmong(dataset.variants);
   if (maps.empty()) return {};
   Table quality;
-  quality.name = "map_quality_" + dataset;
-  quality.title = dataset + ": maps against all that is true, " + AlignmentInWords(maps);
+  quality.name = "map_quality_" + dataset.name;
+  quality.title = dataset.name + ": maps against all that is true, " + AlignmentInWords(maps);
   quality.header = {"variant", "true (det.)", "landmarks (ign.)", "R det."};
   for (const double min_iou : kMapIous) {
     for (const char* column : {"right", "P", "R", "F1", "IoU"}) {
@@ -211,20 +210,20 @@ std::vector<Table> QualityTables(const std::string& dataset,
     }
   }
   Table errors;
-  errors.name = "map_errors_" + dataset;
-  errors.title = fmt::format("{}: errors of what is right at IoU {}, {}", dataset, kMapIous.front(),
-                             AlignmentInWords(maps));
+  errors.name = "map_errors_" + dataset.name;
+  errors.title = fmt::format("{}: errors of what is right at IoU {}, {}", dataset.name,
+                             kMapIous.front(), AlignmentInWords(maps));
   errors.header = {"variant", "centre m",    "centre / size", "log size x, y, z", "log scale",
                    "yaw deg", "up deg",      "plane m",       "plane deg",        "labels",
                    "ids",     "IoU, frames", "IoU, world"};
-  const bool are_alike = std::ranges::all_of(maps, [&](const NamedMetrics& map) {
+  const bool are_alike = std::ranges::all_of(maps, [&](const VariantResult& map) {
     return KindOfAlignment(map) == KindOfAlignment(maps.front());
   });
-  for (const NamedMetrics& map : maps) {
+  for (const VariantResult& map : maps) {
     const std::string name =
-        are_alike ? map.first : fmt::format("{} ({})", map.first, KindOfAlignment(map));
-    quality.rows.push_back(QualityRow(name, map.second["map_quality"]));
-    errors.rows.push_back(ErrorsRow(name, map.second["map_quality"]));
+        are_alike ? map.name : fmt::format("{} ({})", map.name, KindOfAlignment(map));
+    quality.rows.push_back(QualityRow(name, map.metrics["map_quality"]));
+    errors.rows.push_back(ErrorsRow(name, map.metrics["map_quality"]));
   }
   quality.notes = {
       "True objects (detectable ones), landmarks (ignored ones), recall of the detectable at IoU "
@@ -237,14 +236,6 @@ std::vector<Table> QualityTables(const std::string& dataset,
       "agree. IoU in the frames that saw what is right or wrong in part, and of the same in the "
       "world."};
   return {quality, errors};
-}
-
-std::vector<Table> QualityTables(const DatasetResult& dataset) {
-  std::vector<NamedMetrics> variants;
-  for (const VariantResult& variant : dataset.variants) {
-    variants.emplace_back(variant.name, variant.metrics);
-  }
-  return QualityTables(dataset.name, variants);
 }
 
 Table MistakesTable(const json& metrics) {

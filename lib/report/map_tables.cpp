@@ -84,7 +84,7 @@ Table MapsTable(const std::vector<DatasetResult>& datasets,
                 const std::vector<std::string>& variants) {
   Table table = {"maps", "Maps against all that is true", {}, {}, 4, {}};
   ForEachMap(datasets, variants, [&](const DatasetResult& dataset, const VariantResult& variant) {
-    const Table one = QualityTables(dataset.name, {{variant.name, variant.metrics}}).front();
+    const Table one = QualityTables({dataset.name, {variant}}).front();
     if (table.header.empty()) {
       table.header = {"dataset", "variant", "ids", "planes"};
       table.header.insert(table.header.end(), one.header.begin() + 1, one.header.end());

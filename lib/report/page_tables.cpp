@@ -137,12 +137,12 @@ std::string NumbersSection(const json& page) {
 // Comparison of a dataset's maps with all true objects, independent of ids; empty without maps or
 // without true objects.
 std::string QualityHtml(const std::string& dataset, const std::vector<json>& variants) {
-  std::vector<NamedMetrics> named;
+  DatasetResult result{dataset, {}};
   for (const json& variant : variants) {
-    named.emplace_back(variant.at("name").get<std::string>(), variant.at("metrics"));
+    result.variants.push_back({variant.at("name"), {}, variant.at("metrics")});
   }
   std::string html;
-  for (const Table& table : QualityTables(dataset, named)) {
+  for (const Table& table : QualityTables(result)) {
     html += fmt::format("<h3>{}</h3>\n{}", HtmlText(table.title), HtmlTable(table));
     for (const std::string& note : table.notes) html += Faint(note);
   }

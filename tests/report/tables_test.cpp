@@ -112,6 +112,25 @@ TEST(DatasetFacts, AllDatasetsOfTheProjectAreDescribed) {
   }
 }
 
+TEST(DatasetTable, HasTheNumbersOfEachVariantAndOfTheOdometry) {
+  const nlohmann::json summary = {{"objects", 8},
+                                  {"observations", 247},
+                                  {"iou_mean", 0.34678},
+                                  {"rotation_deg_mean", 7.1016},
+                                  {"yaw_error_deg_mean", 22.874}};
+  const nlohmann::json first = {{"iou_mean", 0.4053}, {"rotation_deg_mean", nullptr}};
+  const nlohmann::json trajectory = {{"ate_rmse_m", 0.01234}, {"odometry_ate_rmse_m", 0.05678}};
+  const Table table =
+      DatasetTable({"room",
+                    {{"InitP", {}, {{"summary", summary}, {"first_observation", first}}},
+                     {"OursS", {}, {{"summary", summary}, {"trajectory", trajectory}}}}});
+  const std::vector<std::string> rows = CellTexts(table);
+  EXPECT_THAT(rows, testing::IsSupersetOf(
+                        {"InitP 8 247 0.347 0.405 7.10 - 22.87 -", "Quadric - - - - - - - -"}));
+  EXPECT_EQ(rows.back(), "OursS 8 247 0.347 - 7.10 - 22.87 0.0123");
+  EXPECT_THAT(table.notes, ElementsAre("ATE of the odometry alone: 0.0568 m"));
+}
+
 TEST(SequencesTable, HasARowForEachCountedDataset) {
   DatasetFacts facts;
   facts.counts = DatasetCounts{.frames = 4, .objects = 3, .round_objects = 1};
@@ -204,9 +223,10 @@ TEST(MapTables, HaveNoRowsOfVariantsWithoutAMap) {
 }
 
 TEST(QualityTables, HaveARowForEachMap) {
-  const auto tables = QualityTables(
-      "room", {{"InitP", json::object()},
-               {"OursS", MapMetrics(json::array({Alignment("rigid", 1.0, 9, 0.25)}))}});
+  const auto tables =
+      QualityTables({"room",
+                     {{"InitP", {}, json::object()},
+                      {"OursS", {}, MapMetrics(json::array({Alignment("rigid", 1.0, 9, 0.25)}))}}});
   ASSERT_EQ(tables.size(), 2u);
   EXPECT_EQ(tables[0].name, "map_quality_room");
   EXPECT_THAT(CellTexts(tables[0]),
@@ -222,9 +242,11 @@ TEST(QualityTables, HaveARowForEachMap) {
 
 TEST(QualityTables, TitlesSayWhatAlignedTheMaps) {
   const auto title = [](const std::vector<json>& alignments) {
-    std::vector<NamedMetrics> variants;
-    for (const json& of_map : alignments) variants.emplace_back("OursS", MapMetrics(of_map));
-    const std::string text = QualityTables("road", variants)[0].title;
+    DatasetResult road{"road", {}};
+    for (const json& of_map : alignments) {
+      road.variants.push_back({"OursS", {}, MapMetrics(of_map)});
+    }
+    const std::string text = QualityTables(road)[0].title;
     return text.substr(text.find("alignment"));
   };
   // sqrt((3 * 0.01 + 0.25) / 4)
@@ -239,15 +261,17 @@ TEST(QualityTables, TitlesSayWhatAlignedTheMaps) {
 }
 
 TEST(QualityTables, RowsSayTheirAlignmentWhereOthersHaveAnother) {
-  const auto tables = QualityTables(
-      "road", {{"OursS", MapMetrics(json::array({Alignment("none", 1.0, 3, 0.1)}))},
-               {"OursP", MapMetrics(json::array({Alignment("rigid", 1.0, 3, 0.1)}))}});
+  const auto tables =
+      QualityTables({"road",
+                     {{"OursS", {}, MapMetrics(json::array({Alignment("none", 1.0, 3, 0.1)}))},
+                      {"OursP", {}, MapMetrics(json::array({Alignment("rigid", 1.0, 3, 0.1)}))}}});
   EXPECT_EQ(tables[0].rows[0][0].text, "OursS (none)");
   EXPECT_EQ(tables[1].rows[1][0].text, "OursP (rigid)");
 }
 
 TEST(QualityTables, AreNoneWithoutMaps) {
-  EXPECT_THAT(QualityTables("room", {{"InitP", json::object()}, {"SVD", nullptr}}), IsEmpty());
+  EXPECT_THAT(QualityTables({"room", {{"InitP", {}, json::object()}, {"SVD", {}, nullptr}}}),
+              IsEmpty());
 }
 
 TEST(MistakesTable, HasWhatIsMissedAndWhatIsFalse) {
