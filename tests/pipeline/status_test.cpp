@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <regex>
 
 #include "support/background_command.h"
 #include "support/eventually.h"
@@ -114,6 +115,54 @@ TEST_F(StatusTest, UnknownStageIsRefused) {
 TEST_F(StatusTest, NothingRanYet) {
   fs::remove_all(pipeline_.Results());
   EXPECT_THAT(Status(), HasSubstr("nothing ran yet"));
+}
+
+class DoctorTest : public FinishedRunTest {
+ protected:
+  CommandResult Doctor() const {
+    return RunCommand({StageProgram("doctor"), "--results",
+                       pipeline_.Results().parent_path().string(), "--name", "small"});
+  }
+  void ReplaceAll(const std::string& file, const std::string& pattern,
+                  const std::string& to) const {
+    const std::string text = FileBytes(pipeline_.Dataset() / file);
+    const std::string replaced = std::regex_replace(text, std::regex(pattern), to);
+    ASSERT_NE(replaced, text);
+    WriteBytes(pipeline_.Dataset() / file, replaced);
+  }
+};
+
+TEST_F(DoctorTest, FindsNothingWhereNothingIsWrong) {
+  const CommandResult result = Doctor();
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.output,
+            "small: 0 error(s), 0 warning(s) in 6 of 6 stage runs of 2 variant(s)\n");
+}
+
+TEST_F(DoctorTest, WarningsOfTheImportAreNoErrors) {
+  ReplaceAll("detections.csv", ",1\\.0,", ",87.0,");
+  ASSERT_EQ(pipeline_.Run("InitP").exit_code, 0);
+  const CommandResult result = Doctor();
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.output,
+              AllOf(HasSubstr("warning: import (InitP InitPT): 12 of 12 scores"),
+                    HasSubstr("likely cause  per cent"), HasSubstr("0 error(s), 1 warning(s)")));
+}
+
+TEST_F(DoctorTest, AStageThatFailedIsAnError) {
+  ReplaceAll("planes.json", "\\[0, 0, 1\\]", "[0, 0, -1]");
+  EXPECT_NE(pipeline_.Run("InitP").exit_code, 0);
+  const CommandResult result = Doctor();
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.output, AllOf(HasSubstr("error: import (InitP InitPT): "),
+                                   HasSubstr("from below"), HasSubstr("1 error(s)")));
+}
+
+TEST_F(DoctorTest, WithoutAPlanThereIsNothingToSay) {
+  std::filesystem::remove(pipeline_.Results() / "plan.mk");
+  const CommandResult result = Doctor();
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.errors, HasSubstr("nothing was planned yet"));
 }
 
 }  // namespace
