@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/core/mat.hpp>
 #include <opencv2/core/types.hpp>
-#include <optional>
 #include <set>
 #include <string>
 #include <vector>

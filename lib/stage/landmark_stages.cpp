@@ -17,7 +17,6 @@
 #include "base/text.h"
 #include "cli/command_line.h"
 #include "evaluation/result_checks.h"
-#include "geometry/angles.h"
 #include "initialisation/initialise.h"
 #include "orientation/refine_orientation.h"
 #include "orientation/texture_asymmetry.h"

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <opencv2/imgcodecs.hpp>
-#include <string_view>
 #include <vector>
 
 #include "artefact/atomic_file.h"

@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <optional>
 #include <string_view>
-#include <utility>
 
 #include "artefact/atomic_file.h"
 #include "base/error.h"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where and by whom images were taken stays in the images.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -13,7 +13,6 @@
 #include "support/expect_error.h"
 #include "support/image_files.h"
 #include "support/printed.h"
-#include "support/random.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {
