@@ -10,6 +10,10 @@ int main(int argc, char** argv) {
        .inputs = {{"sequence", "sequence.json of soslam-import"},
                   {"table", "semantic table with the size ratio of each label"},
                   {"edges", "edges.h5 of soslam-edges; needed when method = cuboid_proposals",
+                   false},
+                  {"points",
+                   "points.h5 of soslam-track or soslam-reconstruct; needed when the setting "
+                   "point_evidence is true",
                    false}},
        .outputs = {{"output", "initial.json to write"}},
        .example = "soslam-initialise --sequence sequence.json --table "

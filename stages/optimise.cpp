@@ -16,8 +16,7 @@ int main(int argc, char** argv) {
              false},
             {"points",
              "points.h5 of soslam-track or soslam-reconstruct; needed when the setting "
-             "point_evidence "
-             "is true",
+             "point_evidence is true",
              false}},
        .outputs = {{"output", "map.json to write"}},
        .example = "soslam-optimise --sequence sequence.json --landmarks initial.json --table "

@@ -12,7 +12,11 @@ int main(int argc, char** argv) {
        .inputs = {{"sequence", "sequence.json of soslam-import"},
                   {"table", "semantic table with the size ratio of each label"},
                   {"initial", "initial.json of soslam-initialise"},
-                  {"edges", "edges.h5 of soslam-edges"}},
+                  {"edges", "edges.h5 of soslam-edges"},
+                  {"points",
+                   "points.h5 of soslam-track or soslam-reconstruct; needed when the setting "
+                   "point_evidence is true",
+                   false}},
        .outputs = {{"output", "refined.json to write"},
                    {"curves", "symmetry.h5 to write: the cost over yaw of every observation"}},
        .example =

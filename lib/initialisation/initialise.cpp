@@ -32,6 +32,24 @@ std::vector<Plane> TangentPlanesInWorld(const Sequence& sequence,
   return planes;
 }
 
+// All local optima of the sweeps over yaw of one observation, on each face that the object may rest
+// on, lowest cost first.
+std::vector<Hypothesis> SweepFaces(const std::vector<UprightObservation>& on_faces,
+                                   double yaw_step) {
+  std::vector<Hypothesis> hypotheses;
+  const YawObjective objective;
+  for (const UprightObservation& observation : on_faces) {
+    const YawSweep sweep = SweepYaw(observation, objective, yaw_step);
+    for (const UprightSolution& optimum :
+         LocalOptima(observation, objective, sweep, sweep.yaw.size())) {
+      hypotheses.push_back({optimum.landmark, optimum.cost});
+    }
+  }
+  std::ranges::stable_sort(hypotheses, {},
+                           [](const Hypothesis& one) { return RankOfCost(one.cost); });
+  return hypotheses;
+}
+
 }  // namespace
 
 LandmarkEstimates InitialiseSingleFrame(const Sequence& sequence,
@@ -61,7 +79,8 @@ LandmarkEstimates InitialiseSingleFrame(const Sequence& sequence,
 LandmarkEstimates InitialiseUpright(const Sequence& sequence,
                                     const std::vector<std::optional<ShapePrior>>& priors,
                                     const UprightOptions& options, int threads,
-                                    const std::vector<std::optional<YawPrior>>& yaw_priors) {
+                                    const std::vector<std::optional<YawPrior>>& yaw_priors,
+                                    const PointsInFrames* points) {
   LandmarkEstimates estimates;
   estimates.observations.resize(sequence.detections.size());
   ParallelFor("detections", static_cast<int>(sequence.detections.size()), threads, [&](int i) {
@@ -73,21 +92,19 @@ LandmarkEstimates InitialiseUpright(const Sequence& sequence,
       estimate.failure = "no_ratio_for_label";
       return;
     }
+    std::vector<UprightObservation> on_faces;
     for (const auto& on_face : OnPossibleFaces(prior)) {
-      UprightObservation observation =
-          MakeUprightObservation(sequence, detection, *on_face, options);
-      if (!yaw_priors.empty()) observation.yaw_prior = yaw_priors[i];
-      const YawObjective objective;
-      const YawSweep sweep = SweepYaw(observation, objective, options.yaw_grid_deg * kRadPerDeg);
-      for (const UprightSolution& optimum :
-           LocalOptima(observation, objective, sweep, sweep.yaw.size())) {
-        estimate.hypotheses.push_back({optimum.landmark, optimum.cost});
-      }
-      estimate.failure = WhyNoSolution(observation);
+      on_faces.push_back(MakeUprightObservation(sequence, detection, *on_face, options));
+      if (!yaw_priors.empty()) on_faces.back().yaw_prior = yaw_priors[i];
     }
-    if (!estimate.hypotheses.empty()) estimate.failure.clear();
-    std::ranges::stable_sort(estimate.hypotheses, {},
-                             [](const Hypothesis& one) { return RankOfCost(one.cost); });
+    const double yaw_step = options.yaw_grid_deg * kRadPerDeg;
+    estimate.hypotheses = SweepFaces(on_faces, yaw_step);
+    const auto evidence = points ? points->Of(i, estimate.hypotheses) : std::nullopt;
+    if (evidence) {
+      for (UprightObservation& on_face : on_faces) on_face.points = evidence;
+      estimate.hypotheses = SweepFaces(on_faces, yaw_step);
+    }
+    if (estimate.hypotheses.empty()) estimate.failure = WhyNoSolution(on_faces.back());
   });
   return estimates;
 }

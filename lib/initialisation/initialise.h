@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "initialisation/object_points.h"
 #include "initialisation/options.h"
 #include "model/estimates.h"
 #include "model/sequence.h"
@@ -19,12 +20,13 @@ LandmarkEstimates InitialiseSingleFrame(const Sequence& sequence,
                                         const InitialiseOptions& options, int threads);
 
 // Upright landmarks of any shape exponent for all detections: all local optima of the sweep over
-// yaw, lowest cost first. `yaw_priors`: one per detection, or empty. Failures: no_ratio_for_label,
-// fewer_than_three_measured_edges, no_solution.
+// yaw, lowest cost first. `yaw_priors`: one per detection, or empty. `points`: none if null.
+// Failures: no_ratio_for_label, fewer_than_three_measured_edges, no_solution.
 LandmarkEstimates InitialiseUpright(const Sequence& sequence,
                                     const std::vector<std::optional<ShapePrior>>& priors,
                                     const UprightOptions& options, int threads,
-                                    const std::vector<std::optional<YawPrior>>& yaw_priors = {});
+                                    const std::vector<std::optional<YawPrior>>& yaw_priors = {},
+                                    const PointsInFrames* points = nullptr);
 
 // One upright landmark per object from all of its boxes, with the frames' estimated poses; without
 // a prior, a cuboid of free ratio. Failures: moving, not_determined_by_its_views.

@@ -6,6 +6,7 @@
 #include "base/options.h"
 #include "constraints/variances.h"
 #include "initialisation/cuboid_score.h"
+#include "initialisation/point_term.h"
 #include "initialisation/semantic_table.h"
 #include "initialisation/upright_observation.h"
 #include "initialisation/yaw_prior.h"
@@ -42,6 +43,7 @@ struct InitialiseOptions {
   TieBreak tie_break = TieBreak::kSceneAxes;
   UprightOptions upright;
   YawPriorOptions yaw_prior;
+  PointOptions points;
   double view_correlation_deg = 20.0;
   CuboidOptions cuboids;
 
@@ -74,6 +76,7 @@ struct InitialiseOptions {
                "at the object share the error of the label's shape, and together have the weight "
                "of one; 0: all boxes are independent");
     yaw_prior.Describe(visit);
+    points.Describe(visit);
     cuboids.Describe(visit);
   }
 };

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/upper_median.h"
 #include "constraints/surface_distance.h"
 
 namespace soslam {
@@ -37,6 +38,12 @@ double LeastVariance(const Eigen::Matrix3d& covariance) {
 
 double SizeForPoints(const Landmark& landmark) {
   return 2.0 * std::cbrt(landmark.half_axes.prod());
+}
+
+double SizeForPoints(const std::vector<Landmark>& landmarks) {
+  std::vector<double> sizes_m;
+  for (const Landmark& landmark : landmarks) sizes_m.push_back(SizeForPoints(landmark));
+  return UpperMedian(std::move(sizes_m));
 }
 
 PointTerm::PointTerm(const std::vector<ObjectPoint>& points, const Landmark& start_in_camera,

@@ -21,6 +21,7 @@ struct ObjectPoint {
 
 // Sparse points as evidence for objects.
 struct PointOptions {
+  bool point_evidence = false;
   double point_sigma_fraction = 0.03;
   double point_roughness_fraction = 0.3;
   double point_range_fraction = 0.02;
@@ -29,6 +30,9 @@ struct PointOptions {
 
   void Describe(OptionVisitor& visit) {
     visit.Group("Points");
+    visit.Flag(
+        "point_evidence", &point_evidence,
+        "use sparse points, which lie on the surfaces of objects, or behind or in front of them");
     visit.Real("point_sigma_fraction", &point_sigma_fraction, {1e-4, 1.0},
                "standard deviation of a point's distance from the surface, as a fraction of the "
                "object's size (twice the cubic root of its half axes' product)");
@@ -49,6 +53,17 @@ struct PointOptions {
 // Size (m) of an object for the widths of PointTerm: twice the cubic root of its half axes'
 // product.
 double SizeForPoints(const Landmark& landmark);
+// One size for all landmarks of an object (at least one), as costs with different sizes cannot be
+// compared: their median.
+double SizeForPoints(const std::vector<Landmark>& landmarks);
+
+// Points as evidence for landmarks in one camera, all with the widths of one size.
+struct PointEvidence {
+  std::vector<ObjectPoint> points;
+  double size_m;
+  double weight;
+  PointOptions options;
+};
 
 // Negative log likelihood of points, each of which is either on the surface of the object, or
 // behind or in front of it, where nothing is known of its distance d. The density of d (positive

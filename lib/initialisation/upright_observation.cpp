@@ -29,6 +29,11 @@ LandmarkCosts ObservationTerms(const UprightObservation& observation,
   if (observation.yaw_prior) {
     terms.push_back(std::make_unique<YawTerm>(plane, *observation.yaw_prior));
   }
+  if (observation.points) {
+    const PointEvidence& evidence = *observation.points;
+    terms.push_back(std::make_unique<PointTerm>(evidence.points, start_in_camera, evidence.size_m,
+                                                evidence.options, evidence.weight));
+  }
   return terms;
 }
 

@@ -10,6 +10,7 @@
 #include "geometry/camera.h"
 #include "geometry/plane.h"
 #include "initialisation/landmark_terms.h"
+#include "initialisation/point_term.h"
 #include "initialisation/semantic_table.h"
 #include "model/sequence.h"
 
@@ -43,12 +44,13 @@ struct UprightObservation {
   std::optional<Eigen::Vector3d> scene_axis_in_camera = std::nullopt;
   double axes_weight = 0.0;
   std::optional<YawPrior> yaw_prior = std::nullopt;
+  std::optional<PointEvidence> points = std::nullopt;
 };
 UprightObservation MakeUprightObservation(const Sequence& sequence, const Detection& detection,
                                           const ShapePrior& prior, const UprightOptions& options);
 
 // Costs of a landmark in the camera: box, with the tangent points at the depths that they have on
-// `start`, ratio, scene axes and yaw prior.
+// `start`, ratio, scene axes, yaw prior and points, with the widths that they have on `start`.
 LandmarkCosts ObservationTerms(const UprightObservation& observation,
                                const Landmark& start_in_camera);
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "constraints/symmetry.h"
+#include "initialisation/object_points.h"
 #include "initialisation/semantic_table.h"
-#include "mapping/object_points.h"
 #include "mapping/options.h"
 #include "model/estimates.h"
 #include "model/sequence.h"

@@ -6,7 +6,6 @@
 #include <tuple>
 
 #include "base/parallel.h"
-#include "base/upper_median.h"
 #include "geometry/angles.h"
 #include "initialisation/leaning.h"
 #include "initialisation/multi_view.h"
@@ -74,8 +73,7 @@ class ObjectFit {
 
   const MultiViewObservation& boxes() const { return boxes_; }
 
-  // Size of the object for the widths of PointTerm: one for all landmarks, as costs with different
-  // ones cannot be compared.
+  // One for all landmarks (SizeForPoints).
   void SetPointSize(double size_m) { point_size_m_ = size_m; }
 
   std::optional<Candidate> IfCheaperThan(const FitCost& other,
@@ -185,12 +183,6 @@ std::vector<Candidate> BestOfEachYaw(const std::vector<Landmark>& landmarks, con
   return candidates;
 }
 
-double MedianSize(const std::vector<Landmark>& landmarks) {
-  std::vector<double> sizes;
-  for (const Landmark& landmark : landmarks) sizes.push_back(SizeForPoints(landmark));
-  return UpperMedian(std::move(sizes));
-}
-
 // `fits`: one for each face that the object may rest on. Hypotheses of any face are tried on all of
 // them, as a body seen from few sides may be called by either name.
 std::optional<Landmark> ChooseLandmark(std::vector<Landmark> hypotheses,
@@ -202,7 +194,7 @@ std::optional<Landmark> ChooseLandmark(std::vector<Landmark> hypotheses,
     }
   }
   if (hypotheses.empty()) return std::nullopt;
-  const double point_size_m = MedianSize(hypotheses);
+  const double point_size_m = SizeForPoints(hypotheses);
   std::optional<Candidate> best;
   for (ObjectFit& fit : *fits) {
     fit.SetPointSize(point_size_m);

@@ -27,7 +27,6 @@ struct OptimiseOptions {
   bool ratio = true;
   bool symmetry = false;
   bool edge_alignment = false;
-  bool point_evidence = false;
   RatioPrior ratio_prior = RatioPrior::kTable;
   ShapeSource shape = ShapeSource::kTable;
   // The paper's numbers read in metres, unlike in one frame: with dozens of boxes to a landmark,
@@ -74,9 +73,6 @@ struct OptimiseOptions {
                "use the texture symmetry of some of each object's observations, eq. (16)");
     visit.Flag("edge_alignment", &edge_alignment,
                "use the alignment of the bodies' edges with the images'");
-    visit.Flag(
-        "point_evidence", &point_evidence,
-        "use sparse points, which lie on the surfaces of objects, or behind or in front of them");
     visit.Integer(
         "symmetry_views", &symmetry_views, {1, 100000},
         "for symmetry: how many observations of each object, evenly over all from the first on");

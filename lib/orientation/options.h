@@ -4,6 +4,7 @@
 #include <array>
 
 #include "base/options.h"
+#include "initialisation/point_term.h"
 #include "initialisation/semantic_table.h"
 #include "initialisation/upright_observation.h"
 #include "orientation/symmetry_options.h"
@@ -65,6 +66,7 @@ struct ProfileOptions {
   UprightOptions upright;
   EdgeOptions edges;
   TextureOptions texture;
+  PointOptions points;
 
   void Describe(OptionVisitor& visit) {
     visit.Group("Orientation profile (method = profile)");
@@ -75,6 +77,7 @@ struct ProfileOptions {
     upright.Describe(visit);
     edges.Describe(visit);
     texture.Describe(visit);
+    points.Describe(visit);
   }
 };
 

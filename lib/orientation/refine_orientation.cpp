@@ -26,14 +26,17 @@ class OrientationProfile {
  public:
   OrientationProfile(const Sequence& sequence, const Detection& detection,
                      const std::shared_ptr<const FrameEdges>& edges, const ShapePrior& prior,
-                     const ProfileOptions& options, const SymmetryOptions& symmetry_options)
+                     const ProfileOptions& options, const SymmetryOptions& symmetry_options,
+                     const std::optional<PointEvidence>& points)
       : options_(options),
         symmetry_options_(symmetry_options),
         observation_(MakeUprightObservation(sequence, detection, prior, options.upright)),
         edge_image_(std::make_shared<const EdgeImage>(
             EdgeImage{edges, detection.box, BoxesInFront(sequence, detection)})),
         symmetry_image_(edges->maps, detection.box),
-        asymmetry_(symmetry_image_, observation_.camera, options.texture, symmetry_options) {}
+        asymmetry_(symmetry_image_, observation_.camera, options.texture, symmetry_options) {
+    observation_.points = points;
+  }
 
   const UprightObservation& observation() const { return observation_; }
 
@@ -109,11 +112,13 @@ YawSweep SweepYaw(const UprightObservation& observation, YawObjective objective,
 RefinedObservation RefineOnFace(const Sequence& sequence, int detection_index,
                                 const std::shared_ptr<const FrameEdges>& edges,
                                 const ShapePrior& prior, const ProfileOptions& options,
-                                const SymmetryOptions& symmetry_options) {
+                                const SymmetryOptions& symmetry_options,
+                                const std::optional<PointEvidence>& points) {
   const Detection& detection = sequence.detections[detection_index];
   const Eigen::Vector3d& normal = detection.plane_in_camera.normal;
   RefinedObservation result;
-  const OrientationProfile profile(sequence, detection, edges, prior, options, symmetry_options);
+  const OrientationProfile profile(sequence, detection, edges, prior, options, symmetry_options,
+                                   points);
   const YawObjective objective = profile.Objective();
   std::vector<double> texture_costs;
   const YawSweep sweep = SweepYaw(profile.observation(), objective,
@@ -163,13 +168,14 @@ RefinedObservation RefineOrientation(const Sequence& sequence, int detection_ind
                                      const std::shared_ptr<const FrameEdges>& edges,
                                      const std::optional<ShapePrior>& prior,
                                      const ProfileOptions& options,
-                                     const SymmetryOptions& symmetry_options) {
+                                     const SymmetryOptions& symmetry_options,
+                                     const std::optional<PointEvidence>& points) {
   const Detection& detection = sequence.detections[detection_index];
   std::optional<RefinedObservation> joined;
   for (const auto& on_face : OnPossibleFaces(prior)) {
     if (!on_face) continue;
     RefinedObservation refined =
-        RefineOnFace(sequence, detection_index, edges, *on_face, options, symmetry_options);
+        RefineOnFace(sequence, detection_index, edges, *on_face, options, symmetry_options, points);
     joined = joined ? Joined(std::move(*joined), std::move(refined)) : std::move(refined);
   }
   RefinedObservation result = joined.value_or(RefinedObservation());

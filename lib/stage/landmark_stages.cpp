@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -18,8 +19,10 @@
 #include "cli/command_line.h"
 #include "evaluation/result_checks.h"
 #include "initialisation/initialise.h"
+#include "initialisation/object_points.h"
 #include "orientation/refine_orientation.h"
 #include "orientation/texture_asymmetry.h"
+#include "stage/read_points.h"
 #include "stage/stages.h"
 
 namespace soslam {
@@ -43,6 +46,23 @@ LandmarkEstimates CuboidsOfImages(const Sequence& sequence, const StageFiles& fi
   return InitialiseCuboids(sequence, edges_of, options, threads);
 }
 
+// `has_method`: points are used with the method chosen, of which `needed` is the one that can.
+void CheckPointEvidence(const PointOptions& options, bool has_method, const char* needed,
+                        const char* found, const StageFiles& files) {
+  if (options.point_evidence && !has_method) {
+    throw SettingsError(
+        fmt::format("point_evidence = true needs method = {}; found {}", needed, found));
+  }
+  CheckHasPoints(options, files);
+}
+
+// None unless points are evidence.
+std::optional<PointsInFrames> PointsOf(const PointOptions& options, const Sequence& sequence,
+                                       const StageFiles& files) {
+  if (!options.point_evidence) return std::nullopt;
+  return PointsInFrames(sequence, ReadPointsOf(sequence, files), options);
+}
+
 }  // namespace
 
 void RunInitialise(const InitialiseOptions& options, const StageFiles& files, int threads) {
@@ -50,6 +70,8 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
   if (uses_images && !files.contains("edges")) {
     throw SettingsError("method = cuboid_proposals needs --edges FILE; found none");
   }
+  CheckPointEvidence(options.points, options.method == InitialisationMethod::kYawSweep, "yaw_sweep",
+                     kInitialisationMethodNames[static_cast<size_t>(options.method)], files);
   const Sequence sequence = ReadSequence(files.at("sequence"));
   const SemanticTable table = ReadSemanticTable(files.at("table"));
   LandmarkEstimates estimates;
@@ -70,8 +92,10 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
     if (options.method == InitialisationMethod::kMultiView) {
       estimates = InitialiseMultiView(sequence, priors, options, threads);
     } else if (options.method == InitialisationMethod::kYawSweep) {
+      const auto points = PointsOf(options.points, sequence, files);
       estimates = InitialiseUpright(sequence, priors, options.upright, threads,
-                                    YawPriors(sequence, priors, options, threads));
+                                    YawPriors(sequence, priors, options, threads),
+                                    points ? &*points : nullptr);
     } else {
       estimates = InitialiseSingleFrame(
           sequence, ObjectRatios(sequence, table, options.ratio_prior), options, threads);
@@ -96,6 +120,7 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
   ReportFindings("initialise", findings);
   std::vector<std::filesystem::path> inputs = {files.at("sequence"), files.at("table")};
   if (uses_images) inputs.push_back(files.at("edges"));
+  if (options.points.point_evidence) inputs.push_back(files.at("points"));
   WriteLandmarks(files.at("output"), estimates, sequence,
                  {OptionsToJson(options), inputs, findings});
   fmt::print("{} landmarks{}{}\n", tried - failed, failed > 0 ? ", without one: " : "",
@@ -124,6 +149,7 @@ class FrameInUse {
 std::vector<RefinedObservation> RefineAll(const Sequence& sequence,
                                           const std::vector<ObservationEstimate*>& initial,
                                           const std::vector<std::optional<ShapePrior>>& priors,
+                                          const std::optional<PointsInFrames>& points,
                                           const OrientationOptions& options,
                                           const EdgesReader& reader, int threads) {
   const auto detection_of = [&](size_t i) -> const Detection& {
@@ -139,8 +165,10 @@ std::vector<RefinedObservation> RefineAll(const Sequence& sequence,
         frames.at(detection.frame_index).Take(reader, sequence.FrameOf(detection).id);
     const auto& prior = priors[detection.object_index];
     if (options.method == RefinementMethod::kProfile) {
-      refined[i] = RefineOrientation(sequence, initial[i]->detection_index, edges, prior,
-                                     options.profile, options.turn.symmetry);
+      const int detection_index = initial[i]->detection_index;
+      refined[i] = RefineOrientation(
+          sequence, detection_index, edges, prior, options.profile, options.turn.symmetry,
+          points ? points->Of(detection_index, initial[i]->hypotheses) : std::nullopt);
     } else {
       const auto ratio = prior ? std::optional(prior->ratio) : std::nullopt;
       refined[i] = RefineObservation(sequence, *initial[i], edges->maps, ratio, options.turn);
@@ -153,6 +181,9 @@ std::vector<RefinedObservation> RefineAll(const Sequence& sequence,
 
 void RunRefine(const OrientationOptions& options, const StageFiles& files, int threads) {
   CheckMirrorPlane(options.profile.texture, options.turn.symmetry.descriptor);
+  const PointOptions& point_options = options.profile.points;
+  CheckPointEvidence(point_options, options.method == RefinementMethod::kProfile, "profile",
+                     kRefinementMethodNames[static_cast<size_t>(options.method)], files);
   const Sequence sequence = ReadSequence(files.at("sequence"));
   const auto priors = ObjectPriors(sequence, ReadSemanticTable(files.at("table")),
                                    options.turn.ratio_prior, options.profile.shape);
@@ -177,12 +208,13 @@ void RunRefine(const OrientationOptions& options, const StageFiles& files, int t
   }
   std::ranges::stable_sort(to_refine, {},
                            [&](const auto* observation) { return frame_of(observation).id; });
-  const ArtefactInfo info = {
+  ArtefactInfo info = {
       OptionsToJson(options),
       {files.at("sequence"), files.at("table"), files.at("initial"), files.at("edges")}};
+  if (point_options.point_evidence) info.inputs.push_back(files.at("points"));
 
-  auto refined =
-      RefineAll(sequence, to_refine, priors, options, EdgesReader(files.at("edges")), threads);
+  auto refined = RefineAll(sequence, to_refine, priors, PointsOf(point_options, sequence, files),
+                           options, EdgesReader(files.at("edges")), threads);
   std::vector<SymmetryRecord> curves;
   for (size_t i = 0; i < refined.size(); ++i) {
     failed += refined[i].estimate.failure.empty() ? 0 : 1;

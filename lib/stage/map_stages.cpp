@@ -19,6 +19,7 @@
 #include "mapping/initial_landmarks.h"
 #include "model/occlusion.h"
 #include "orientation/texture_asymmetry.h"
+#include "stage/read_points.h"
 #include "stage/stages.h"
 
 namespace soslam {
@@ -35,13 +36,12 @@ void CheckEvidence(const OptimiseOptions& options, const StageFiles& files) {
        "symmetry or edge_alignment = true needs --edges FILE; found none"},
       {options.edge_alignment && is_quadric,
        "edge_alignment = true needs detection_model = tangency; found quadric"},
-      {options.point_evidence && !files.contains("points"),
-       "point_evidence = true needs --points FILE; found none"},
-      {options.point_evidence && is_quadric,
+      {options.points.point_evidence && is_quadric,
        "point_evidence = true needs detection_model = tangency; found quadric"}};
   for (const auto& [is_fault, message] : faults) {
     if (is_fault) throw SettingsError(message);
   }
+  CheckHasPoints(options.points, files);
   if (options.symmetry) CheckMirrorPlane(options.texture, options.symmetry_options.descriptor);
   const Descriptor descriptor = options.symmetry_options.descriptor;
   if (options.symmetry && !HasDerivative(descriptor)) {
@@ -100,27 +100,6 @@ void ReadImages(const OptimiseOptions& options, const std::filesystem::path& edg
   }
 }
 
-// Points of another dataset, or of other images, would be no evidence in silence. None at all is
-// what soslam-track has warned of.
-std::vector<MapPoint> ReadPointsOf(const Sequence& sequence, const StageFiles& files) {
-  std::vector<MapPoint> points = ReadPoints(files.at("points"));
-  std::set<int> frame_ids;
-  for (const Frame& frame : sequence.frames) frame_ids.insert(frame.id);
-  const auto is_seen = [&](const MapPoint& point) {
-    return std::ranges::any_of(point.observations, [&](const PointObservation& observation) {
-      return frame_ids.contains(observation.frame_id);
-    });
-  };
-  if (!points.empty() && std::ranges::none_of(points, is_seen)) {
-    throw InputError(fmt::format(
-        "{}: observation_frame: none of {} points is seen in a frame of {}; expected ids of its {} "
-        "frames: were the points made from another dataset?",
-        files.at("points").string(), points.size(), files.at("sequence").string(),
-        sequence.frames.size()));
-  }
-  return points;
-}
-
 }  // namespace
 
 void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int threads) {
@@ -130,7 +109,7 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
   const auto priors = ObjectPriors(sequence, table, options.ratio_prior, options.shape);
   const LandmarkEstimates estimates = ReadLandmarks(files.at("landmarks"), sequence);
   BackEndInput input{sequence, {}, priors, {}, {}};
-  if (options.point_evidence) {
+  if (options.points.point_evidence) {
     input.points = FindObjectPoints(sequence, ReadPointsOf(sequence, files), options.points);
   }
   if (UsesEdges(options)) ReadImages(options, files.at("edges"), threads, &input);
@@ -144,7 +123,7 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
   ArtefactInfo info = {OptionsToJson(options),
                        {files.at("sequence"), files.at("landmarks"), files.at("table")}};
   if (UsesEdges(options)) info.inputs.push_back(files.at("edges"));
-  if (options.point_evidence) info.inputs.push_back(files.at("points"));
+  if (options.points.point_evidence) info.inputs.push_back(files.at("points"));
   const MapEstimate map = OptimiseMap(input, options, threads);
   const LandmarkEstimates found = {{}, map.objects};
   info.findings = options.support ? CheckSizes(found, sequence, table) : CheckDegenerate(found);

@@ -171,11 +171,11 @@ void CheckNeeds(const VariantSettings& settings, const std::string& file) {
       throw SettingsError(fmt::format("{}: {} stage 'edges' in 'stages'", file, who));
     }
   }
-  const auto optimise = settings.options.find("optimise");
-  if (optimise == settings.options.end()) return;
-  if (UsesPoints(optimise->second) && !settings.stages.contains("track")) {
-    throw SettingsError(file +
-                        ": setting 'point_evidence' of optimise needs stage 'track' in 'stages'");
+  for (const std::string& stage : settings.stages) {
+    if (UsesPoints(settings.options.at(stage)) && !settings.stages.contains("track")) {
+      throw SettingsError(fmt::format(
+          "{}: setting 'point_evidence' of {} needs stage 'track' in 'stages'", file, stage));
+    }
   }
 }
 
@@ -189,9 +189,7 @@ bool UsesImages(const std::string& stage, const json& settings) {
   return stage == "refine";
 }
 
-bool UsesPoints(const json& optimise_settings) {
-  return optimise_settings.at("point_evidence") == true;
-}
+bool UsesPoints(const json& settings) { return settings.value("point_evidence", false); }
 
 std::vector<std::string> PipelineStages() {
   std::vector<std::string> names;

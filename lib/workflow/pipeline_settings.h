@@ -36,7 +36,7 @@ VariantSettings ReadVariant(const std::filesystem::path& pipelines, const std::s
 
 // True if a stage with these (resolved) settings reads the edge maps of images.
 bool UsesImages(const std::string& stage, const nlohmann::json& settings);
-// True if the back end with these (resolved) settings uses sparse points.
-bool UsesPoints(const nlohmann::json& optimise_settings);
+// True if a stage with these (resolved) settings uses sparse points as evidence.
+bool UsesPoints(const nlohmann::json& settings);
 
 }  // namespace soslam

@@ -55,10 +55,8 @@ class ChainBuilder {
     const json& settings = settings_.options.at(stage);
     if (UsesImages(stage, settings)) inputs["edges"] = Output("edges");
     if (stage == "refine") inputs["initial"] = Output("initialise");
-    if (stage == "optimise") {
-      inputs["landmarks"] = Latest({"refine", "initialise"});
-      if (UsesPoints(settings)) inputs["points"] = Output("track");
-    }
+    if (UsesPoints(settings)) inputs["points"] = Output("track");
+    if (stage == "optimise") inputs["landmarks"] = Latest({"refine", "initialise"});
     if (stage == "evaluate") inputs["landmarks"] = Latest({"optimise", "refine", "initialise"});
     return inputs;
   }

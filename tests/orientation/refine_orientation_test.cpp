@@ -11,6 +11,7 @@
 #include "geometry/angles.h"
 #include "geometry/iou.h"
 #include "support/drawn_cuboids.h"
+#include "support/random.h"
 #include "support/scene.h"
 #include "synthesis/render.h"
 
@@ -58,11 +59,12 @@ class RefineBoxes : public testing::Test {
   }
   static int Observations() { return static_cast<int>(sequence_->detections.size()); }
   // In images of all frames.
-  static RefinedObservation RefineIn(const Frames& maps, int index, const ProfileOptions& options) {
+  static RefinedObservation RefineIn(const Frames& maps, int index, const ProfileOptions& options,
+                                     const std::optional<PointEvidence>& points = std::nullopt) {
     const Eigen::Vector3d half_axes = TrueLandmark(DetectionAt(index)).half_axes;
     const ShapePrior prior{half_axes.head<2>() / half_axes.z(), {0.02, 0.02}, kCuboidExponent};
     return RefineOrientation(*sequence_, index, maps[DetectionAt(index).frame_index], prior,
-                             options, SymmetryOptions());
+                             options, SymmetryOptions(), points);
   }
   static RefinedObservation Refine(int index, const ProfileOptions& options) {
     return RefineIn(*edges_, index, options);
@@ -123,6 +125,24 @@ TEST_F(RefineBoxes, FindsTheYawOfTexturedBoxesByTheirTexture) {
   options.edge_alignment = false;
   for (int i = 0; i < Observations(); ++i) {
     ExpectTruth(i, Refine(i, options), 1.0 * kRadPerDeg, 0.97);
+  }
+}
+
+// A box alone has two yaws.
+TEST_F(RefineBoxes, FindsTheYawByPointsOnTheirFaces) {
+  ProfileOptions options = OffAxesOptions();
+  options.edge_alignment = false;
+  options.texture_symmetry = false;
+  options.points.point_range_fraction = 0.0;
+  for (int i = 0; i < Observations(); ++i) {
+    const Landmark truth = TrueLandmark(DetectionAt(i));
+    PointEvidence evidence{{}, SizeForPoints(truth), 1.0, options.points};
+    for (int k = 0; k < 60; ++k) {
+      Eigen::Vector3d in_object = truth.half_axes.cwiseProduct(RandomVector(-1.0, 1.0));
+      in_object[k % 3] = std::copysign(truth.half_axes[k % 3], in_object[k % 3]);
+      evidence.points.push_back({truth.frame_from_object * in_object});
+    }
+    ExpectTruth(i, RefineIn(*edges_, i, options, evidence), 1.0 * kRadPerDeg, 0.98);
   }
 }
 

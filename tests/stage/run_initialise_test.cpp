@@ -209,5 +209,24 @@ TEST_F(RunRefineTest, TurnsLandmarksBackWithTheDescriptorOfTheOption) {
   }
 }
 
+TEST(PointEvidenceInFrames, NeedsPointsAndAMethodThatUsesThem) {
+  const StageFiles with_points = {{"points", "points.h5"}};
+  InitialiseOptions initialise;
+  initialise.points.point_evidence = true;
+  const auto run_initialise = [&](const StageFiles& files) { RunInitialise(initialise, files, 1); };
+  ExpectError<SettingsError>([&] { run_initialise(with_points); },
+                             {"point_evidence", "yaw_sweep", "found single_frame"});
+  initialise.method = InitialisationMethod::kYawSweep;
+  ExpectError<SettingsError>([&] { run_initialise({}); }, {"point_evidence", "--points"});
+
+  OrientationOptions refine;
+  refine.profile.points.point_evidence = true;
+  const auto run_refine = [&](const StageFiles& files) { RunRefine(refine, files, 1); };
+  ExpectError<SettingsError>([&] { run_refine(with_points); },
+                             {"point_evidence", "profile", "found turn"});
+  refine.method = RefinementMethod::kProfile;
+  ExpectError<SettingsError>([&] { run_refine({}); }, {"point_evidence", "--points"});
+}
+
 }  // namespace
 }  // namespace soslam

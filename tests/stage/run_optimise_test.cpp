@@ -57,7 +57,7 @@ class RunOptimiseTest : public testing::Test {
   MapEstimate Run() const {
     StageFiles files;
     for (const char* name : {"sequence", "landmarks", "table", "output"}) files[name] = File(name);
-    if (options_.point_evidence && std::filesystem::exists(File("points"))) {
+    if (options_.points.point_evidence && std::filesystem::exists(File("points"))) {
       files["points"] = File("points");
     }
     RunOptimise(options_, files, 1);
@@ -117,13 +117,13 @@ TEST_F(RunOptimiseTest, SymmetryNeedsADescriptorWithADerivative) {
 
 TEST_F(RunOptimiseTest, PointEvidenceNeedsPoints) {
   WriteTable(kCuboidExponent, /*factor_of_a=*/1.0);
-  options_.point_evidence = true;
+  options_.points.point_evidence = true;
   ExpectError<SettingsError>([&] { Run(); }, {"point_evidence", "--points"});
 }
 
 TEST_F(RunOptimiseTest, PointsOfOtherFramesAreRefused) {
   WriteTable(kCuboidExponent, /*factor_of_a=*/1.0);
-  options_.point_evidence = true;
+  options_.points.point_evidence = true;
   WritePoint({90001, 90002});
   ExpectError<InputError>([&] { Run(); }, {"points", "none of 1 points", "sequence", "another"});
   WritePoint({sequence_.frames[0].id, 90002});

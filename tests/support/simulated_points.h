@@ -10,7 +10,7 @@
 
 #include "constraints/surface_distance.h"
 #include "geometry/rigid3.h"
-#include "mapping/object_points.h"
+#include "initialisation/object_points.h"
 #include "support/random.h"
 
 namespace soslam {

@@ -95,6 +95,9 @@ TEST_F(PlanTest, StagesReadTheLatestOfWhatTheyNeed) {
   Write("pipelines/variants/Points.json",
         R"({"stages": ["import", "track", "initialise", "optimise", "evaluate"],
             "planes": {"planes": "estimated"}, "optimise": {"point_evidence": true}})");
+  Write("pipelines/variants/Frames.json",
+        R"({"stages": ["import", "edges", "track", "initialise", "refine", "evaluate"],
+            "initialise": {"point_evidence": true}, "refine": {"point_evidence": true}})");
   struct Input {
     const char* variant;
     const char* stage;
@@ -124,7 +127,10 @@ TEST_F(PlanTest, StagesReadTheLatestOfWhatTheyNeed) {
                        {"Full", "optimise", "edges", "edges/edges.h5"},
                        {"Full", "evaluate", "landmarks", "optimise/map.json"},
                        {"Points", "track", "sequence", "import/sequence.json"},
-                       {"Points", "optimise", "points", "track/points.h5"}});
+                       {"Points", "initialise", "points", ""},
+                       {"Points", "optimise", "points", "track/points.h5"},
+                       {"Frames", "initialise", "points", "track/points.h5"},
+                       {"Frames", "refine", "points", "track/points.h5"}});
   // Images do not depend on what is estimated from boxes.
   expect_inputs(R"({"associate": {"association": "estimated"}})",
                 {{"Full", "associate", "sequence", "import/sequence.json"},
@@ -256,7 +262,14 @@ TEST_F(PlanTest, RefusalsNameTheFile) {
       {R"({"stages": ["import", "initialise", "optimise"], "optimise": {"symmetry": true}})",
        "need stage 'edges'"},
       {R"({"initialise": {"method": "cuboid_proposals"}})", "needs stage 'edges'"},
-      {R"({"stages": ["import", "initialise", "optimise"], "optimise": {"point_evidence": true}})",
+      {R"({"stages": ["import", "edges", "initialise", "refine", "optimise"],
+           "initialise": {"point_evidence": true}})",
+       "needs stage 'track'"},
+      {R"({"stages": ["import", "edges", "initialise", "refine", "optimise"],
+           "refine": {"point_evidence": true}})",
+       "needs stage 'track'"},
+      {R"({"stages": ["import", "edges", "initialise", "refine", "optimise"],
+           "optimise": {"point_evidence": true}})",
        "needs stage 'track'"},
       {R"({"semantic_table": 3})", "semantic_table"},
       {R"({"extends": 3})", "extends"},

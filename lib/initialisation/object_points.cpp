@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mapping/object_points.h"
+#include "initialisation/object_points.h"
 
 #include <algorithm>
 #include <cmath>
@@ -170,6 +170,36 @@ double PointWeight(const PointsOfObject& points, const PointOptions& options) {
     for (const ObjectPoint& point : view.points) expected += point.prior;
   }
   return expected > options.effective_points ? options.effective_points / expected : 1.0;
+}
+
+PointsInFrames::PointsInFrames(const Sequence& sequence, const std::vector<MapPoint>& points,
+                               const PointOptions& options)
+    : sequence_(sequence),
+      options_(options),
+      points_(FindObjectPoints(sequence, points, options)) {}
+
+std::optional<PointEvidence> PointsInFrames::Of(
+    int detection_index, const std::vector<Hypothesis>& without_points) const {
+  const Detection& detection = sequence_.detections[detection_index];
+  if (without_points.empty() || !sequence_.ObjectOf(detection).is_static) return std::nullopt;
+  const Frame& frame = sequence_.FrameOf(detection);
+  PointsInView in_frame{detection_index, {}};
+  for (const PointsInView& view : points_[detection.object_index]) {
+    const Frame& other = sequence_.FrameOf(sequence_.detections[view.detection_index]);
+    if (other.segment != frame.segment) continue;
+    const Rigid3d camera_from_other = frame.world_from_camera.Inverse() * other.world_from_camera;
+    const Eigen::Matrix3d rotation = camera_from_other.rotation.toRotationMatrix();
+    for (ObjectPoint point : view.points) {
+      point.position = camera_from_other * point.position;
+      point.covariance = rotation * point.covariance * rotation.transpose();
+      in_frame.points.push_back(point);
+    }
+  }
+  if (in_frame.points.empty()) return std::nullopt;
+  std::vector<Landmark> landmarks;
+  for (const Hypothesis& one : without_points) landmarks.push_back(one.landmark_in_camera);
+  return PointEvidence{in_frame.points, SizeForPoints(landmarks), PointWeight({in_frame}, options_),
+                       options_};
 }
 
 }  // namespace soslam

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "initialisation/point_term.h"
@@ -29,5 +30,24 @@ std::vector<PointsOfObject> FindObjectPoints(const Sequence& sequence,
 // Weight of each point of an object, so that all together have the expected weight of
 // options.effective_points at most.
 double PointWeight(const PointsOfObject& points, const PointOptions& options);
+
+// The points of all objects as evidence in single frames: those that other frames of the segment
+// see too, placed by all of them.
+class PointsInFrames {
+ public:
+  // The sequence must outlive this.
+  PointsInFrames(const Sequence& sequence, const std::vector<MapPoint>& points,
+                 const PointOptions& options);
+
+  // All points of the object of a detection, in its camera, with the widths of the median size of
+  // landmarks without points. None without points or hypotheses, and for objects that may move.
+  std::optional<PointEvidence> Of(int detection_index,
+                                  const std::vector<Hypothesis>& without_points) const;
+
+ private:
+  const Sequence& sequence_;
+  PointOptions options_;
+  std::vector<PointsOfObject> points_;  // by object
+};
 
 }  // namespace soslam

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "initialisation/object_points.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "geometry/angles.h"
+#include "initialisation/initialise.h"
+#include "support/points_on_objects.h"
+#include "support/random.h"
+#include "support/scene.h"
+
+namespace soslam {
+namespace {
+
+TEST(FindObjectPointsTest, PointsOfAnObjectAreInItsBoxes) {
+  const Sequence sequence = CuboidSequence(1, 12);
+  const std::vector<MapPoint> points = PointsOnObjects(sequence, 60);
+  const auto found = FindObjectPoints(sequence, points, {});
+  ASSERT_EQ(found.size(), 1u);
+  size_t count = 0;
+  for (const PointsInView& view : found[0]) {
+    const Detection& detection = sequence.detections[view.detection_index];
+    EXPECT_EQ(detection.object_index, 0);
+    for (const ObjectPoint& point : view.points) {
+      const auto pixel = sequence.camera.Project(point.position);
+      ASSERT_TRUE(pixel);
+      EXPECT_TRUE(detection.box.Contains(*pixel));
+      EXPECT_LE(point.prior, 0.7);
+      ++count;
+    }
+  }
+  EXPECT_GT(count, 40u);
+}
+
+TEST(FindObjectPointsTest, PointsOnThePlaneAndOutsideBoxesAreNotOfTheObject) {
+  const Sequence sequence = CuboidSequence(1, 12);
+  const Landmark& body = TrueBody(sequence, 0);
+  const Eigen::Vector3d foot =
+      body.frame_from_object * Eigen::Vector3d(0.0, 0.0, -body.half_axes.z());
+  const Eigen::Vector3d above =
+      body.frame_from_object * Eigen::Vector3d(0.0, 0.0, 3.0 * body.half_axes.z());
+  const auto found = FindObjectPoints(sequence, {Seen(sequence, foot), Seen(sequence, above)}, {});
+  EXPECT_TRUE(found[0].empty());
+}
+
+TEST(FindObjectPointsTest, TheWorldOfThePointsDoesNotMatter) {
+  const Sequence sequence = CuboidSequence(1, 12);
+  const Eigen::Vector3d top = TrueBody(sequence, 0).frame_from_object *
+                              Eigen::Vector3d(0.0, 0.0, TrueBody(sequence, 0).half_axes.z());
+  MapPoint point = Seen(sequence, top);
+  point.position_in_world = {100.0, 200.0, 300.0};
+  const auto found = FindObjectPoints(sequence, {point}, {});
+  ASSERT_EQ(found[0].size(), 1u);
+  const Detection& detection = sequence.detections[found[0][0].detection_index];
+  const Eigen::Vector3d in_world =
+      sequence.FrameOf(detection).world_from_camera * found[0][0].points[0].position;
+  EXPECT_LT((in_world - top).norm(), 1e-6);
+}
+
+// The worlds of segments have nothing in common.
+TEST(FindObjectPointsTest, ViewsOfOtherSegmentsDoNotMatter) {
+  const Sequence sequence = CuboidSequence(1, 12);
+  const Eigen::Vector3d top = TrueBody(sequence, 0).frame_from_object *
+                              Eigen::Vector3d(0.0, 0.0, TrueBody(sequence, 0).half_axes.z());
+  const MapPoint point = Seen(sequence, top);
+  Sequence two = sequence;
+  for (size_t i = 6; i < two.frames.size(); ++i) {
+    two.frames[i].segment = 1;
+    two.frames[i].world_from_camera = RandomRigid() * two.frames[i].world_from_camera;
+  }
+  const auto found = FindObjectPoints(two, {point}, {});
+  bool is_in_first = false;
+  for (const PointsInView& view : found[0]) {
+    const Frame& frame = two.FrameOf(two.detections[view.detection_index]);
+    if (frame.segment != 0) continue;
+    is_in_first = true;
+    EXPECT_LT((frame.world_from_camera * view.points[0].position - top).norm(), 1e-6);
+  }
+  EXPECT_TRUE(is_in_first);
+}
+
+TEST(PointWeightTest, BoundsTheExpectedNumber) {
+  PointOptions options;
+  options.effective_points = 6.0;
+  const ObjectPoint point{Eigen::Vector3d::Zero(), Eigen::Matrix3d::Zero(), 0.5};
+  const auto weight = [&](size_t count) {
+    return PointWeight({{0, std::vector<ObjectPoint>(count, point)}}, options);
+  };
+  EXPECT_EQ(weight(10), 1.0);
+  EXPECT_NEAR(weight(120), 0.1, 1e-12);
+}
+
+// Options with which points of a scene without errors say much.
+PointOptions ExactPoints() {
+  PointOptions options;
+  options.point_range_fraction = 0.0;
+  options.effective_points = 100.0;
+  return options;
+}
+
+TEST(PointsInFramesTest, AreInTheCameraOfEachDetection) {
+  const Sequence sequence = CuboidSequence(1, 12);
+  const Eigen::Vector3d top = TrueBody(sequence, 0).frame_from_object *
+                              Eigen::Vector3d(0.0, 0.0, TrueBody(sequence, 0).half_axes.z());
+  const PointsInFrames points(sequence, {Seen(sequence, top)}, {});
+  for (size_t i = 0; i < sequence.detections.size(); ++i) {
+    const Landmark in_camera = *TrueLandmarkInCamera(sequence, sequence.detections[i]);
+    Landmark twice = in_camera;
+    twice.half_axes *= 2.0;
+    const auto evidence = points.Of(static_cast<int>(i), {{twice}, {in_camera}, {in_camera}});
+    ASSERT_TRUE(evidence);
+    ASSERT_EQ(evidence->points.size(), 1u);
+    const Rigid3d world_from_camera = sequence.FrameOf(sequence.detections[i]).world_from_camera;
+    EXPECT_LT((world_from_camera * evidence->points[0].position - top).norm(), 1e-6);
+    EXPECT_EQ(evidence->size_m, SizeForPoints(in_camera));
+  }
+  EXPECT_FALSE(points.Of(0, {}));
+}
+
+// Where other segments are is not known, nor where a moving object was in other frames.
+TEST(PointsInFramesTest, AreOfTheSegmentAndOfWhatStands) {
+  Sequence sequence = CuboidSequence(1, 12);
+  const std::vector<MapPoint> on_object = PointsOnObjects(sequence, 20);
+  const std::vector<Hypothesis> hypotheses = {{TrueBody(sequence, 0)}};
+  for (size_t i = 6; i < sequence.frames.size(); ++i) sequence.frames[i].segment = 1;
+  std::vector<MapPoint> of_first = on_object;
+  for (MapPoint& point : of_first) {
+    std::erase_if(point.observations, [&](const PointObservation& observation) {
+      return observation.frame_id >= sequence.frames[6].id;
+    });
+  }
+  const PointsInFrames points(sequence, of_first, {});
+  for (size_t i = 0; i < sequence.detections.size(); ++i) {
+    EXPECT_EQ(points.Of(static_cast<int>(i), hypotheses).has_value(),
+              sequence.FrameOf(sequence.detections[i]).segment == 0);
+  }
+  sequence.objects[0].is_static = false;
+  EXPECT_FALSE(points.Of(0, hypotheses));
+}
+
+// Points on objects, and as many behind them and in front of them.
+std::vector<MapPoint> PointsOfScene(const Sequence& sequence) {
+  std::vector<MapPoint> points = PointsOnObjects(sequence, 60);
+  for (size_t i = 0; i < sequence.objects.size(); ++i) {
+    const Landmark& body = TrueBody(sequence, i);
+    for (int k = 0; k < 60; ++k) {
+      const Frame& frame = sequence.frames[static_cast<size_t>(k) % sequence.frames.size()];
+      const Eigen::Vector3d in_body =
+          body.frame_from_object * body.half_axes.cwiseProduct(RandomVector(-1.0, 1.0));
+      const Eigen::Vector3d from_camera = in_body - frame.world_from_camera.translation;
+      const double depth = k % 2 == 0 ? RandomUniform(1.3, 2.0) : RandomUniform(0.4, 0.8);
+      points.push_back(Seen(sequence, frame.world_from_camera.translation + depth * from_camera));
+    }
+  }
+  return points;
+}
+
+struct MeanErrors {
+  double yaw = 0.0;       // rad, mean of the absolute values
+  double log_size = 0.0;  // mean of the absolute logarithms of the half axes' ratios
+};
+MeanErrors MeanErrorsOf(const Sequence& sequence, const LandmarkEstimates& estimates) {
+  MeanErrors errors;
+  for (const ObservationEstimate& estimate : estimates.observations) {
+    const Detection& detection = sequence.detections[estimate.detection_index];
+    const Landmark truth = *TrueLandmarkInCamera(sequence, detection);
+    const Landmark& found = estimate.hypotheses.front().landmark_in_camera;
+    const auto yaw = [&](const Landmark& landmark) {
+      return Yaw(detection.plane_in_camera.normal, landmark.frame_from_object.rotation);
+    };
+    const double share = 1.0 / static_cast<double>(estimates.observations.size());
+    errors.yaw += share * std::abs(YawDifferenceModuloPi(yaw(found), yaw(truth)));
+    errors.log_size +=
+        share * (found.half_axes.array() / truth.half_axes.array()).log().abs().mean();
+  }
+  return errors;
+}
+
+// A box has two yaws, and boxes have errors.
+TEST(PointsInFramesTest, MakeSingleFramesBetter) {
+  const Sequence sequence = CuboidSequence(4, 8);
+  Sequence noisy = sequence;
+  for (Detection& detection : noisy.detections) {
+    detection.box.x_max += RandomUniform(-6, 6);
+    detection.box.y_min += RandomUniform(-6, 6);
+  }
+  const auto priors = TrueCuboidPriors(sequence, 0.2);
+  UprightOptions options;
+  options.axes_weight = 0.0;
+  const PointsInFrames points(noisy, PointsOfScene(sequence), ExactPoints());
+  const MeanErrors without = MeanErrorsOf(sequence, InitialiseUpright(noisy, priors, options, 2));
+  const MeanErrors with =
+      MeanErrorsOf(sequence, InitialiseUpright(noisy, priors, options, 2, {}, &points));
+  EXPECT_LT(with.yaw, 0.5 * without.yaw);
+  EXPECT_LT(with.log_size, 0.7 * without.log_size);
+}
+
+TEST(PointsInFramesTest, OutsideBoxesChangeNothing) {
+  const Sequence sequence = CuboidSequence(3, 6);
+  std::vector<MapPoint> above;
+  for (size_t i = 0; i < sequence.objects.size(); ++i) {
+    above.push_back(Seen(sequence, TrueBody(sequence, i).Centre() + Eigen::Vector3d(0, 0, 20.0)));
+  }
+  const auto priors = TrueCuboidPriors(sequence, 0.2);
+  const PointsInFrames points(sequence, above, ExactPoints());
+  const LandmarkEstimates without = InitialiseUpright(sequence, priors, {}, 2);
+  const LandmarkEstimates with = InitialiseUpright(sequence, priors, {}, 2, {}, &points);
+  for (size_t i = 0; i < without.observations.size(); ++i) {
+    const auto& expected = without.observations[i].hypotheses;
+    const auto& found = with.observations[i].hypotheses;
+    ASSERT_EQ(found.size(), expected.size());
+    for (size_t k = 0; k < found.size(); ++k) {
+      EXPECT_EQ(found[k].cost, expected[k].cost);
+      EXPECT_EQ(found[k].landmark_in_camera.half_axes, expected[k].landmark_in_camera.half_axes);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace soslam

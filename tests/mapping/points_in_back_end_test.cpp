@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include "evaluation/metrics.h"
+#include "initialisation/object_points.h"
+#include "support/cuboid_map.h"
+#include "support/points_on_objects.h"
+#include "support/random.h"
+
+namespace soslam {
+namespace {
+
+// Boxes with errors, and little known of the ratios.
+TEST(TangencyBackEnd, PointsImproveWhatBoxesSay) {
+  const Sequence sequence = CuboidSequence(3, 8);
+  Sequence noisy = sequence;
+  for (Detection& detection : noisy.detections) {
+    detection.box.x_min += RandomUniform(-6, 6);
+    detection.box.y_min += RandomUniform(-6, 6);
+    detection.box.x_max += RandomUniform(-6, 6);
+    detection.box.y_max += RandomUniform(-6, 6);
+  }
+  BackEndInput input = TruthInput(noisy);
+  for (auto& prior : input.priors) prior->log_sigma = {0.3, 0.3};
+  OptimiseOptions options = TangencyOptions();
+  options.points.effective_points = 100.0;
+  options.points.point_range_fraction = 0.0;
+  const auto mean_iou = [&] {
+    return EvaluateMap(sequence, OptimiseMap(input, options)).summary.iou_mean.value();
+  };
+  const double boxes = mean_iou();
+  input.points = FindObjectPoints(noisy, PointsOnObjects(sequence, 100), options.points);
+  const double points = mean_iou();
+  EXPECT_GT(points, boxes + 0.02);
+}
+
+// With the options as they are shipped, points that are exact do not harm boxes with errors.
+TEST(TangencyBackEnd, PointsWithDefaultWeightsDoNoHarm) {
+  const Sequence sequence = CuboidSequence(3, 8);
+  Sequence noisy = sequence;
+  for (Detection& detection : noisy.detections) {
+    detection.box.x_max += RandomUniform(-6, 6);
+    detection.box.y_min += RandomUniform(-6, 6);
+  }
+  BackEndInput input = TruthInput(noisy);
+  for (auto& prior : input.priors) prior->log_sigma = {0.3, 0.3};
+  const OptimiseOptions options = TangencyOptions();
+  const auto mean_iou = [&] {
+    return EvaluateMap(sequence, OptimiseMap(input, options)).summary.iou_mean.value();
+  };
+  const double boxes = mean_iou();
+  input.points = FindObjectPoints(noisy, PointsOnObjects(sequence, 100), options.points);
+  EXPECT_GT(mean_iou(), boxes - 0.01);
+}
+
+TEST(TangencyBackEnd, ObjectsWithoutPointsAreCounted) {
+  const Sequence sequence = CuboidSequence(3, 8);
+  BackEndInput input = TruthInput(sequence);
+  input.points.resize(sequence.objects.size());
+  EXPECT_EQ(OptimiseMap(input, TangencyOptions()).solver.gated.at("objects_without_points"), 3);
+}
+
+}  // namespace
+}  // namespace soslam
