@@ -40,8 +40,8 @@ std::vector<std::string> RunsIn(const fs::path& list) {
 
 std::vector<std::string> KnownVariants() {
   std::vector<std::string> names(kPaperVariants.begin(), kPaperVariants.end());
-  names.insert(names.end(), {"Cube", "MultiView", "InitS", "InitST", "InitSTE", "OursS", "OursST",
-                             "OursSTE", "OursSP", "OursSTEP"});
+  names.insert(names.end(), {"Cube", "MultiView", "InitS", "InitST", "InitSTE", "InitSP",
+                             "InitSTEP", "OursS", "OursST", "OursSTE", "OursSP", "OursSTEP"});
   return names;
 }
 

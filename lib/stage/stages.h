@@ -162,7 +162,7 @@ void RunExport(const ExportOptions& options, const StageFiles& files, int thread
 // compared.
 struct ReportOptions {
   std::string compare =
-      "InitP InitS, InitPT InitSTE, InitS InitST InitSTE, OursP OursS, OursPT OursSTE, "
+      "InitP InitS, InitPT InitSTE, InitS InitST InitSTE InitSTEP, OursP OursS, OursPT OursSTE, "
       "OursS OursST OursSTE OursSTEP";
   std::string maps = "OursS OursSTE OursS-raw OursSTE-raw OursS-raw-planes OursSTE-raw-planes";
 

@@ -68,8 +68,8 @@ TEST_F(PaperTablesTest, SingleFrameVariantsHaveARowForTheFirstObservation) {
   results_.WriteMetrics("room", "InitP", {{.id = 1, .iou = 0.5, .observations = 7}}, true);
   const Table table = TableOf(Read());
   EXPECT_THAT(CellTexts(table),
-              ElementsAre("room all observations f 1 7 0.250 - - *0.500* - - - - -",
-                          "room first observation f 1 1 - - - *0.500* - - - - -"));
+              ElementsAre("room all observations f 1 7 0.250 - - *0.500* - - - - - - -",
+                          "room first observation f 1 1 - - - *0.500* - - - - - - -"));
 }
 
 TEST_F(PaperTablesTest, ValuesOverFewerObjectsSaySo) {

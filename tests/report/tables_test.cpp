@@ -353,11 +353,11 @@ TEST_F(TimingTableTest, MeasuredAndPublishedTimesOnTheirMachines) {
   published.times = {"A paper", "desk", "A laptop", {{"InitP", 5.8, 1.4, 1.0}}};
   const Table table = TimeTable(Read(), published);
   EXPECT_THAT(CellTexts(table),
-              ElementsAre("room wall ms - - 250.0 - - - - - - - - - - - - - -",
-                          "room CPU ms - - 312.5 - - - - - - - - - - - - - -",
-                          "room observations - - 1.0 - - - - - - - - - - - - - -",
-                          "desk published ms - - 5.8 ± 1.4 - - - - - - - - - - - - - -",
-                          "desk published observations - - 1.0 - - - - - - - - - - - - - -"));
+              ElementsAre("room wall ms - - 250.0 - - - - - - - - - - - - - - - -",
+                          "room CPU ms - - 312.5 - - - - - - - - - - - - - - - -",
+                          "room observations - - 1.0 - - - - - - - - - - - - - - - -",
+                          "desk published ms - - 5.8 ± 1.4 - - - - - - - - - - - - - - - -",
+                          "desk published observations - - 1.0 - - - - - - - - - - - - - - - -"));
   EXPECT_EQ(table.notes.front(), "Measured on: A CPU, 4 cores, 2 threads.");
   EXPECT_EQ(table.notes.back(), "Published: A paper, on A laptop.");
 }
