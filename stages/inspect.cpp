@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdlib>
 #include <string>
 
 #include "base/error.h"
@@ -22,6 +25,7 @@ constexpr const char* kExamples =
 
 struct Arguments {
   soslam::InspectRequest request;
+  std::string layer = soslam::kEdgeLayerNames.front();
   std::string one, two;
   double tolerance = 1e-9;
 };
@@ -29,6 +33,11 @@ struct Arguments {
 std::string HelpFooter(const std::string& examples) {
   return fmt::format("{}\n\n{}", examples,
                      soslam::internal::ExitCodesHelp("the two artefacts of diff differ"));
+}
+
+bool IsColoured() {
+  const char* no_color = std::getenv("NO_COLOR");
+  return isatty(STDOUT_FILENO) != 0 && (no_color == nullptr || *no_color == '\0');
 }
 
 // Returns the option --headline, which takes no option of pictures or tables.
@@ -60,12 +69,18 @@ CLI::Option* AddFiles(CLI::App* app, soslam::InspectRequest* request) {
   return headline;
 }
 
-void AddOptions(CLI::App* app, soslam::InspectRequest* request, CLI::Option* headline) {
-  const auto add = [&](const char* name, std::optional<int>* id, const char* doc) {
-    app->add_option(name, *id, doc)->option_text("integer")->excludes(headline)->group("Options");
+void AddOptions(CLI::App* app, Arguments* arguments, CLI::Option* headline) {
+  const auto add = [&](const char* name, auto* value, const char* type, const char* doc) {
+    CLI::Option* option = app->add_option(name, *value, doc);
+    option->option_text(type)->excludes(headline)->group("Options");
+    return option;
   };
-  add("--frame", &request->frame_id, "id of the frame of the picture");
-  add("--object", &request->object_id, "id of its object, of symmetry");
+  add("--frame", &arguments->request.frame_id, "integer", "id of the frame of the picture");
+  add("--object", &arguments->request.object_id, "integer", "id of its object, of symmetry");
+  add("--layer", &arguments->layer, "string",
+      "what of edges is in the picture\n[default all; one of all, grey, edges, distance, nearest]")
+      ->check(CLI::IsMember(std::vector<std::string>(soslam::kEdgeLayerNames.begin(),
+                                                     soslam::kEdgeLayerNames.end())));
 }
 
 CLI::App* AddDiff(CLI::App* app, Arguments* arguments) {
@@ -89,12 +104,15 @@ int Run(Arguments* arguments, bool is_diff) {
   if (is_diff) {
     const soslam::Differences differences =
         soslam::CompareArtefacts(arguments->one, arguments->two, arguments->tolerance);
-    fmt::print("{}", FormatDifferences(differences, arguments->tolerance));
+    fmt::print("{}", FormatDifferences(differences, arguments->tolerance, IsColoured()));
     return differences.content.empty() ? static_cast<int>(soslam::ExitCode::kDone)
                                        : soslam::kFindings;
   }
   if (arguments->request.file.empty()) throw CLI::RequiredError("FILE");
-  fmt::print("{}", RunInspect(arguments->request));
+  const auto layer = std::ranges::find(soslam::kEdgeLayerNames, arguments->layer);
+  arguments->request.layer =
+      static_cast<soslam::EdgeLayer>(layer - soslam::kEdgeLayerNames.begin());
+  fmt::print("{}", RunInspect(arguments->request, IsColoured()));
   return static_cast<int>(soslam::ExitCode::kDone);
 }
 
@@ -109,7 +127,7 @@ int main(int argc, char** argv) {
     soslam::internal::AddOutsidePaths(&app);
     soslam::internal::AddHelpAndVersion(&app);
     CLI::Option* headline = AddFiles(&app, &arguments.request);
-    AddOptions(&app, &arguments.request, headline);
+    AddOptions(&app, &arguments, headline);
     const CLI::App* diff = AddDiff(&app, &arguments);
     app.footer(HelpFooter(kExamples));
     app.parse(argc, argv);

@@ -152,13 +152,11 @@ cv::Mat DrawingGround(const cv::Mat& image, int min_width) {
 
 namespace {
 
-constexpr int kTileWidth = kPictureWidth / 2;  // of one of two pictures side by side
-
 // A camera of which only the size matters, for drawing in pixels.
 Camera CameraOfSize(const cv::Mat& image) { return {.width = image.cols, .height = image.rows}; }
 
-cv::Mat WithCorners(const EdgeMaps& maps) {
-  cv::Mat picture = DrawingGround(maps.grey, kTileWidth);
+cv::Mat WithCorners(const EdgeMaps& maps, int min_width) {
+  cv::Mat picture = DrawingGround(maps.grey, min_width);
   Canvas canvas(CameraOfSize(maps.grey), &picture);
   for (const Eigen::Vector2f& corner : maps.corners) {
     canvas.Disc(corner.cast<double>(), palette::kYellow);
@@ -212,6 +210,30 @@ cv::Mat DirectionPicture(const cv::Mat& nearest_edge) {
   return picture;
 }
 
+cv::Mat LayerPicture(const EdgeMaps& maps, EdgeLayer layer, const std::string& title,
+                     int min_width) {
+  const int edges = cv::countNonZero(maps.edges);
+  double largest = 0.0;
+  if (edges > 0) cv::minMaxLoc(maps.distance, nullptr, &largest);
+  const auto captioned = [&](const cv::Mat& picture, const std::string& text) {
+    return WithCaption(DrawingGround(picture, min_width), {{title}, {text}});
+  };
+  switch (layer) {
+    case EdgeLayer::kGrey:
+      return captioned(WithCorners(maps, min_width),
+                       fmt::format("{} corners", maps.corners.size()));
+    case EdgeLayer::kEdges:
+      return captioned(maps.edges, fmt::format("{} edge pixels", edges));
+    case EdgeLayer::kDistance:
+      return captioned(
+          DistancePicture(maps.distance, largest),
+          fmt::format("distance to the nearest edge, 0 (dark) to {:.1f} px (bright)", largest));
+    default:
+      return captioned(DirectionPicture(maps.nearest_edge),
+                       "direction to the nearest edge, by the colours of the wheel");
+  }
+}
+
 // The part of an image around pairs of pixels, with a margin in proportion to its size.
 cv::Rect AroundPairs(const SymmetryRecord& record, const cv::Size& size) {
   std::vector<cv::Point2f> points;
@@ -230,24 +252,18 @@ cv::Rect AroundPairs(const SymmetryRecord& record, const cv::Size& size) {
 
 }  // namespace
 
-cv::Mat EdgesPicture(const EdgeMaps& maps, const std::string& title) {
-  const int edges = cv::countNonZero(maps.edges);
-  double largest = 0.0;
-  if (edges > 0) cv::minMaxLoc(maps.distance, nullptr, &largest);
-  const auto tile = [&](const cv::Mat& picture, const std::string& text) {
-    return WithCaption(DrawingGround(picture, kTileWidth), {{title}, {text}});
+cv::Mat EdgesPicture(const EdgeMaps& maps, EdgeLayer layer, const std::string& title) {
+  if (layer != EdgeLayer::kAll) return LayerPicture(maps, layer, title, kPictureWidth);
+  const auto row = [&](EdgeLayer left, EdgeLayer right) {
+    cv::Mat tiles;
+    cv::hconcat(LayerPicture(maps, left, title, kTileWidth),
+                LayerPicture(maps, right, title, kTileWidth), tiles);
+    return tiles;
   };
-  cv::Mat upper, lower, picture;
-  cv::hconcat(tile(WithCorners(maps), fmt::format("{} corners", maps.corners.size())),
-              tile(maps.edges, fmt::format("{} edge pixels", edges)), upper);
-  cv::hconcat(
-      tile(DistancePicture(maps.distance, largest),
-           fmt::format("distance to the nearest edge, 0 (dark) to {:.1f} px (bright)", largest)),
-      tile(DirectionPicture(maps.nearest_edge),
-           "direction to the nearest edge, by the colours of the wheel"),
-      lower);
-  cv::vconcat(upper, lower, picture);
-  return picture;
+  cv::Mat tiles;
+  cv::vconcat(row(EdgeLayer::kGrey, EdgeLayer::kEdges),
+              row(EdgeLayer::kDistance, EdgeLayer::kNearest), tiles);
+  return tiles;
 }
 
 cv::Mat SymmetryPicture(const SymmetryRecord& record, const cv::Mat& image,

@@ -171,7 +171,7 @@ Value NumberCell(const std::optional<double>& number) {
 
 Value TextCell(const std::string& text) { return text.empty() ? Value() : Value(text); }
 
-std::string FormatPlaces(const std::vector<Difference>& places) {
+std::string FormatPlaces(const std::vector<Difference>& places, bool is_coloured) {
   ValueTable table;
   table.columns = {{"place"}, {"one"}, {"two"}, {"absolute"}, {"relative"}, {"numbers"}};
   for (const Difference& place : places) {
@@ -180,7 +180,7 @@ std::string FormatPlaces(const std::vector<Difference>& places) {
          NumberCell(place.relative),
          place.of > 1 ? Value(fmt::format("{} of {}", place.differing, place.of)) : Value()});
   }
-  return FormatTable(table);
+  return FormatTable(table, is_coloured);
 }
 
 }  // namespace
@@ -203,11 +203,11 @@ Differences CompareArtefacts(const std::filesystem::path& one, const std::filesy
   return differences;
 }
 
-std::string FormatDifferences(const Differences& differences, double tolerance) {
+std::string FormatDifferences(const Differences& differences, double tolerance, bool is_coloured) {
   std::string text;
   if (!differences.provenance.empty()) {
     text += fmt::format("provenance differs, places: {}\n{}\n", differences.provenance.size(),
-                        FormatPlaces(differences.provenance));
+                        FormatPlaces(differences.provenance, is_coloured));
   }
   if (differences.content.empty()) {
     return text +
@@ -215,7 +215,7 @@ std::string FormatDifferences(const Differences& differences, double tolerance) 
   }
   return text + fmt::format("content of kind '{}' differs by more than {:g}, places: {}\n{}",
                             differences.kind, tolerance, differences.content.size(),
-                            FormatPlaces(differences.content));
+                            FormatPlaces(differences.content, is_coloured));
 }
 
 }  // namespace soslam

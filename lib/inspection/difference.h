@@ -31,7 +31,8 @@ struct Differences {
 Differences CompareArtefacts(const std::filesystem::path& one, const std::filesystem::path& two,
                              double tolerance);
 
-// Text for a terminal: a summary of the differences, and a table of the places.
-std::string FormatDifferences(const Differences& differences, double tolerance);
+// Text for a terminal: a summary of the differences, and a table of the places. `is_coloured`: with
+// escape sequences.
+std::string FormatDifferences(const Differences& differences, double tolerance, bool is_coloured);
 
 }  // namespace soslam

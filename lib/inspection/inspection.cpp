@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "inspection/inspection.h"
 
+#include <fmt/color.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -200,17 +201,21 @@ Inspection Inspect(const std::filesystem::path& file, const std::optional<Sequen
   return inspection;
 }
 
-std::string FormatInspection(const Inspection& inspection) {
+std::string FormatInspection(const Inspection& inspection, bool is_coloured) {
+  const auto styled = [&](fmt::emphasis emphasis, const std::string& text) {
+    return is_coloured ? fmt::format(fmt::text_style(emphasis), "{}", text) : text;
+  };
   size_t width = 0;
   for (const Fact& fact : inspection.facts) width = std::max(width, WidthOf(fact.name));
-  std::string text = inspection.title + "\n";
+  std::string text = styled(fmt::emphasis::bold, inspection.title) + "\n";
   for (const Fact& fact : inspection.facts) {
     const std::string name = fact.name + std::string(width - WidthOf(fact.name), ' ');
     const size_t indent = 2 + width + 2;
-    text += fmt::format("  {}  {}\n", name, Wrapped(fact.text, kLineWidth - indent, indent));
+    text += fmt::format("  {}  {}\n", styled(fmt::emphasis::faint, name),
+                        Wrapped(fact.text, kLineWidth - indent, indent));
   }
   if (inspection.table.rows.empty()) return text;
-  return text + "\n" + FormatTable(inspection.table);
+  return text + "\n" + FormatTable(inspection.table, is_coloured);
 }
 
 std::string CountsInWords(const std::map<std::string, int>& counts) {

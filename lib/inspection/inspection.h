@@ -33,8 +33,8 @@ struct ValueTable {
 ValueTable TableOf(const std::vector<ValueColumn>& columns, const nlohmann::json& objects);
 
 // Text for a terminal: a line of names, one of units, and the rows, in aligned columns; columns
-// without any value are left out.
-std::string FormatTable(const ValueTable& table);
+// without any value are left out. `is_coloured`: with escape sequences.
+std::string FormatTable(const ValueTable& table, bool is_coloured);
 
 // RFC 4180 with lines that end in a line feed: the names of all columns, with their units
 // ("yaw_deg"), then the rows. Numbers round-trip exactly.
@@ -58,8 +58,8 @@ struct Inspection {
 // damaged.
 Inspection Inspect(const std::filesystem::path& file, const std::optional<Sequence>& sequence);
 
-// Text for a terminal: title, facts, table.
-std::string FormatInspection(const Inspection& inspection);
+// Text for a terminal: title, facts, table. `is_coloured`: with escape sequences.
+std::string FormatInspection(const Inspection& inspection, bool is_coloured);
 
 // "3 near_border, 2 duplicate", the most frequent first; "none" when there are none.
 std::string CountsInWords(const std::map<std::string, int>& counts);

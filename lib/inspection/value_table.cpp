@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/color.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -79,13 +80,16 @@ ValueTable TableOf(const std::vector<ValueColumn>& columns, const nlohmann::json
   return table;
 }
 
-std::string FormatTable(const ValueTable& table) {
+std::string FormatTable(const ValueTable& table, bool is_coloured) {
   const std::vector<PrintedColumn> columns = PrintedColumns(table);
   std::string text;
   for (size_t line = 0; line < table.rows.size() + 2; ++line) {
     const std::string printed = PrintedLine(columns, line);
     if (line == 1 && printed.empty()) continue;  // no column has a unit
-    text += printed + "\n";
+    const fmt::emphasis emphasis = line == 0 ? fmt::emphasis::bold : fmt::emphasis::faint;
+    text +=
+        is_coloured && line < 2 ? fmt::format(fmt::text_style(emphasis), "{}", printed) : printed;
+    text += '\n';
   }
   return text;
 }

@@ -95,7 +95,7 @@ cv::Mat PictureOfEdges(const InspectRequest& request) {
     if (ids.empty()) throw NothingUsableError(request.file.string() + ": has no frames");
     RefuseFrame(frame_id, request.file, ids.front(), ids.back());
   }
-  return EdgesPicture(reader.Read(frame_id), fmt::format("frame {}", frame_id));
+  return EdgesPicture(reader.Read(frame_id), request.layer, fmt::format("frame {}", frame_id));
 }
 
 cv::Mat PictureOfSymmetry(const InspectRequest& request) {
@@ -209,7 +209,7 @@ std::string Headline(const InspectRequest& request) {
 
 }  // namespace
 
-std::string RunInspect(const InspectRequest& request) {
+std::string RunInspect(const InspectRequest& request, bool is_coloured) {
   if (request.headline) return Headline(request);
   if (request.image) WritePng(*request.image, PictureOf(request));
   if (request.image && !request.csv) return "";
@@ -218,7 +218,7 @@ std::string RunInspect(const InspectRequest& request) {
     if (IsOfAnotherSequence(request)) {
       inspection.facts.push_back({"note", "--sequence is not the file that this was made from"});
     }
-    return FormatInspection(inspection);
+    return FormatInspection(inspection, is_coloured);
   }
   std::string csv = FormatCsv(inspection.table);
   if (*request.csv == "-") return csv;

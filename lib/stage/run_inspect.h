@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "inspection/canvas.h"
+
 namespace soslam {
 
 // Arguments of soslam-inspect.
@@ -17,13 +19,15 @@ struct InspectRequest {
   std::optional<std::filesystem::path> dataset;   // folder with the images
   std::optional<int> frame_id;                    // frame of the picture
   std::optional<int> object_id;
+  EdgeLayer layer = EdgeLayer::kAll;
 };
 
 // With `headline`, returns HeadlineOfMap as a line, of the sequence.json beside the map.json unless
 // another one is given. Writes the requested table and picture and returns the text for standard
 // output: the table as CSV if requested there; nothing if files were requested; otherwise a
-// description of the artefact and its table. Throws InputError for a file that is no artefact,
-// SettingsError for a picture that this artefact cannot give.
-std::string RunInspect(const InspectRequest& request);
+// description of the artefact and its table, with escape sequences if `is_coloured`. Throws
+// InputError for a file that is no artefact, SettingsError for a picture that this artefact cannot
+// give.
+std::string RunInspect(const InspectRequest& request, bool is_coloured);
 
 }  // namespace soslam

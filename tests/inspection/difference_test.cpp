@@ -37,7 +37,8 @@ TEST_F(DifferenceTest, TheSameArtefactDiffersNowhere) {
   const Differences differences = Compare();
   EXPECT_TRUE(differences.content.empty());
   EXPECT_TRUE(differences.provenance.empty());
-  EXPECT_EQ(FormatDifferences(differences, 0.0), "content of kind 'map' is equal within 0\n");
+  EXPECT_EQ(FormatDifferences(differences, 0.0, false),
+            "content of kind 'map' is equal within 0\n");
 }
 
 TEST_F(DifferenceTest, ArraysNameTheirLargestDifference) {
@@ -57,7 +58,7 @@ TEST_F(DifferenceTest, ArraysNameTheirLargestDifference) {
   EXPECT_EQ(found.of, 3u);
   EXPECT_TRUE(Compare(0.2).content.empty()) << "within the tolerance";
   EXPECT_THAT(
-      FormatDifferences(differences, 0.1),
+      FormatDifferences(differences, 0.1, false),
       testing::HasSubstr("/objects/0/landmark/half_axes  4    5    1         0.2       2 of "
                          "3"));
 }

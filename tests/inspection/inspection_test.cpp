@@ -313,7 +313,7 @@ TEST_F(InspectionTest, ManyInputsOfAKindAreCounted) {
 TEST_F(InspectionTest, LongFactsAreWrapped) {
   const Inspection inspection{
       "title", {{"name", std::string(60, 'a') + " " + std::string(60, 'b')}}, {}};
-  EXPECT_EQ(FormatInspection(inspection),
+  EXPECT_EQ(FormatInspection(inspection, false),
             "title\n  name  " + std::string(60, 'a') + "\n        " + std::string(60, 'b') + "\n");
 }
 
@@ -348,11 +348,20 @@ ValueTable SmallTable() {
 }
 
 TEST(ValueTableTest, ColumnsLineUpAndEmptyOnesAreLeftOut) {
-  EXPECT_EQ(FormatTable(SmallTable()),
+  EXPECT_EQ(FormatTable(SmallTable(), false),
             "label       x  count  flag\n"
             "            m\n"
             "b\xc3\xa4r      0.33     12  yes\n"
             "c      -10.00      3  no\n");
+}
+
+TEST(ValueTableTest, OnlyTheHeadIsColoured) {
+  const std::string plain = FormatTable(SmallTable(), false);
+  const std::string coloured = FormatTable(SmallTable(), true);
+  EXPECT_THAT(plain, testing::Not(testing::HasSubstr("\x1b")));
+  const size_t rows = plain.find("b\xc3\xa4r");
+  EXPECT_THAT(coloured, testing::StartsWith("\x1b["));
+  EXPECT_THAT(coloured, testing::EndsWith(plain.substr(rows)));
 }
 
 TEST(ValueTableTest, CsvHasAllColumnsAndAllDigits) {

@@ -193,29 +193,35 @@ cv::Vec3b At(const cv::Mat& picture, int x, int y) { return picture.at<cv::Vec3b
 
 int Brightness(const cv::Vec3b& colour) { return colour[0] + colour[1] + colour[2]; }
 
-TEST(PicturesTest, EveryMapOfTheEdgesIsShown) {
-  const cv::Mat picture = EdgesPicture(MapsOfAnEdge(), "frame 1");
-  ASSERT_EQ(picture.cols, 2 * kSize);
-  ASSERT_GT(picture.rows, 2 * kSize) << "there are captions";
-  const int lower = picture.rows / 2;
-  EXPECT_EQ(At(picture, 10, 10), cv::Vec3b(50, 50, 50));
-  EXPECT_EQ(At(picture, 100, 200), cv::Vec3b(66, 228, 240)) << "the corner";
-  EXPECT_EQ(At(picture, kSize + kSize / 2, 10), cv::Vec3b(255, 255, 255)) << "the edge";
-  EXPECT_EQ(At(picture, kSize + 10, 10), cv::Vec3b(0, 0, 0));
-  EXPECT_GT(Brightness(At(picture, 0, lower + 10)),
-            Brightness(At(picture, kSize / 2, lower + 10)) + 100);
-  const cv::Vec3b left = At(picture, kSize + 10, lower + 10);
-  const cv::Vec3b right = At(picture, 2 * kSize - 10, lower + 10);
-  EXPECT_GT(left[2], left[0]) << "red: the edge is to the right";
-  EXPECT_LT(right[2], right[0]) << "cyan: to the left";
+TEST(PicturesTest, EveryLayerShowsItsMap) {
+  const EdgeMaps maps = MapsOfAnEdge();
+  const auto picture = [&](EdgeLayer layer) { return EdgesPicture(maps, layer, "frame 1"); };
+  const cv::Mat grey = picture(EdgeLayer::kGrey);
+  EXPECT_EQ(At(grey, 10, 10), cv::Vec3b(50, 50, 50));
+  EXPECT_EQ(At(grey, 100, 200), cv::Vec3b(66, 228, 240)) << "the corner";
+  const cv::Mat edges = picture(EdgeLayer::kEdges);
+  EXPECT_EQ(At(edges, kSize / 2, 10), cv::Vec3b(255, 255, 255));
+  EXPECT_EQ(At(edges, 10, 10), cv::Vec3b(0, 0, 0));
+  const cv::Mat distance = picture(EdgeLayer::kDistance);
+  EXPECT_GT(Brightness(At(distance, 0, 10)), Brightness(At(distance, kSize / 2, 10)) + 100);
+  const cv::Mat nearest = picture(EdgeLayer::kNearest);
+  EXPECT_GT(At(nearest, 10, 10)[2], At(nearest, 10, 10)[0]) << "red: the edge is to the right";
+  EXPECT_LT(At(nearest, kSize - 10, 10)[2], At(nearest, kSize - 10, 10)[0]) << "cyan: to the left";
+  EXPECT_GT(nearest.rows, kSize) << "there is a caption";
+}
+
+TEST(PicturesTest, AllLayersAreSideBySide) {
+  const cv::Mat all = EdgesPicture(MapsOfAnEdge(), EdgeLayer::kAll, "frame 1");
+  EXPECT_EQ(all.cols, 2 * kSize);
+  EXPECT_EQ(At(all, kSize + kSize / 2, 10), cv::Vec3b(255, 255, 255));
 }
 
 TEST(PicturesTest, AnImageWithoutEdgesIsDark) {
   const EdgeMaps maps = ComputeEdgeMaps(cv::Mat(kSize, kSize, CV_8UC1, cv::Scalar(50)), {});
-  const cv::Mat picture = EdgesPicture(maps, "");
-  const int lower = picture.rows / 2;
-  EXPECT_EQ(At(picture, kSize + 10, lower + 10), cv::Vec3b(0, 0, 0));
-  EXPECT_EQ(At(picture, 10, lower + 10), At(picture, kSize - 10, lower + 10));
+  const cv::Mat nearest = EdgesPicture(maps, EdgeLayer::kNearest, "");
+  EXPECT_EQ(At(nearest, 10, 10), cv::Vec3b(0, 0, 0));
+  const cv::Mat distance = EdgesPicture(maps, EdgeLayer::kDistance, "");
+  EXPECT_EQ(At(distance, 10, 10), At(distance, kSize - 10, kSize - 10));
 }
 
 TEST(PicturesTest, PairsAreJoinedOnThePartAroundThem) {

@@ -31,10 +31,11 @@ class InspectProgramTest : public testing::Test {
   std::string two_ = (folder_ / "two.json").string();
 };
 
-TEST_F(InspectProgramTest, ShowsAnArtefact) {
+TEST_F(InspectProgramTest, ShowsAnArtefactWithoutColoursOutsideATerminal) {
   const CommandResult result = Run({one_});
   EXPECT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_THAT(result.output, HasSubstr("one.json: map"));
+  EXPECT_THAT(result.output, testing::Not(HasSubstr("\x1b")));
   EXPECT_EQ(result.errors, "");
 }
 
@@ -51,6 +52,7 @@ TEST_F(InspectProgramTest, ErrorsHaveTheirExitCodesAndOneLine) {
   const std::vector<std::pair<std::vector<std::string>, int>> calls = {
       {{}, 2},
       {{one_, "--frame", "x"}, 2},
+      {{one_, "--layer", "x"}, 2},
       {{"diff", one_}, 2},
       {{"diff", one_, two_, "--tolerance", "-1"}, 2},
       {{one_, "--csv", (folder_ / "missing/table.csv").string()}, 2},
@@ -68,7 +70,8 @@ TEST_F(InspectProgramTest, ErrorsHaveTheirExitCodesAndOneLine) {
 TEST_F(InspectProgramTest, HelpNamesFilesOptionsAndExitCodes) {
   const CommandResult help = Run({"--help"});
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* word : {"FILE", "--csv", "--image", "diff", "Examples:", "70 a bug"}) {
+  for (const char* word :
+       {"FILE", "--csv", "--image", "--layer", "diff", "Examples:", "70 a bug"}) {
     EXPECT_THAT(help.output, HasSubstr(word));
   }
   EXPECT_THAT(Run({"diff", "--help"}).output, HasSubstr("--tolerance"));

@@ -52,27 +52,30 @@ class RunInspectTest : public testing::Test {
 };
 
 TEST_F(RunInspectTest, WordsAndTableAreReturned) {
-  EXPECT_THAT(RunInspect(RequestOf("sequence.json")),
-              testing::AllOf(HasSubstr("sequence.json: sequence"), HasSubstr("\nobject  label")));
+  const std::string text = RunInspect(RequestOf("sequence.json"), false);
+  EXPECT_THAT(text, HasSubstr("sequence.json: sequence"));
+  EXPECT_THAT(text, HasSubstr("\nobject  label"));
+  EXPECT_THAT(text, testing::Not(HasSubstr("\x1b")));
+  EXPECT_THAT(RunInspect(RequestOf("sequence.json"), true), HasSubstr("\x1b["));
 }
 
 TEST_F(RunInspectTest, CsvIsReturnedOrWritten) {
   InspectRequest request = RequestOf("sequence.json");
   request.csv = "-";
-  const std::string csv = RunInspect(request);
+  const std::string csv = RunInspect(request, true);
   EXPECT_THAT(csv, testing::StartsWith("object,label,plane,"));
   request.csv = File("table.csv");
-  EXPECT_EQ(RunInspect(request), "");
+  EXPECT_EQ(RunInspect(request, true), "");
   EXPECT_EQ(FileBytes(File("table.csv")), csv);
 }
 
 TEST_F(RunInspectTest, AnotherSequenceThanTheArtefactsIsNoted) {
   InspectRequest request = RequestOf("initial.json");
   request.sequence = File("sequence.json");
-  EXPECT_THAT(RunInspect(request), testing::Not(HasSubstr("note")));
+  EXPECT_THAT(RunInspect(request, false), testing::Not(HasSubstr("note")));
   sequence_.name = "another";
   WriteSequence(File("sequence.json"), sequence_, {});
-  EXPECT_THAT(RunInspect(request), HasSubstr("not the file that this was made from"));
+  EXPECT_THAT(RunInspect(request, false), HasSubstr("not the file that this was made from"));
 }
 
 TEST_F(RunInspectTest, TheHeadlineOfAMapIsALine) {
@@ -89,7 +92,7 @@ TEST_F(RunInspectTest, TheHeadlineOfAMapIsALine) {
   WriteMap(File("map.json"), map, sequence_, {});
   InspectRequest request = RequestOf("map.json");
   request.headline = true;
-  EXPECT_EQ(RunInspect(request), "2 objects, 1 object uncertain\n");
+  EXPECT_EQ(RunInspect(request, true), "2 objects, 1 object uncertain\n");
 
   GroundEstimate ground;
   ground.scale = ScalePosterior{.log_sigma = 0.05, .low = -0.1, .high = 0.1};
@@ -99,36 +102,36 @@ TEST_F(RunInspectTest, TheHeadlineOfAMapIsALine) {
                {OptionsToJson(GroundOptions()), {}, findings});
   };
   write_world({});
-  EXPECT_EQ(RunInspect(request), "2 objects, scale +- 11 %, 1 object uncertain\n");
+  EXPECT_EQ(RunInspect(request, true), "2 objects, scale +- 11 %, 1 object uncertain\n");
   write_world({{kObjectsAgainstSettingsCheck, Severity::kWarning, "", "", "", ""}});
-  EXPECT_EQ(RunInspect(request),
+  EXPECT_EQ(RunInspect(request, true),
             "2 objects, scale +- 11 % (uncertain: the heights of objects contradict the camera's "
             "height given), 1 object uncertain\n");
-  EXPECT_THAT(RunInspect(RequestOf("world.json")),
+  EXPECT_THAT(RunInspect(RequestOf("world.json"), false),
               testing::AllOf(HasSubstr("(95 %, +- 11 %)"),
                              HasSubstr("scale uncertain  the heights of objects contradict the")));
   ground.scale.reset();
   write_world({{"few_objects_on_planes", Severity::kWarning, "", "", "", ""}});
   EXPECT_EQ(
-      RunInspect(request),
+      RunInspect(request, true),
       "2 objects, scale unknown, up (uncertain: few objects stand on flat surfaces), 1 object "
       "uncertain\n");
-  EXPECT_THAT(RunInspect(RequestOf("world.json")),
+  EXPECT_THAT(RunInspect(RequestOf("world.json"), false),
               HasSubstr("up uncertain    few objects stand on flat surfaces; it may be wrong"));
   write_world({});
-  EXPECT_EQ(RunInspect(request), "2 objects, scale unknown, 1 object uncertain\n");
+  EXPECT_EQ(RunInspect(request, true), "2 objects, scale unknown, 1 object uncertain\n");
   Sequence other = sequence_;
   other.name = "another";
   WriteSequence(File("other.json"), other, {});
   request.sequence = File("other.json");
-  ExpectError<InputError>([&] { RunInspect(request); },
+  ExpectError<InputError>([&] { RunInspect(request, false); },
                           {"map.json: was not made from", "other.json"});
   request.file = File("metrics.json");
-  ExpectError<SettingsError>([&] { RunInspect(request); }, {"metrics", "expected a map"});
+  ExpectError<SettingsError>([&] { RunInspect(request, false); }, {"metrics", "expected a map"});
 }
 
 TEST_F(RunInspectTest, FramesWithoutImagesHavePicturesToo) {
-  EXPECT_EQ(RunInspect(PictureOf("sequence.json")), "");
+  EXPECT_EQ(RunInspect(PictureOf("sequence.json"), false), "");
   EXPECT_GE(Picture().cols, kPictureWidth);
   EXPECT_GT(Picture().rows * sequence_.camera.width, Picture().cols * sequence_.camera.height)
       << "there is a caption";
@@ -144,29 +147,32 @@ TEST_F(RunInspectTest, TheImageOfTheDatasetIsBelow) {
   WriteSequence(File("sequence.json"), sequence_, {});
   InspectRequest request = PictureOf("sequence.json");
   request.dataset = File("data");
-  RunInspect(request);
+  RunInspect(request, false);
   EXPECT_EQ(Picture().at<cv::Vec3b>(50, 50), cv::Vec3b(200, 200, 200));
 }
 
 TEST_F(RunInspectTest, PicturesOfEstimatesNeedTheSequence) {
   InspectRequest request = PictureOf("initial.json");
-  ExpectError<SettingsError>([&] { RunInspect(request); }, {"needs --sequence"});
+  ExpectError<SettingsError>([&] { RunInspect(request, false); }, {"needs --sequence"});
   request.sequence = File("sequence.json");
-  RunInspect(request);
+  RunInspect(request, false);
   EXPECT_FALSE(Picture().empty());
 }
 
-TEST_F(RunInspectTest, PicturesOfEdgesNeedAFrameThatIsThere) {
+TEST_F(RunInspectTest, PicturesOfEdgesShowOneLayerOrAll) {
   EdgesWriter writer(File("edges.h5"), {});
   writer.Write(3, ComputeEdgeMaps(cv::Mat(90, 120, CV_8UC1, cv::Scalar(7)), {}));
   writer.Commit();
   InspectRequest request = PictureOf("edges.h5");
   request.frame_id = 3;
-  RunInspect(request);
-  EXPECT_EQ(Picture().cols, kPictureWidth);
+  RunInspect(request, false);
+  const cv::Mat all = Picture();
+  request.layer = EdgeLayer::kGrey;
+  RunInspect(request, false);
+  EXPECT_EQ(all.cols, kPictureWidth);
   EXPECT_EQ(Picture().at<cv::Vec3b>(10, 10), cv::Vec3b(7, 7, 7));
   request.frame_id = 4;
-  ExpectError<SettingsError>([&] { RunInspect(request); }, {"--frame 4", "3 to 3"});
+  ExpectError<SettingsError>([&] { RunInspect(request, false); }, {"--frame 4", "3 to 3"});
 }
 
 TEST_F(RunInspectTest, PicturesOfSymmetryNeedFrameAndObject) {
@@ -176,25 +182,25 @@ TEST_F(RunInspectTest, PicturesOfSymmetryNeedFrameAndObject) {
   WriteSymmetry(File("symmetry.h5"), {record}, {});
   InspectRequest request = PictureOf("symmetry.h5");
   request.sequence = File("sequence.json");
-  ExpectError<SettingsError>([&] { RunInspect(request); }, {"needs --object"});
+  ExpectError<SettingsError>([&] { RunInspect(request, false); }, {"needs --object"});
   request.object_id = 8;
-  ExpectError<SettingsError>([&] { RunInspect(request); }, {"--object 8", "no observation"});
+  ExpectError<SettingsError>([&] { RunInspect(request, false); }, {"--object 8", "no observation"});
   request.object_id = 7;
-  RunInspect(request);
+  RunInspect(request, false);
   EXPECT_FALSE(Picture().empty());
 }
 
 TEST_F(RunInspectTest, WhatHasNoPictureIsRefused) {
-  ExpectError<SettingsError>([&] { RunInspect(PictureOf("metrics.json")); },
+  ExpectError<SettingsError>([&] { RunInspect(PictureOf("metrics.json"), false); },
                              {"no picture of kind 'metrics'"});
   InspectRequest request = PictureOf("sequence.json");
   request.frame_id = 99;
-  ExpectError<SettingsError>([&] { RunInspect(request); }, {"--frame 99", "0 to 4"});
+  ExpectError<SettingsError>([&] { RunInspect(request, false); }, {"--frame 99", "0 to 4"});
   request.frame_id.reset();
-  ExpectError<SettingsError>([&] { RunInspect(request); }, {"needs --frame"});
+  ExpectError<SettingsError>([&] { RunInspect(request, false); }, {"needs --frame"});
   request = PictureOf("sequence.json");
   request.image = File("picture.jpg");
-  ExpectError<SettingsError>([&] { RunInspect(request); }, {".png"});
+  ExpectError<SettingsError>([&] { RunInspect(request, false); }, {".png"});
   EXPECT_FALSE(std::filesystem::exists(File("picture.png")));
 }
 
