@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
                    false},
                   {"points",
                    "points.h5 of soslam-track or soslam-reconstruct; needed when the setting "
-                   "point_evidence is true",
+                   "point_evidence is true, with method = yaw_sweep",
                    false}},
        .outputs = {{"output", "initial.json to write"}},
        .example = "soslam-initialise --sequence sequence.json --table "

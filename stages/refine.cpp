@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
                   {"edges", "edges.h5 of soslam-edges"},
                   {"points",
                    "points.h5 of soslam-track or soslam-reconstruct; needed when the setting "
-                   "point_evidence is true",
+                   "point_evidence is true, with method = profile",
                    false}},
        .outputs = {{"output", "refined.json to write"},
                    {"curves", "symmetry.h5 to write: the cost over yaw of every observation"}},

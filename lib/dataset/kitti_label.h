@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dataset/dataset_content.h"
+#include "dataset/gate.h"
 #include "dataset/labelled_box.h"
 #include "geometry/camera.h"
 #include "model/image_orientation.h"

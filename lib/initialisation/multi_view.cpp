@@ -17,8 +17,8 @@ namespace {
 
 constexpr int kMaxRounds = 20;
 constexpr double kSettled = 1e-6;  // relative change of the half axes
-// Smallest reciprocal condition number of the first round's system: below it, the boxes do not
-// determine the body.
+// Smallest reciprocal condition number (1-norm) of the first round's system: below it, the boxes do
+// not determine the body.
 constexpr double kMinConditionReciprocal = 1e-9;
 // The same of later rounds, which reweight, drop and add edges: below it, rounding errors dominate
 // the solution.

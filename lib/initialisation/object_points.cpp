@@ -178,10 +178,10 @@ PointsInFrames::PointsInFrames(const Sequence& sequence, const std::vector<MapPo
       options_(options),
       points_(FindObjectPoints(sequence, points, options)) {}
 
-std::optional<PointEvidence> PointsInFrames::Of(
-    int detection_index, const std::vector<Hypothesis>& without_points) const {
+std::optional<PointEvidence> PointsInFrames::Of(int detection_index,
+                                                const std::vector<Hypothesis>& hypotheses) const {
   const Detection& detection = sequence_.detections[detection_index];
-  if (without_points.empty() || !sequence_.ObjectOf(detection).is_static) return std::nullopt;
+  if (hypotheses.empty() || !sequence_.ObjectOf(detection).is_static) return std::nullopt;
   const Frame& frame = sequence_.FrameOf(detection);
   PointsInView in_frame{detection_index, {}};
   for (const PointsInView& view : points_[detection.object_index]) {
@@ -197,7 +197,7 @@ std::optional<PointEvidence> PointsInFrames::Of(
   }
   if (in_frame.points.empty()) return std::nullopt;
   std::vector<Landmark> landmarks;
-  for (const Hypothesis& one : without_points) landmarks.push_back(one.landmark_in_camera);
+  for (const Hypothesis& one : hypotheses) landmarks.push_back(one.landmark_in_camera);
   return PointEvidence{in_frame.points, SizeForPoints(landmarks), PointWeight({in_frame}, options_),
                        options_};
 }

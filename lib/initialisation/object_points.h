@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "initialisation/point_term.h"
+#include "model/estimates.h"
 #include "model/map_points.h"
 #include "model/sequence.h"
 
@@ -40,9 +41,9 @@ class PointsInFrames {
                  const PointOptions& options);
 
   // All points of the object of a detection, in its camera, with the widths of the median size of
-  // landmarks without points. None without points or hypotheses, and for objects that may move.
+  // the hypotheses. None without points or hypotheses, and for objects that may move.
   std::optional<PointEvidence> Of(int detection_index,
-                                  const std::vector<Hypothesis>& without_points) const;
+                                  const std::vector<Hypothesis>& hypotheses) const;
 
  private:
   const Sequence& sequence_;

@@ -14,8 +14,6 @@
 #include "evaluation/statistics.h"
 #include "inspection/inspection.h"
 
-// The world of structure from motion. Of world.json rows are groups of boxes.
-
 namespace soslam {
 namespace {
 
@@ -99,8 +97,6 @@ Inspection InspectWorld(const json& document) {
                              ObjectsOf(document));
   return inspection;
 }
-
-// Points and reconstructions: rows are frames, or components.
 
 namespace {
 

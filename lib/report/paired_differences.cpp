@@ -199,16 +199,20 @@ namespace {
 using nlohmann::json;
 
 // Pairs of variants, of which the first has one more part.
-const std::array<Comparison, 10> kParts = {{{"InitP", "Init1-1"},
+const std::array<Comparison, 14> kParts = {{{"InitP", "Init1-1"},
                                             {"InitPT", "InitP"},
                                             {"InitS", "InitP"},
                                             {"InitST", "InitS"},
+                                            {"InitSP", "InitS"},
                                             {"InitSTE", "InitST"},
+                                            {"InitSTEP", "InitSTE"},
                                             {"OursP", "Quadric"},
                                             {"OursPT", "OursP"},
                                             {"OursS", "OursP"},
                                             {"OursST", "OursS"},
-                                            {"OursSTE", "OursST"}}};
+                                            {"OursSP", "OursS"},
+                                            {"OursSTE", "OursST"},
+                                            {"OursSTEP", "OursSTE"}}};
 
 json PageDifference(const std::vector<double>& differences) {
   json page = {{"mean", nullptr}, {"low", nullptr}, {"high", nullptr}};

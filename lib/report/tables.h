@@ -105,8 +105,8 @@ ObjectMean WeightedMean(const std::vector<ObjectMean>& means);
 std::vector<Table> PaperTables(const std::vector<DatasetResult>& datasets,
                                const Published& published);
 
-// Run time per landmark. Single-frame variants: edges, initialisation and refinement, per
-// observation; SVD and MultiView: the same, per object; maps: the back end alone, per object.
+// Run time per landmark. Single-frame variants: edges, tracks, initialisation and refinement,
+// per observation; SVD and MultiView: the same, per object; maps: the back end alone, per object.
 struct LandmarkTime {
   double wall_ms = 0.0;
   double cpu_ms = 0.0;

@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array kLandmarkStages = {"edges", "initialise", "refine"};
+constexpr std::array kLandmarkStages = {"edges", "track", "initialise", "refine"};
 constexpr const char* kMapStage = "optimise";
 
 // The runs that are counted in the time per landmark.
@@ -142,7 +142,7 @@ Table TimeTable(const std::vector<DatasetResult>& datasets, const Published& pub
   if (table.rows.empty()) return table;
   table.notes = {
       MachineNote(datasets),
-      "Edges, initialisation and refinement per landmark, of which single-frame variants "
+      "Edges, tracks, initialisation and refinement per landmark, of which single-frame variants "
       "have one per observation; of maps the back end alone, per object."};
   AddPublishedTimes(published.times, &table);
   return table;

@@ -46,21 +46,32 @@ LandmarkEstimates CuboidsOfImages(const Sequence& sequence, const StageFiles& fi
   return InitialiseCuboids(sequence, edges_of, options, threads);
 }
 
-// `has_method`: points are used with the method chosen, of which `needed` is the one that can.
-void CheckPointEvidence(const PointOptions& options, bool has_method, const char* needed,
-                        const char* found, const StageFiles& files) {
-  if (options.point_evidence && !has_method) {
+// Throws SettingsError if points are to be used with another method than `needed`, or without file.
+void CheckPointEvidence(const PointOptions& options, std::string_view method,
+                        std::string_view needed, const StageFiles& files) {
+  if (options.point_evidence && method != needed) {
     throw SettingsError(
-        fmt::format("point_evidence = true needs method = {}; found {}", needed, found));
+        fmt::format("point_evidence = true needs method = {}; found {}", needed, method));
   }
   CheckHasPoints(options, files);
 }
 
 // None unless points are evidence.
-std::optional<PointsInFrames> PointsOf(const PointOptions& options, const Sequence& sequence,
-                                       const StageFiles& files) {
+std::optional<PointsInFrames> PointsInFramesOf(const PointOptions& options,
+                                               const Sequence& sequence, const StageFiles& files) {
   if (!options.point_evidence) return std::nullopt;
   return PointsInFrames(sequence, ReadPointsOf(sequence, files), options);
+}
+
+// How many observations have points, for the last line of a stage; empty if points are not used.
+std::string CountWithPoints(const std::optional<PointsInFrames>& points,
+                            const LandmarkEstimates& estimates) {
+  if (!points) return "";
+  const auto count =
+      std::ranges::count_if(estimates.observations, [&](const ObservationEstimate& observation) {
+        return points->Of(observation.detection_index, observation.hypotheses).has_value();
+      });
+  return fmt::format("; points in {} of {} observations", count, estimates.observations.size());
 }
 
 }  // namespace
@@ -70,10 +81,12 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
   if (uses_images && !files.contains("edges")) {
     throw SettingsError("method = cuboid_proposals needs --edges FILE; found none");
   }
-  CheckPointEvidence(options.points, options.method == InitialisationMethod::kYawSweep, "yaw_sweep",
-                     kInitialisationMethodNames[static_cast<size_t>(options.method)], files);
+  CheckPointEvidence(options.points,
+                     kInitialisationMethodNames[static_cast<size_t>(options.method)], "yaw_sweep",
+                     files);
   const Sequence sequence = ReadSequence(files.at("sequence"));
   const SemanticTable table = ReadSemanticTable(files.at("table"));
+  const auto points = PointsInFramesOf(options.points, sequence, files);
   LandmarkEstimates estimates;
   if (options.method == InitialisationMethod::kSvd) {
     estimates = InitialiseSvd(sequence);
@@ -92,7 +105,6 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
     if (options.method == InitialisationMethod::kMultiView) {
       estimates = InitialiseMultiView(sequence, priors, options, threads);
     } else if (options.method == InitialisationMethod::kYawSweep) {
-      const auto points = PointsOf(options.points, sequence, files);
       estimates = InitialiseUpright(sequence, priors, options.upright, threads,
                                     YawPriors(sequence, priors, options, threads),
                                     points ? &*points : nullptr);
@@ -123,8 +135,8 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
   if (options.points.point_evidence) inputs.push_back(files.at("points"));
   WriteLandmarks(files.at("output"), estimates, sequence,
                  {OptionsToJson(options), inputs, findings});
-  fmt::print("{} landmarks{}{}\n", tried - failed, failed > 0 ? ", without one: " : "",
-             CountsText(failures));
+  fmt::print("{} landmarks{}{}{}\n", tried - failed, failed > 0 ? ", without one: " : "",
+             CountsText(failures), CountWithPoints(points, estimates));
 }
 
 namespace {
@@ -182,8 +194,8 @@ std::vector<RefinedObservation> RefineAll(const Sequence& sequence,
 void RunRefine(const OrientationOptions& options, const StageFiles& files, int threads) {
   CheckMirrorPlane(options.profile.texture, options.turn.symmetry.descriptor);
   const PointOptions& point_options = options.profile.points;
-  CheckPointEvidence(point_options, options.method == RefinementMethod::kProfile, "profile",
-                     kRefinementMethodNames[static_cast<size_t>(options.method)], files);
+  CheckPointEvidence(point_options, kRefinementMethodNames[static_cast<size_t>(options.method)],
+                     "profile", files);
   const Sequence sequence = ReadSequence(files.at("sequence"));
   const auto priors = ObjectPriors(sequence, ReadSemanticTable(files.at("table")),
                                    options.turn.ratio_prior, options.profile.shape);
@@ -213,8 +225,9 @@ void RunRefine(const OrientationOptions& options, const StageFiles& files, int t
       {files.at("sequence"), files.at("table"), files.at("initial"), files.at("edges")}};
   if (point_options.point_evidence) info.inputs.push_back(files.at("points"));
 
-  auto refined = RefineAll(sequence, to_refine, priors, PointsOf(point_options, sequence, files),
-                           options, EdgesReader(files.at("edges")), threads);
+  const auto points = PointsInFramesOf(point_options, sequence, files);
+  auto refined = RefineAll(sequence, to_refine, priors, points, options,
+                           EdgesReader(files.at("edges")), threads);
   std::vector<SymmetryRecord> curves;
   for (size_t i = 0; i < refined.size(); ++i) {
     failed += refined[i].estimate.failure.empty() ? 0 : 1;
@@ -223,8 +236,8 @@ void RunRefine(const OrientationOptions& options, const StageFiles& files, int t
   }
   WriteSymmetry(files.at("curves"), curves, info);
   WriteLandmarks(files.at("output"), estimates, sequence, info);
-  fmt::print("{} landmarks refined, {} left as they were\n", curves.size() - failed,
-             failed + without_image);
+  fmt::print("{} landmarks refined, {} left as they were{}\n", curves.size() - failed,
+             failed + without_image, CountWithPoints(points, estimates));
 }
 
 }  // namespace soslam

@@ -36,12 +36,12 @@ class PhotoFolderTest : public testing::Test {
 
 TEST_F(PhotoFolderTest, NumbersInNamesAreNumbers) {
   for (const char* name : {"IMG_10.JPG", "IMG_9.jpg", "a b.png", "IMG_009.jpg", "$x's \"1\".jpeg",
-                           "Küche 2.jpg", "Küche 10.jpg"}) {
+                           "Küche 2.jpg", "Küche 10.jpg", "Ähre.jpg"}) {
     Add(name);
   }
   EXPECT_THAT(Names(),
               testing::ElementsAre("$x's \"1\".jpeg", "IMG_009.jpg", "IMG_9.jpg", "IMG_10.JPG",
-                                   "Küche 2.jpg", "Küche 10.jpg", "a b.png"));
+                                   "Küche 2.jpg", "Küche 10.jpg", "a b.png", "Ähre.jpg"));
 }
 
 TEST_F(PhotoFolderTest, OtherFilesAreIgnored) {

@@ -35,10 +35,12 @@ TEST(WeightedMean, WeightsByObjects) {
 class PaperTablesTest : public testing::Test {
  protected:
   std::vector<DatasetResult> Read() const { return ReadResults(results_.path()); }
-  // The last table.
-  static Table TableOf(const std::vector<DatasetResult>& datasets,
-                       const Published& published = {}) {
-    return PaperTables(datasets, published).back();
+  // The last of `count` tables.
+  static Table TableOf(const std::vector<DatasetResult>& datasets, const Published& published = {},
+                       size_t count = 1) {
+    const auto tables = PaperTables(datasets, published);
+    EXPECT_EQ(tables.size(), count);
+    return tables.empty() ? Table() : tables.back();
   }
 
   const ResultsFolder results_;
@@ -78,7 +80,7 @@ TEST_F(PaperTablesTest, ValuesOverFewerObjectsSaySo) {
     results_.WriteMetrics("room", variant,
                           {{.id = 1, .rotation_deg = 2.0}, {.id = 2, .rotation_deg = 4.0}});
   }
-  const Table table = TableOf(Read());
+  const Table table = TableOf(Read(), {}, 2);
   EXPECT_THAT(CellTexts(table),
               ElementsAre("room measured f 2 2 5.00 (1) *3.00* *3.00* - - - - -"));
 }
@@ -88,7 +90,7 @@ TEST_F(PaperTablesTest, NoValueIsBoldWhereTheBestIsOverFewerObjects) {
   results_.WriteMetrics("room", "Quadric", {{.id = 1, .rotation_deg = 1.0}, {.id = 2}});
   results_.WriteMetrics("room", "OursP",
                         {{.id = 1, .rotation_deg = 2.0}, {.id = 2, .rotation_deg = 4.0}});
-  const Table table = TableOf(Read());
+  const Table table = TableOf(Read(), {}, 2);
   EXPECT_THAT(CellTexts(table), ElementsAre("room measured f 2 2 1.00 (1) 3.00 - - - - - -"));
 }
 

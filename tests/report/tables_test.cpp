@@ -316,6 +316,13 @@ TEST_F(TimingTableTest, SingleFramesCountPerObservationFromEdgesToRefinement) {
   EXPECT_EQ(time->observations, 1.0);
 }
 
+TEST_F(TimingTableTest, SingleFramesWithPointsCountTheirTracks) {
+  Write("InitSP", {"import-9", "track-4", "initialise-2", "evaluate-9"}, true);
+  const auto time = TimeOf("InitSP");
+  ASSERT_TRUE(time);
+  EXPECT_DOUBLE_EQ(time->wall_ms, 1e3 * (4 + 2) / 8);
+}
+
 TEST_F(TimingTableTest, InitialisationFromAllFramesCountsPerObject) {
   Write("SVD", {"import-9", "initialise-2", "evaluate-9"}, false);
   const auto time = TimeOf("SVD");

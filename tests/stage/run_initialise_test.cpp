@@ -14,6 +14,7 @@
 #include "stage/stages.h"
 #include "support/drawn_cuboids.h"
 #include "support/expect_error.h"
+#include "support/points_on_objects.h"
 #include "support/printed.h"
 #include "support/scene.h"
 #include "support/temporary_folder.h"
@@ -133,6 +134,49 @@ TEST_F(RunInitialiseCuboidsTest, RefusesEdgesOfImagesOfAnotherSize) {
   WriteEdges();
   sequence_.camera.width = 1280;
   ExpectError<InputError>([&] { Run(); }, {files_.at("edges").string(), "640", "1280"});
+}
+
+bool HasInput(const std::filesystem::path& artefact, const std::string& name) {
+  const auto inputs = nlohmann::json::parse(FileBytes(artefact)).at("artefact").at("inputs");
+  return std::ranges::any_of(inputs, [&](const auto& input) { return input.at("file") == name; });
+}
+
+TEST_F(RunInitialiseCuboidsTest, PointsAreEvidenceInSweepAndProfile) {
+  WriteEdges();
+  WritePoints(folder_ / "points.h5", PointsOnObjects(sequence_, 20), {});
+  options_.method = InitialisationMethod::kYawSweep;
+  options_.ratio_prior = RatioPrior::kGroundTruth;
+  OrientationOptions refine;
+  refine.method = RefinementMethod::kProfile;
+  refine.turn.ratio_prior = RatioPrior::kGroundTruth;
+  const auto lowest_cost = [](const LandmarkEstimates& estimates) {
+    return estimates.observations.front().hypotheses.front().cost;
+  };
+  const auto run_refine = [&] {
+    StageFiles files = files_;
+    files["initial"] = files_.at("output");
+    files["output"] = folder_ / "refined.json";
+    files["curves"] = folder_ / "symmetry.h5";
+    const std::string printed = PrintedBy([&] { RunRefine(refine, files, 2); });
+    EXPECT_EQ(printed.find("points in 15 of 15") != std::string::npos,
+              refine.profile.points.point_evidence);
+    return lowest_cost(ReadLandmarks(files.at("output"), sequence_));
+  };
+
+  const double initial_cost = lowest_cost(Run());
+  const double refined_cost = run_refine();
+  EXPECT_FALSE(HasInput(folder_ / "refined.json", "points.h5"));
+
+  files_["points"] = folder_ / "points.h5";
+  refine.profile.points.point_evidence = true;
+  EXPECT_GT(run_refine(), refined_cost + 1.0);
+  EXPECT_TRUE(HasInput(folder_ / "refined.json", "points.h5"));
+  options_.points.point_evidence = true;
+  EXPECT_GT(lowest_cost(Run()), initial_cost + 1.0);
+  EXPECT_TRUE(HasInput(files_.at("output"), "points.h5"));
+
+  for (Frame& frame : sequence_.frames) frame.id += 1000;
+  ExpectError<InputError>([&] { Run(); }, {"points.h5", "another"});
 }
 
 constexpr double kDisturbance = 6.0 * kRadPerDeg;
