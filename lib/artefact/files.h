@@ -23,8 +23,9 @@
 
 namespace soslam {
 
-// The artefacts of the pipeline (schemas/<kind>.schema.json). Files refer to frames, planes and
-// objects by id. All writers throw as WriteArtefact, all readers as ReadArtefact.
+// Artefacts of one JSON file each (schemas/<kind>.schema.json), and points.h5. Files refer to
+// frames, planes and objects by id. Where nothing else is said, writers throw as WriteArtefact and
+// readers as ReadArtefact.
 
 // Whether a reader needs the support planes of a sequence.
 enum class PlaneNeed { kNeeded, kNotNeeded };

@@ -13,13 +13,7 @@ namespace {
 // Boxes with errors, and little known of the ratios.
 TEST(TangencyBackEnd, PointsImproveWhatBoxesSay) {
   const Sequence sequence = CuboidSequence(3, 8);
-  Sequence noisy = sequence;
-  for (Detection& detection : noisy.detections) {
-    detection.box.x_min += RandomUniform(-6, 6);
-    detection.box.y_min += RandomUniform(-6, 6);
-    detection.box.x_max += RandomUniform(-6, 6);
-    detection.box.y_max += RandomUniform(-6, 6);
-  }
+  const Sequence noisy = WithBoxNoise(sequence, 6.0);
   BackEndInput input = TruthInput(noisy);
   for (auto& prior : input.priors) prior->log_sigma = {0.3, 0.3};
   OptimiseOptions options = TangencyOptions();

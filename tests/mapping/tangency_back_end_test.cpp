@@ -258,13 +258,7 @@ TEST(TangencyBackEnd, BoundsCostNothingWhereTheObjectReachesFarther) {
 
 TEST(TangencyBackEnd, EdgesImproveWhatBoxesSay) {
   const Sequence sequence = CuboidSequence(3, 8);
-  Sequence noisy = sequence;
-  for (Detection& detection : noisy.detections) {
-    detection.box.x_min += RandomUniform(-4, 4);
-    detection.box.y_min += RandomUniform(-4, 4);
-    detection.box.x_max += RandomUniform(-4, 4);
-    detection.box.y_max += RandomUniform(-4, 4);
-  }
+  const Sequence noisy = WithBoxNoise(sequence, 4.0);
   BackEndInput input = TruthInput(noisy);
   for (auto& prior : input.priors) prior->log_sigma = {0.2, 0.2};
   const MapEstimate boxes = OptimiseMap(input, TangencyOptions());

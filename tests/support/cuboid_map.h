@@ -6,6 +6,7 @@
 
 #include "mapping/back_end.h"
 #include "support/drawn_cuboids.h"
+#include "support/random.h"
 #include "support/scene.h"
 
 namespace soslam {
@@ -34,6 +35,17 @@ inline std::map<int, std::shared_ptr<const EdgeImage>> DrawnEdges(const Sequence
         EdgeImage{std::make_shared<const FrameEdges>(maps), detection.box, {}});
   }
   return images;
+}
+
+// All edges of all boxes off by up to `most_px`.
+inline Sequence WithBoxNoise(Sequence sequence, double most_px) {
+  for (Detection& detection : sequence.detections) {
+    detection.box.x_min += RandomUniform(-most_px, most_px);
+    detection.box.y_min += RandomUniform(-most_px, most_px);
+    detection.box.x_max += RandomUniform(-most_px, most_px);
+    detection.box.y_max += RandomUniform(-most_px, most_px);
+  }
+  return sequence;
 }
 
 inline OptimiseOptions TangencyOptions() {
