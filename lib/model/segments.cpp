@@ -16,15 +16,17 @@ std::vector<std::optional<int>> SegmentsOfObjects(const Sequence& sequence) {
 }
 
 Eigen::Vector3d UpOfSegment(const Sequence& sequence, int segment) {
-  // Least cosine of the angle between up and the upright direction of the segment's images.
+  // Least cosine of the angle between up and the upright direction of the segment's images, and
+  // least mean cosine of theirs.
   constexpr double kMinUprightCosine = 0.2;
   Eigen::Vector3d upright = Eigen::Vector3d::Zero();
+  int frames = 0;
   for (const Frame& frame : sequence.frames) {
-    if (frame.segment == segment) {
-      upright -= frame.world_from_camera.rotation * Eigen::Vector3d::UnitY();
-    }
+    if (frame.segment != segment) continue;
+    upright -= frame.world_from_camera.rotation * Eigen::Vector3d::UnitY();
+    ++frames;
   }
-  if (upright.norm() < kMinUprightCosine)
+  if (upright.norm() <= kMinUprightCosine * frames)
     upright = Eigen::Vector3d::UnitZ();  // the camera looks in all directions
   upright.normalize();
   Eigen::Vector3d up = upright;
