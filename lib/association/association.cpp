@@ -73,7 +73,7 @@ AssociationModel::AssociationModel(const Sequence& sequence, const SemanticTable
                                               : std::map<int, UpEstimate>()),
       boxes_(sequence, options),
       labels_(LabelsOf(sequence), options),
-      moving_labels_(ParseLabelGroups("moving_labels", options.moving_labels)) {}
+      moving_labels_(NormalisedLabels("moving_labels", options.moving_labels)) {}
 
 namespace {
 
@@ -236,9 +236,7 @@ std::optional<BoxMatch> AssociationModel::Match(const Track& track, const Predic
 }
 
 bool AssociationModel::Moves(const Track& track) const {
-  return std::ranges::any_of(moving_labels_, [&](const auto& group) {
-    return std::ranges::find(group, soslam::LabelOf(track)) != group.end();
-  });
+  return moving_labels_.contains(NormalisedLabel(soslam::LabelOf(track)));
 }
 
 bool AssociationModel::MayBeOneObject(const Track& one, const Track& other) const {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -160,7 +161,7 @@ class AssociationModel {
   std::map<int, UpEstimate> up_of_segments_;  // keyed by segment; empty when planes are given
   BoxLikelihood boxes_;
   LabelConfusion labels_;
-  std::vector<std::vector<std::string>> moving_labels_;
+  std::set<std::string> moving_labels_;  // normalised
 };
 
 // Agreement of the estimated objects with the objects given in the sequence.

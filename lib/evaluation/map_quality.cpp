@@ -8,7 +8,7 @@
 
 #include "base/assignment.h"
 #include "evaluation/statistics.h"
-#include "initialisation/semantic_table.h"
+#include "model/label_groups.h"
 
 namespace soslam {
 namespace {

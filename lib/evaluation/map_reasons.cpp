@@ -12,7 +12,7 @@
 
 #include "base/assignment.h"
 #include "geometry/iou.h"
-#include "initialisation/semantic_table.h"
+#include "model/label_groups.h"
 
 namespace soslam {
 namespace {

@@ -9,7 +9,7 @@
 #include "dataset/class_names.h"
 #include "dataset/labelled_box.h"
 #include "exchange/exports.h"
-#include "initialisation/semantic_table.h"
+#include "model/label_groups.h"
 
 namespace soslam {
 namespace {

@@ -157,14 +157,6 @@ double WrongProbability(const Sequence& sequence, const MeasuredObject& object,
   return 1.0 - (1.0 - options.wrong_height_probability) * std::min(1.0, share / kUsualShare);
 }
 
-std::set<std::string> MovingLabels(const GroundOptions& options) {
-  std::set<std::string> moving;
-  for (const auto& group : ParseLabelGroups("moving_labels", options.moving_labels)) {
-    for (const std::string& label : group) moving.insert(NormalisedLabel(label));
-  }
-  return moving;
-}
-
 }  // namespace
 
 std::vector<MeasuredObject> MeasureObjects(const Sequence& sequence,
@@ -172,7 +164,7 @@ std::vector<MeasuredObject> MeasureObjects(const Sequence& sequence,
                                            const SemanticTable& table,
                                            const HorizontalPlanes& planes, const UpEstimate& up,
                                            const GroundOptions& options, int threads) {
-  const std::set<std::string> moving = MovingLabels(options);
+  const std::set<std::string> moving = NormalisedLabels("moving_labels", options.moving_labels);
   std::vector<MeasuredObject> objects;
   for (const std::vector<int>& group : groups) {
     if (static_cast<int>(group.size()) < options.min_boxes) continue;

@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <set>
 
 #include "base/error.h"
+#include "model/label_groups.h"
 
 namespace soslam {
 namespace {
@@ -121,20 +121,6 @@ ShapePrior MomentsOfMixture(const std::vector<WeightedPrior>& priors) {
   mixture.shape_exponent = std::clamp(mixture.shape_exponent, kCuboidExponent, kEllipsoidExponent);
   mixture.height_m = HeightOfMixture(priors);
   return mixture;
-}
-
-std::string NormalisedLabel(const std::string& label) {
-  std::string normalised;
-  for (const char character : label) {
-    const auto byte = static_cast<unsigned char>(character);
-    if (std::isspace(byte) != 0 || character == '_' || character == '-') continue;
-    normalised += static_cast<char>(std::tolower(byte));
-  }
-  return normalised;
-}
-
-bool AreSameLabel(const std::string& one, const std::string& other) {
-  return NormalisedLabel(one) == NormalisedLabel(other);
 }
 
 bool SemanticTable::Contains(const std::string& label) const {

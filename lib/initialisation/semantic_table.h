@@ -72,11 +72,6 @@ struct WeightedPrior {
 };
 ShapePrior MomentsOfMixture(const std::vector<WeightedPrior>& priors);
 
-// Lower case, without blanks, underscores and hyphens: "DiningTable" and "dining_table" are the
-// same label.
-std::string NormalisedLabel(const std::string& label);
-bool AreSameLabel(const std::string& one, const std::string& other);
-
 // SemTable of eq. (11) with uncertainties: priors by label, of upright objects.
 struct SemanticTable {
   std::map<std::string, ShapePrior> priors;  // by NormalisedLabel of labels and their aliases

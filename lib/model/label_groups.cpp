@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "base/error.h"
 
@@ -37,6 +38,28 @@ std::vector<std::vector<std::string>> ParseLabelGroups(const char* option,
         "{} '{}' has '' as a label; expected groups of labels, 'a, b; c, d'", option, text));
   }
   return groups;
+}
+
+std::string NormalisedLabel(const std::string& label) {
+  std::string normalised;
+  for (const char character : label) {
+    const auto byte = static_cast<unsigned char>(character);
+    if (std::isspace(byte) != 0 || character == '_' || character == '-') continue;
+    normalised += static_cast<char>(std::tolower(byte));
+  }
+  return normalised;
+}
+
+bool AreSameLabel(const std::string& one, const std::string& other) {
+  return NormalisedLabel(one) == NormalisedLabel(other);
+}
+
+std::set<std::string> NormalisedLabels(const char* option, const std::string& text) {
+  std::set<std::string> labels;
+  for (const auto& group : ParseLabelGroups(option, text)) {
+    for (const std::string& label : group) labels.insert(NormalisedLabel(label));
+  }
+  return labels;
 }
 
 std::string LabelInWords(const Object& object) {

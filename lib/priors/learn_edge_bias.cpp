@@ -10,6 +10,7 @@
 
 #include "constraints/tangency.h"
 #include "evaluation/statistics.h"
+#include "model/label_groups.h"
 #include "priors/learn_priors.h"
 
 namespace soslam {

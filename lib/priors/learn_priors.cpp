@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "model/label_groups.h"
 #include "priors/statistics.h"
 
 namespace soslam {

@@ -113,6 +113,13 @@ TEST(MovingLabelsTest, ThingsThatMoveAreNoObjects) {
   }
 }
 
+TEST(MovingLabelsTest, SpellingDoesNotCount) {
+  const Sequence given = SyntheticSequence(LabelledScene(3, 4, 30, {"Guide_Dog", "cup"}), false);
+  AssociateOptions options = EstimatedAssociation();
+  options.moving_labels = "guide dog";
+  EXPECT_EQ(Associate(WithoutIds(given), UnknowingTable(), options, 2).objects.size(), 2U);
+}
+
 // Objects of two labels that the detector calls by one name are told apart by their boxes.
 TEST(LabelEvidenceTest, BoxesDecideAmongSimilarLabels) {
   Scene scene = LabelledScene(5, 6, 40, {"cup"});
