@@ -82,17 +82,21 @@ namespace {
 std::optional<LogNormal> HeightOfMixture(const std::vector<WeightedPrior>& priors) {
   double weight = 0.0;
   double mean = 0.0;
-  double square = 0.0;
   for (const auto& [share, prior] : priors) {
     if (!prior.height_m) continue;
-    const double log_height = std::log(prior.height_m->median);
     weight += share;
-    mean += share * log_height;
-    square += share * (log_height * log_height + std::pow(prior.height_m->log_sigma, 2));
+    mean += share * std::log(prior.height_m->median);
   }
   if (weight == 0.0) return std::nullopt;
   mean /= weight;
-  return LogNormal{std::exp(mean), std::sqrt(square / weight - mean * mean)};
+  double variance = 0.0;
+  for (const auto& [share, prior] : priors) {
+    if (!prior.height_m) continue;
+    variance += share / weight *
+                (std::pow(std::log(prior.height_m->median) - mean, 2) +
+                 std::pow(prior.height_m->log_sigma, 2));
+  }
+  return LogNormal{std::exp(mean), std::sqrt(variance)};
 }
 
 }  // namespace

@@ -148,6 +148,16 @@ TEST(MomentsOfMixture, HasTheMeanEdgeBias) {
   for (size_t i = 0; i < bias.size(); ++i) EXPECT_DOUBLE_EQ(bias[i], 0.25 * tv.edge_bias[i]);
 }
 
+TEST(MomentsOfMixture, HasTheHeightOfPriorsThatAgree) {
+  ShapePrior fixed = kCup;
+  fixed.height_m = LogNormal{0.8, 1e-9};
+  const std::vector<WeightedPrior> thirds(3, {1.0 / 3.0, fixed});
+  const auto height = MomentsOfMixture(thirds).height_m;
+  ASSERT_TRUE(height);
+  EXPECT_NEAR(height->median, 0.8, 1e-12);
+  EXPECT_NEAR(height->log_sigma, 1e-9, 1e-12);
+}
+
 TEST(ObjectRatios, AreThoseOfThePriors) {
   EXPECT_THAT(ObjectRatios(CupCupWhisk(), kCupsOnly, RatioPrior::kTable),
               ElementsAre(Eq(kCup.ratio), Eq(kCup.ratio), Eq(std::nullopt)));
