@@ -209,6 +209,18 @@ class Learner {
 
 }  // namespace
 
+namespace {
+
+// Those of the upright object, as catalogues and tables have them.
+Eigen::Vector3d TrueHalfAxes(const Object& object, const SemanticTable& table) {
+  Eigen::Vector3d half_axes = InOwnAxes(object.ground_truth->landmark_in_world).half_axes;
+  const bool is_on_wall = table.Find(object.label).value_or(ShapePrior()).mount == Mount::kOnWall;
+  if (is_on_wall) std::swap(half_axes.x(), half_axes.z());
+  return half_axes;
+}
+
+}  // namespace
+
 PriorSource SourceOfSequence(const Sequence& sequence, const SemanticTable& table, int min_views) {
   PriorSource source{sequence.name, {}};
   const std::map<int, double> exponents = LearnShapeExponents(sequence, min_views);
@@ -216,10 +228,7 @@ PriorSource SourceOfSequence(const Sequence& sequence, const SemanticTable& tabl
     const Object& object = sequence.objects[i];
     if (!object.ground_truth) continue;
     LabelFacts& facts = source.facts[object.label];
-    Eigen::Vector3d half_axes = InOwnAxes(object.ground_truth->landmark_in_world).half_axes;
-    const bool is_on_wall = table.Find(object.label).value_or(ShapePrior()).mount == Mount::kOnWall;
-    if (is_on_wall) std::swap(half_axes.x(), half_axes.z());
-    facts.half_axes.push_back(half_axes);
+    facts.half_axes.push_back(TrueHalfAxes(object, table));
     const auto exponent = exponents.find(static_cast<int>(i));
     if (exponent != exponents.end()) facts.shape_exponents.push_back(exponent->second);
   }
@@ -237,15 +246,16 @@ PriorSource SourceOfCatalogue(const std::string& name, const std::vector<Catalog
   return source;
 }
 
-std::vector<CatalogueModel> WithoutObjectsOf(const Sequence& sequence,
+std::vector<CatalogueModel> WithoutObjectsOf(const Sequence& sequence, const SemanticTable& table,
                                              std::vector<CatalogueModel> models) {
   constexpr double kSameHalfAxisM = 0.5e-3 + 1e-9;
+  std::vector<Eigen::Vector3d> in_scene;
+  for (const Object& object : sequence.objects) {
+    if (object.ground_truth) in_scene.push_back(TrueHalfAxes(object, table));
+  }
   const auto is_object = [&](const CatalogueModel& model) {
-    return std::any_of(sequence.objects.begin(), sequence.objects.end(), [&](const Object& object) {
-      return object.ground_truth &&
-             (object.ground_truth->landmark_in_world.half_axes - model.half_axes)
-                     .cwiseAbs()
-                     .maxCoeff() <= kSameHalfAxisM;
+    return std::ranges::any_of(in_scene, [&](const Eigen::Vector3d& half_axes) {
+      return (half_axes - model.half_axes).cwiseAbs().maxCoeff() <= kSameHalfAxisM;
     });
   };
   std::erase_if(models, is_object);

@@ -91,10 +91,13 @@ void RefuseLearningFromHeldOut(const std::vector<Sequence>& learned,
   }
 }
 
-PriorSource ReadCatalogueSource(const StageFiles& files, const std::vector<Sequence>& held_out) {
+PriorSource ReadCatalogueSource(const StageFiles& files, const SemanticTable& table,
+                                const std::vector<Sequence>& held_out) {
   std::vector<CatalogueModel> models = ReadFurnitureCatalogue(files.at("furniture"));
   const size_t all = models.size();
-  for (const Sequence& sequence : held_out) models = WithoutObjectsOf(sequence, std::move(models));
+  for (const Sequence& sequence : held_out) {
+    models = WithoutObjectsOf(sequence, table, std::move(models));
+  }
   fmt::print("{}: {} models, {} left out as objects of sequences that are held out\n",
              files.at("furniture").filename().string(), all, all - models.size());
   return SourceOfCatalogue(files.at("furniture").filename().string(), models,
@@ -136,9 +139,11 @@ void RunLearnPriors(const LearnPriorsOptions& options, const StageFiles& files, 
 
   SemanticRows base;
   if (files.count("base") > 0) base = ReadSemanticRows(files.at("base"));
-  std::vector<PriorSource> sources;
-  if (files.count("furniture") > 0) sources.push_back(ReadCatalogueSource(files, held_out));
   const SemanticTable base_table = LookUpTable(base);
+  std::vector<PriorSource> sources;
+  if (files.count("furniture") > 0) {
+    sources.push_back(ReadCatalogueSource(files, base_table, held_out));
+  }
   for (const Sequence& sequence : sequences) {
     sources.push_back(SourceOfSequence(sequence, base_table, options.min_views));
   }

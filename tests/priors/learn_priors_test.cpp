@@ -151,9 +151,24 @@ TEST(WithoutObjectsOf, DropsTheModelsThatAreInTheScene) {
   const std::vector<CatalogueModel> models = {{"a", "", {0.1, 0.05, 0.2}},
                                               {"rounded", "", {0.1003, 0.0498, 0.2}},
                                               {"other", "", {0.102, 0.05, 0.2}}};
-  const auto left = WithoutObjectsOf(OneTrueCup(), models);
+  const auto left = WithoutObjectsOf(OneTrueCup(), {}, models);
   ASSERT_EQ(left.size(), 1u);
   EXPECT_EQ(left[0].name, "other");
+}
+
+TEST(WithoutObjectsOf, DropsTheModelsThatLieInTheScene) {
+  Sequence sequence = OneTrueCup();
+  sequence.objects[0].ground_truth->landmark_in_world.rests_on = RestingFace::kBack;
+  const Landmark own = InOwnAxes(sequence.objects[0].ground_truth->landmark_in_world);
+  EXPECT_TRUE(WithoutObjectsOf(sequence, {}, {{"lying", "", own.half_axes}}).empty());
+}
+
+TEST(WithoutObjectsOf, DropsTheModelsThatHangInTheScene) {
+  ShapePrior cup;
+  cup.mount = Mount::kOnWall;
+  const SemanticTable table{{{"cup", cup}}, {}};
+  EXPECT_TRUE(
+      WithoutObjectsOf(OneTrueCup(), table, {{"off the wall", "", {0.2, 0.05, 0.1}}}).empty());
 }
 
 TEST(PriorErrors, CountLogarithmsAndSigmas) {
