@@ -151,24 +151,28 @@ std::optional<ShapePrior> SemanticTable::Find(const Object& object) const {
   return MomentsOfMixture(priors);
 }
 
-SemanticTable LookUpTable(const SemanticRows& rows) {
-  SemanticTable table;
-  if (rows.default_row) table.default_prior = rows.default_row->prior;
-  std::map<std::string, std::string> label_of_name;
-  for (const SemanticRow& row : rows.rows) {
+std::map<std::string, size_t> RowsByName(const SemanticRows& rows) {
+  std::map<std::string, size_t> row_of_name;
+  for (size_t i = 0; i < rows.rows.size(); ++i) {
+    const SemanticRow& row = rows.rows[i];
     std::vector<std::string> names = row.aliases;
     names.insert(names.begin(), row.label);
     for (const std::string& name : names) {
-      const auto [earlier, is_new] = label_of_name.emplace(NormalisedLabel(name), row.label);
-      if (!is_new) {
-        throw InputError(fmt::format(
-            "/labels/{}: name '{}' is that of label '{}' as well (case, blanks, underscores and "
-            "hyphens do not count); expected each name once",
-            row.label, name, earlier->second));
-      }
-      table.priors[earlier->first] = row.prior;
+      const auto [earlier, is_new] = row_of_name.emplace(NormalisedLabel(name), i);
+      if (is_new) continue;
+      throw InputError(fmt::format(
+          "/labels/{}: name '{}' is that of label '{}' as well (case, blanks, underscores and "
+          "hyphens do not count); expected each name once",
+          row.label, name, rows.rows[earlier->second].label));
     }
   }
+  return row_of_name;
+}
+
+SemanticTable LookUpTable(const SemanticRows& rows) {
+  SemanticTable table;
+  if (rows.default_row) table.default_prior = rows.default_row->prior;
+  for (const auto& [name, row] : RowsByName(rows)) table.priors[name] = rows.rows[row].prior;
   return table;
 }
 

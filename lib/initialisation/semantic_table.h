@@ -101,8 +101,11 @@ struct SemanticRows {
   std::vector<SemanticRow> rows;           // sorted by label
 };
 
-// Table by normalised labels and aliases. Throws InputError if two of them are the same after
-// NormalisedLabel.
+// Indices of the rows by NormalisedLabel of their labels and aliases. Throws InputError if two of
+// these are the same.
+std::map<std::string, size_t> RowsByName(const SemanticRows& rows);
+
+// Table by the same names. Throws as RowsByName.
 SemanticTable LookUpTable(const SemanticRows& rows);
 
 // Source of an object's ratio.

@@ -52,20 +52,10 @@ EdgeOffsets OffsetsOf(const Sequence& sequence, const std::vector<int>& detectio
   return offsets;
 }
 
-// Index of the row by normalised label or alias.
-std::map<std::string, size_t> RowOfName(const SemanticRows& rows) {
-  std::map<std::string, size_t> row_of_name;
-  for (size_t i = 0; i < rows.rows.size(); ++i) {
-    row_of_name[NormalisedLabel(rows.rows[i].label)] = i;
-    for (const auto& alias : rows.rows[i].aliases) row_of_name[NormalisedLabel(alias)] = i;
-  }
-  return row_of_name;
-}
-
 // Offsets by index of the row.
 std::map<size_t, RowOffsets> OffsetsByRow(const std::vector<Sequence>& sequences,
                                           const SemanticRows& rows) {
-  const auto row_of_name = RowOfName(rows);
+  const auto row_of_name = RowsByName(rows);
   std::map<size_t, RowOffsets> of_rows;
   for (const Sequence& sequence : sequences) {
     const auto by_object = DetectionsByObject(sequence);

@@ -39,11 +39,6 @@ constexpr double kMaxCorrelation = 0.95;
 
 double Rounded(double value) { return std::round(value * 1e4) / 1e4; }
 
-std::string NameOf(const std::string& label, const std::map<std::string, std::string>& label_of) {
-  const auto found = label_of.find(NormalisedLabel(label));
-  return found == label_of.end() ? label : found->second;
-}
-
 void Add(const std::string& source, const LabelFacts& facts, RowData* data) {
   for (const Eigen::Vector3d& half_axes : facts.half_axes) {
     data->logs[kDepthRatio].push_back(std::log(half_axes.x() / half_axes.z()));
@@ -59,17 +54,13 @@ void Add(const std::string& source, const LabelFacts& facts, RowData* data) {
 std::map<std::string, RowData> DataByRow(const SemanticRows& base,
                                          const std::vector<PriorSource>& sources) {
   std::map<std::string, std::string> label_of;  // by normalised name
-  for (const SemanticRow& row : base.rows) {
-    label_of[NormalisedLabel(row.label)] = row.label;
-    for (const std::string& alias : row.aliases) label_of[NormalisedLabel(alias)] = row.label;
-  }
+  for (const auto& [name, row] : RowsByName(base)) label_of[name] = base.rows[row].label;
   std::map<std::string, RowData> data;
   for (const PriorSource& source : sources) {
     for (const auto& [label, facts] : source.facts) {
       if (facts.half_axes.empty()) continue;
-      const std::string row = NameOf(label, label_of);
-      label_of.emplace(NormalisedLabel(label), row);
-      Add(source.name, facts, &data[row]);
+      const auto row = label_of.emplace(NormalisedLabel(label), label).first;
+      Add(source.name, facts, &data[row->second]);
     }
   }
   return data;
