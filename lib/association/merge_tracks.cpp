@@ -18,12 +18,6 @@ constexpr int kNoObject = -1;
 // A box counts as occluded when a nearer one covers this share of it.
 constexpr double kHiddenShare = 0.5;
 
-double CoveredShare(const Box& box, const Box& by) {
-  const double width = std::min(box.x_max, by.x_max) - std::max(box.x_min, by.x_min);
-  const double height = std::min(box.y_max, by.y_max) - std::max(box.y_min, by.y_min);
-  return std::max(0.0, width) * std::max(0.0, height) / (box.Width() * box.Height());
-}
-
 // Number of frames in which the track was detected or should have been: its outline box is inside
 // the image, at least as far from the border as all detections are, at least as high as the
 // smallest of the track's boxes, and not occluded by a nearer detection.
@@ -54,7 +48,7 @@ int FramesInSight(const AssociationModel& model, const Track& track, double bord
     expected.plane_in_camera = SupportPlaneOf(prediction->landmark_in_camera);
     const std::vector<Box> nearer = NearerBoxes(sequence, expected);
     const bool is_hidden = std::ranges::any_of(
-        nearer, [&](const Box& other) { return CoveredShare(box, other) >= kHiddenShare; });
+        nearer, [&](const Box& by) { return CommonArea(box, by) / box.Area() >= kHiddenShare; });
     if (!is_hidden) ++frames;
   }
   return frames;

@@ -18,6 +18,7 @@ struct Box {
 
   double Width() const { return x_max - x_min; }
   double Height() const { return y_max - y_min; }
+  double Area() const { return Width() * Height(); }
   Eigen::Vector2d Centre() const { return {0.5 * (x_min + x_max), 0.5 * (y_min + y_max)}; }
   bool Contains(const Eigen::Vector2d& pixel) const {
     return pixel.x() >= x_min && pixel.x() <= x_max && pixel.y() >= y_min && pixel.y() <= y_max;
@@ -37,13 +38,17 @@ inline double DistanceToBorder(const Box& box, int width, int height) {
       {box.x_min + 0.5, box.y_min + 0.5, width - 0.5 - box.x_max, height - 0.5 - box.y_max});
 }
 
-// The intersection over union of two boxes.
-inline double BoxOverlap(const Box& one, const Box& other) {
+// The area (px^2) of the intersection of two boxes.
+inline double CommonArea(const Box& one, const Box& other) {
   const double width = std::min(one.x_max, other.x_max) - std::max(one.x_min, other.x_min);
   const double height = std::min(one.y_max, other.y_max) - std::max(one.y_min, other.y_min);
-  if (!(width > 0.0) || !(height > 0.0)) return 0.0;
-  const double both = width * height;
-  return both / (one.Width() * one.Height() + other.Width() * other.Height() - both);
+  return std::max(0.0, width) * std::max(0.0, height);
+}
+
+// The intersection over union of two boxes; 0 where they only touch.
+inline double BoxOverlap(const Box& one, const Box& other) {
+  const double both = CommonArea(one, other);
+  return both > 0.0 ? both / (one.Area() + other.Area() - both) : 0.0;
 }
 
 }  // namespace soslam
