@@ -97,7 +97,7 @@ bool MayStandOnSome(const Sequence& sequence, const FittedObject& free) {
   return std::ranges::any_of(sequence.planes, [&](const SupportPlane& plane) {
     const Eigen::Vector3d& normal = plane.plane_in_world.normal;
     const double above = plane.plane_in_world.SignedDistance(landmark.Centre()) - half_height;
-    Eigen::Matrix<double, kLandmarkDof, 1> d_above = Eigen::Matrix<double, kLandmarkDof, 1>::Zero();
+    LandmarkStep d_above = LandmarkStep::Zero();
     d_above.segment<3>(3) = normal;
     d_above(8) = -half_height;
     const double sigma = std::sqrt(d_above.dot(free.covariance * d_above));

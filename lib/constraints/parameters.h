@@ -6,7 +6,7 @@
 #include <array>
 
 #include "geometry/landmark.h"
-#include "geometry/mirror_mapping.h"
+#include "geometry/landmark_tangent.h"
 #include "geometry/plane.h"
 #include "geometry/rigid3.h"
 

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 
 #include "geometry/landmark.h"
-#include "geometry/mirror_mapping.h"
+#include "geometry/landmark_tangent.h"
 
 namespace soslam {
 

@@ -25,6 +25,8 @@ constexpr int kMaxOutlineSteps = 50;
 
 }  // namespace
 
+double MeanHalfAxis(const Landmark& landmark) { return std::cbrt(landmark.half_axes.prod()); }
+
 Landmark Transform(const Rigid3d& target_from_source, const Landmark& landmark_in_source) {
   Landmark landmark_in_target = landmark_in_source;
   landmark_in_target.frame_from_object = target_from_source * landmark_in_source.frame_from_object;
@@ -89,7 +91,7 @@ bool HasExtent(const Landmark& landmark) {
 }
 
 bool IsInFront(const Landmark& landmark_in_camera) {
-  return FindSupportPoint(landmark_in_camera, -Eigen::Vector3d::UnitZ()).distance < 0.0;
+  return FindSupportPoint(landmark_in_camera, -Eigen::Vector3d::UnitZ()).extent < 0.0;
 }
 
 std::optional<SilhouettePoint> FindSilhouettePoint(const Camera& camera,

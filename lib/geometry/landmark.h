@@ -27,6 +27,9 @@ struct Landmark {
   const Eigen::Vector3d& Centre() const { return frame_from_object.translation; }
 };
 
+// The geometric mean of the half axes: the size of the body, whatever its shape.
+double MeanHalfAxis(const Landmark& landmark);
+
 // The same landmark in the target frame.
 Landmark Transform(const Rigid3d& target_from_source, const Landmark& landmark_in_source);
 
@@ -48,11 +51,11 @@ struct DualQuadricLandmark {
 };
 std::optional<DualQuadricLandmark> LandmarkFromDualQuadric(const Eigen::Matrix4d& dual_quadric);
 
-// Support point of the landmark in a direction (of any length), and its support value: the largest
+// Support point of the landmark in a direction (of any length), and its extent there: the largest
 // direction . x over the body. All in the landmark's frame.
 struct SupportPoint {
   Eigen::Vector3d point;
-  double distance;
+  double extent;
 };
 SupportPoint FindSupportPoint(const Landmark& landmark, const Eigen::Vector3d& direction);
 

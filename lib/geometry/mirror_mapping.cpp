@@ -12,7 +12,7 @@ VisibleSurface::VisibleSurface(const Camera& camera, const Landmark& landmark_in
       centre_in_camera_(landmark_in_camera.Centre()),
       camera_in_object_(-(camera_from_object_rotation_.transpose() * centre_in_camera_)),
       surface_(landmark_in_camera.half_axes, landmark_in_camera.shape_exponent),
-      size_(std::cbrt(landmark_in_camera.half_axes.prod())) {}
+      size_(MeanHalfAxis(landmark_in_camera)) {}
 
 Eigen::Vector3d VisibleSurface::RayInObject(const Eigen::Vector2d& pixel) const {
   return camera_from_object_rotation_.transpose() * camera_.Ray(pixel);
@@ -104,19 +104,21 @@ std::optional<VisibleSurface::Pixel> VisibleSurface::ToPixel(const Point& point,
   return pixel;
 }
 
+double VisibleSurface::CosineAt(const Eigen::Vector3d& point_in_object,
+                                const Eigen::Vector3d& normal) const {
+  return normal.dot((camera_in_object_ - point_in_object).normalized());
+}
+
 double VisibleSurface::ViewingCosine(const Point& point) const {
-  const Eigen::Vector3d normal = surface_.Gradient(point.in_object).normalized();
-  return normal.dot((camera_in_object_ - point.in_object).normalized());
+  return CosineAt(point.in_object, surface_.Gradient(point.in_object).normalized());
 }
 
 bool VisibleSurface::AreSeen(const Point& point, double min_viewing_cosine) const {
   const Eigen::Vector3d mirror(1, -1, 1);
   const Eigen::Vector3d normal = surface_.Gradient(point.in_object).normalized();
-  const auto is_seen = [&](const Eigen::Vector3d& at, const Eigen::Vector3d& normal_there) {
-    return normal_there.dot((camera_in_object_ - at).normalized()) >= min_viewing_cosine;
-  };
-  return is_seen(point.in_object, normal) &&
-         is_seen(point.in_object.cwiseProduct(mirror), normal.cwiseProduct(mirror));
+  return CosineAt(point.in_object, normal) >= min_viewing_cosine &&
+         CosineAt(point.in_object.cwiseProduct(mirror), normal.cwiseProduct(mirror)) >=
+             min_viewing_cosine;
 }
 
 }  // namespace soslam

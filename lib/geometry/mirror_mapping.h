@@ -6,17 +6,10 @@
 
 #include "geometry/camera.h"
 #include "geometry/landmark.h"
+#include "geometry/landmark_tangent.h"
 #include "geometry/surface.h"
 
 namespace soslam {
-
-// The nine parameters of a landmark as a camera sees it, in tangent space: rotation vector (camera
-// frame, applied from the left, rad), centre (camera frame, m), log half axes. Derivatives below
-// are with respect to these, in this order.
-inline constexpr int kLandmarkDof = 9;
-using LandmarkJacobian3 = Eigen::Matrix<double, 3, kLandmarkDof>;
-using LandmarkJacobian2 = Eigen::Matrix<double, 2, kLandmarkDof>;
-using LandmarkJacobian1 = Eigen::Matrix<double, 1, kLandmarkDof>;
 
 // A landmark seen from a camera, prepared for many rays: P-dagger of eq. (13), its tangent-plane
 // approximation, and the mirror image of eq. (14). Points are in the object frame, where the mirror
@@ -45,8 +38,8 @@ class VisibleSurface {
                                                bool with_jacobian = false) const;
 
   // S, the mirror image in the xz plane; again a surface point. With another `mirror_plane`, in the
-  // plane y = mirror_plane * size, where size is the cubic root of the half axes' product: the
-  // image is then near the surface where that is flat, and may lie beside the body.
+  // plane y = mirror_plane * MeanHalfAxis: the image is then near the surface where that is flat,
+  // and may lie beside the body.
   Point MirrorImage(const Point& point, double mirror_plane = 0.0) const;
 
   // The mirror image of a point in homogeneous pixels, K times its position in the camera:
@@ -67,6 +60,8 @@ class VisibleSurface {
   bool AreSeen(const Point& point, double min_viewing_cosine) const;
 
  private:
+  // The viewing cosine at a point with this outward unit normal.
+  double CosineAt(const Eigen::Vector3d& point_in_object, const Eigen::Vector3d& normal) const;
   Eigen::Vector3d RayInObject(const Eigen::Vector2d& pixel) const;
   // The derivative of R^T (x - t) for a point x fixed in the camera frame.
   LandmarkJacobian3 FixedPointJacobian(const Eigen::Vector3d& point_in_object) const;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "geometry/landmark.h"
-#include "geometry/mirror_mapping.h"
+#include "geometry/landmark_tangent.h"
 #include "geometry/rigid3.h"
 
 namespace soslam {

@@ -8,22 +8,12 @@
 namespace soslam {
 namespace {
 
-// The step is that of kLandmarkDof.
-Landmark Moved(const Landmark& landmark, const Eigen::Matrix<double, kLandmarkDof, 1>& step) {
-  Landmark moved = landmark;
-  moved.frame_from_object.rotation =
-      (ExpRotation(step.head<3>()) * landmark.frame_from_object.rotation).normalized();
-  moved.frame_from_object.translation += step.segment<3>(3);
-  moved.half_axes = landmark.half_axes.array() * step.tail<3>().array().exp();
-  return moved;
-}
-
 // The body turned about a horizontal direction, its lowest point still on the plane.
 Landmark Tilted(const Landmark& upright, const Plane& plane, const Eigen::Vector3d& turn) {
   Landmark tilted = upright;
   tilted.frame_from_object.rotation =
       (ExpRotation(turn) * upright.frame_from_object.rotation).normalized();
-  const double lowest = plane.offset - FindSupportPoint(tilted, -plane.normal).distance;
+  const double lowest = plane.offset - FindSupportPoint(tilted, -plane.normal).extent;
   tilted.frame_from_object.translation -= lowest * plane.normal;
   return tilted;
 }
@@ -44,7 +34,7 @@ std::optional<UprightSolution> FitLeaning(const Plane& plane, const Landmark& up
     for (const auto& cost : costs) cost->AddTo(at, &sum);
     return sum;
   };
-  const auto plus = [](const Landmark& at, const Eigen::Matrix<double, kLandmarkDof, 1>& step) {
+  const auto plus = [](const Landmark& at, const LandmarkStep& step) {
     return std::optional(Moved(at, step));
   };
   const double tilt = LeaningSigmas().angle_rad;

@@ -36,9 +36,7 @@ double LeastVariance(const Eigen::Matrix3d& covariance) {
 
 }  // namespace
 
-double SizeForPoints(const Landmark& landmark) {
-  return 2.0 * std::cbrt(landmark.half_axes.prod());
-}
+double SizeForPoints(const Landmark& landmark) { return 2.0 * MeanHalfAxis(landmark); }
 
 double SizeForPoints(const std::vector<Landmark>& landmarks) {
   std::vector<double> sizes_m;

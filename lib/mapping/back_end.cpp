@@ -19,7 +19,7 @@ constexpr double kConvergenceTolerance = 1e-3;
 constexpr int kIterationsPerRound = 10;
 
 double Change(const Landmark& from, const Landmark& to) {
-  const double size = std::cbrt(from.half_axes.prod());
+  const double size = MeanHalfAxis(from);
   return std::max({(to.Centre() - from.Centre()).norm() / size,
                    (to.half_axes - from.half_axes).norm() / size,
                    to.frame_from_object.rotation.angularDistance(from.frame_from_object.rotation)});

@@ -17,8 +17,6 @@ namespace {
 // Number of offsets of the mirror plane on either side of the centre.
 constexpr int kMirrorPlaneSteps = 8;
 
-double Size(const Landmark& landmark) { return std::cbrt(landmark.half_axes.prod()); }
-
 // The scale s of MirroredTexture, in the descriptor's unit.
 double Scale(const Landmark& landmark, Descriptor descriptor, const TextureOptions& options) {
   switch (descriptor) {
@@ -29,7 +27,7 @@ double Scale(const Landmark& landmark, Descriptor descriptor, const TextureOptio
     case Descriptor::kFreak:
       return options.asymmetry_scale;
     default:
-      return options.asymmetry_scale * Size(landmark);
+      return options.asymmetry_scale * MeanHalfAxis(landmark);
   }
 }
 

@@ -94,17 +94,7 @@ TEST(OutlineExcess, HasExactDerivatives) {
       OutlineExcess(edge, landmark, &jacobian);
       for (int k = 0; k < kLandmarkDof; ++k) {
         const auto at = [&](double step) {
-          Landmark moved = landmark;
-          const Eigen::Vector3d direction = step * Eigen::Vector3d::Unit(k % 3);
-          if (k < 3) {
-            moved.frame_from_object.rotation =
-                ExpRotation(direction) * moved.frame_from_object.rotation;
-          } else if (k < 6) {
-            moved.frame_from_object.translation += direction;
-          } else {
-            moved.half_axes.array() *= direction.array().exp();
-          }
-          return OutlineExcess(edge, moved, nullptr);
+          return OutlineExcess(edge, Moved(landmark, step * LandmarkStep::Unit(k)), nullptr);
         };
         const double difference = (at(kStep) - at(-kStep)) / (2.0 * kStep);
         EXPECT_NEAR(jacobian[k], difference, 1e-4 * (1.0 + std::abs(difference))) << k;

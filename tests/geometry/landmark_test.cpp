@@ -55,13 +55,13 @@ TEST(FindSupportPoint, MovesWithTheLandmark) {
       const Landmark landmark = WithShape({RandomRigid(), RandomVector(0.1, 2.0)}, p);
       const Eigen::Vector3d direction = RandomVector(-2, 2);
       const SupportPoint farthest = FindSupportPoint(landmark, direction);
-      EXPECT_NEAR(direction.dot(farthest.point), farthest.distance, 1e-9);
+      EXPECT_NEAR(direction.dot(farthest.point), farthest.extent, 1e-9);
       const Rigid3d motion = RandomRigid();
       const SupportPoint moved =
           FindSupportPoint(Transform(motion, landmark), motion.rotation * direction);
       EXPECT_LT((moved.point - motion * farthest.point).norm(), 1e-9);
-      EXPECT_NEAR(moved.distance,
-                  farthest.distance + (motion.rotation * direction).dot(motion.translation), 1e-9);
+      EXPECT_NEAR(moved.extent,
+                  farthest.extent + (motion.rotation * direction).dot(motion.translation), 1e-9);
     }
   }
 }
@@ -112,7 +112,8 @@ TEST(OutlineBox, OfTheCuboidHoldsItsCorners) {
 
 // The ends of the dual conic C* = K [I | 0] Q* [I | 0]^T K^T: lines x = t with l^T C* l = 0.
 TEST(OutlineBox, OfTheEllipsoidIsThatOfTheDualConic) {
-  const Eigen::Matrix<double, 3, 4> projection = TestCamera().ProjectionMatrix(Rigid3d());
+  const Eigen::Matrix<double, 3, 4> projection =
+      TestCamera().Intrinsics() * Rigid3d().Matrix().topRows<3>();
   for (int i = 0; i < 100; ++i) {
     const Landmark landmark = RandomLandmarkInCamera();
     const Eigen::Matrix3d conic = projection * DualQuadric(landmark) * projection.transpose();

@@ -19,25 +19,15 @@ Landmark CentralLandmark(double shape_exponent = kEllipsoidExponent) {
 
 Eigen::Vector2d RandomPixel() { return {RandomUniform(295, 345), RandomUniform(220, 265)}; }
 
-Landmark Perturbed(const Landmark& landmark, int parameter, double step) {
-  Eigen::Vector3d deltas[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
-  deltas[parameter / 3](parameter % 3) = step;
-  Landmark moved = landmark;
-  moved.frame_from_object.rotation = ExpRotation(deltas[0]) * landmark.frame_from_object.rotation;
-  moved.frame_from_object.translation += deltas[1];
-  moved.half_axes = landmark.half_axes.array() * deltas[2].array().exp();
-  return moved;
-}
-
 // Central differences of a point or pixel over the nine parameters; their error is about 1e-9 here.
 template <typename Function>
 void ExpectJacobian(const Eigen::MatrixXd& analytic, const Landmark& landmark,
                     const Function& function) {
   constexpr double kStep = 1e-5;
   for (int i = 0; i < kLandmarkDof; ++i) {
+    const LandmarkStep step = kStep * LandmarkStep::Unit(i);
     const Eigen::VectorXd numeric =
-        (function(Perturbed(landmark, i, kStep)) - function(Perturbed(landmark, i, -kStep))) /
-        (2.0 * kStep);
+        (function(Moved(landmark, step)) - function(Moved(landmark, -step))) / (2.0 * kStep);
     EXPECT_LT((analytic.col(i) - numeric).norm(), 1e-6 * (1.0 + numeric.norm())) << i;
   }
 }
@@ -73,7 +63,7 @@ TEST(VisibleSurface, AMirrorPlaneBesideTheCentreMovesTheMirrorImageByTwiceItsDis
   const Landmark landmark = CentralLandmark();
   const VisibleSurface surface(TestCamera(), landmark);
   const auto point = surface.FromPixel(RandomPixel());
-  const double distance_m = 0.3 * std::cbrt(landmark.half_axes.prod());
+  const double distance_m = 0.3 * MeanHalfAxis(landmark);
   const Eigen::Vector3d moved = surface.MirrorImage(*point, 0.3).in_object;
   EXPECT_LT(
       (moved - surface.MirrorImage(*point).in_object - Eigen::Vector3d(0.0, 2.0 * distance_m, 0.0))

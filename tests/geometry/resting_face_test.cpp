@@ -31,8 +31,8 @@ TEST(RestingFace, BodyInItsOwnAxesIsTheSame) {
       EXPECT_EQ(own.rests_on, RestingFace::kBottom);
       for (int k = 0; k < 10; ++k) {
         const Eigen::Vector3d direction = RandomVector(-1.0, 1.0);
-        EXPECT_NEAR(FindSupportPoint(own, direction).distance,
-                    FindSupportPoint(landmark, direction).distance, 1e-12);
+        EXPECT_NEAR(FindSupportPoint(own, direction).extent,
+                    FindSupportPoint(landmark, direction).extent, 1e-12);
       }
     }
   }

@@ -20,7 +20,7 @@ TEST(UprightLandmark, StandsUprightOnItsPlane) {
       const SupportPoint lowest = FindSupportPoint(landmark, -plane.normal);
       // Rounded edges reach beyond the body itself by a thousandth of its size.
       const double rounding = kEdgeRounding * (2.0 - p) * landmark.half_axes.sum();
-      EXPECT_NEAR(-lowest.distance + plane.offset, 0.0, 1e-12 + rounding) << p;
+      EXPECT_NEAR(-lowest.extent + plane.offset, 0.0, 1e-12 + rounding) << p;
       for (int k = 0; k < 20; ++k) {
         EXPECT_GE(plane.SignedDistance(RandomSurfacePoint(landmark)), -1e-12) << p;
       }
@@ -86,7 +86,7 @@ TEST(UprightByParameters, AgreesWithNumbers) {
       UprightVector at = parameters;
       at(k) += step;
       const Landmark other = UprightGround(plane).LandmarkAt(at, 1.5);
-      Eigen::Matrix<double, kLandmarkDof, 1> tangent;
+      LandmarkStep tangent;
       tangent << LogRotation(other.frame_from_object.rotation *
                              landmark.frame_from_object.rotation.conjugate()),
           other.Centre() - landmark.Centre(),
@@ -95,10 +95,9 @@ TEST(UprightByParameters, AgreesWithNumbers) {
     };
     const UprightJacobian jacobian = UprightGround(plane).ParameterJacobian(landmark);
     for (int k = 0; k < 6; ++k) {
-      const Eigen::Matrix<double, kLandmarkDof, 1> numeric =
-          (8.0 * (moved(k, kStep) - moved(k, -kStep)) -
-           (moved(k, 2.0 * kStep) - moved(k, -2.0 * kStep))) /
-          (12.0 * kStep);
+      const LandmarkStep numeric = (8.0 * (moved(k, kStep) - moved(k, -kStep)) -
+                                    (moved(k, 2.0 * kStep) - moved(k, -2.0 * kStep))) /
+                                   (12.0 * kStep);
       EXPECT_LT((jacobian.col(k) - numeric).norm(), 1e-9)
           << "parameter " << k << ": analytic " << jacobian.col(k).transpose() << ", numeric "
           << numeric.transpose();

@@ -44,7 +44,7 @@ Landmark LandmarkOf(const Body& body) {
   landmark.frame_from_object.rotation =
       UprightRotation(Eigen::Vector3d::UnitZ(), body.yaw) * ExpRotation(body.tilt);
   landmark.frame_from_object.translation.z() =
-      FindSupportPoint(landmark, Eigen::Vector3d::UnitZ()).distance;
+      FindSupportPoint(landmark, Eigen::Vector3d::UnitZ()).extent;
   return landmark;
 }
 

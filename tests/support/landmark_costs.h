@@ -8,17 +8,6 @@
 
 namespace soslam {
 
-// Where a step of its nine parameters leads.
-inline Landmark Moved(const Landmark& landmark,
-                      const Eigen::Matrix<double, kLandmarkDof, 1>& step) {
-  Landmark moved = landmark;
-  moved.frame_from_object.rotation =
-      ExpRotation(step.head<3>()) * landmark.frame_from_object.rotation;
-  moved.frame_from_object.translation += step.segment<3>(3);
-  moved.half_axes.array() *= step.tail<3>().array().exp();
-  return moved;
-}
-
 // The model's cost is the value, and its gradient what central differences of fourth order say.
 inline void ExpectCorrectGradient(const LandmarkCost& cost, const Landmark& landmark) {
   constexpr double kStep = 1e-4;
