@@ -9,10 +9,6 @@ Eigen::Matrix3d Camera::Intrinsics() const {
   return intrinsics;
 }
 
-Eigen::Matrix<double, 3, 4> Camera::ProjectionMatrix(const Rigid3d& camera_from_world) const {
-  return Intrinsics() * camera_from_world.Matrix().topRows<3>();
-}
-
 Eigen::Matrix<double, 2, 3> Camera::ProjectionJacobian(
     const Eigen::Vector3d& point_in_camera) const {
   const double inverse_depth = 1.0 / point_in_camera.z();

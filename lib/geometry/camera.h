@@ -35,8 +35,6 @@ struct Camera {
   }
   // K, 3 x 3.
   Eigen::Matrix3d Intrinsics() const;
-  // P = K [R | t], 3 x 4, of a camera at camera_from_world.
-  Eigen::Matrix<double, 3, 4> ProjectionMatrix(const Rigid3d& camera_from_world) const;
   // The plane through the camera centre and an image line, eq. (2) with P = K [I | 0]: K^T l,
   // normalised. In the camera frame; its offset is 0.
   Plane BackProject(const Eigen::Vector3d& line) const;

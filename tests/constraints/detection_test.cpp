@@ -45,7 +45,8 @@ TEST(DetectionResidual, EqualsTheDualQuadricForm) {
   const Box box{100, 120, 400, 350};
   const Eigen::Vector4d residuals = Residuals(DetectionResidual(TestCamera(), box, 1.0), view);
   const Eigen::Matrix4d dual_quadric = DualQuadric(view.landmark_in_world);
-  const auto projection = TestCamera().ProjectionMatrix(view.world_from_camera.Inverse());
+  const Eigen::Matrix<double, 3, 4> projection =
+      TestCamera().Intrinsics() * view.world_from_camera.Inverse().Matrix().topRows<3>();
   const auto lines = box.EdgeLines();
   for (size_t i = 0; i < 4; ++i) {
     Eigen::Vector4d plane = projection.transpose() * lines[i];
