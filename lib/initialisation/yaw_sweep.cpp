@@ -75,7 +75,8 @@ class Fitter {
       fit.cost =
           TotalCost(ObservationTerms(observation_, at.landmark), at.landmark) + fit.further_cost;
     }
-    if (objective_.extra_cost) fit.cost += objective_.extra_cost(at.landmark);
+    if (objective_.extra_cost) fit.extra_cost = objective_.extra_cost(at.landmark);
+    fit.cost += fit.extra_cost;
     return fit;
   }
 

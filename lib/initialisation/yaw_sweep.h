@@ -29,8 +29,10 @@ struct YawObjective {
 struct UprightFit {
   UprightVector parameters;
   double cost;
-  // Part of `cost` from the further costs; 0 unless the YawObjective has several rounds.
+  // Parts of `cost`: from the further costs, 0 unless the YawObjective has several rounds, and the
+  // extra cost.
   double further_cost = 0.0;
+  double extra_cost = 0.0;
 };
 
 // The best landmark at each yaw of a grid over half a turn; none where there is no solution.

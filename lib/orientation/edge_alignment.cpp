@@ -8,6 +8,7 @@
 
 #include "constraints/loss.h"
 #include "geometry/angles.h"
+#include "geometry/wireframe.h"
 #include "image/sample_bilinear.h"
 
 namespace soslam {
@@ -40,8 +41,7 @@ EdgeTerm::EdgeTerm(std::shared_ptr<const EdgeImage> image, const Camera& camera,
 }
 
 bool EdgeTerm::Counts(const ModelPoint& point, const Landmark& start_in_camera) const {
-  const auto pixel = camera_.Project(start_in_camera.frame_from_object *
-                                     start_in_camera.half_axes.cwiseProduct(point.in_unit_body));
+  const auto pixel = camera_.Project(PointAt(start_in_camera, point.in_unit_body));
   const FrameEdges& frame = *image_->frame;
   if (!pixel || !IsBetweenPixelCentres(frame.maps.distance, *pixel)) return false;
   const auto nearest = NearestEdge(frame.maps, *pixel);

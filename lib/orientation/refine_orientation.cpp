@@ -80,32 +80,18 @@ class OrientationProfile {
   TextureAsymmetry asymmetry_;
 };
 
-// `texture_costs` are those of the landmarks of the sweep, in order.
-void RecordCurves(const YawSweep& sweep, const std::vector<double>& texture_costs,
-                  const ProfileOptions& options, SymmetryRecord* record) {
+void RecordCurves(const YawSweep& sweep, const ProfileOptions& options, SymmetryRecord* record) {
   record->yaw = sweep.yaw;
   record->cost["total"] = sweep.Costs();
-  auto texture_cost = texture_costs.begin();
   const double none = std::numeric_limits<double>::quiet_NaN();
   for (const auto& fit : sweep.fits) {
     if (options.edge_alignment) {
       record->cost["edge_alignment"].push_back(fit ? fit->further_cost : none);
     }
     if (options.texture_symmetry) {
-      record->cost["texture_symmetry"].push_back(fit ? *texture_cost++ : none);
+      record->cost["texture_symmetry"].push_back(fit ? fit->extra_cost : none);
     }
   }
-}
-
-// Sweeps the yaw, and records the texture costs of the landmarks found, yaw by yaw.
-YawSweep SweepYaw(const UprightObservation& observation, YawObjective objective, double step,
-                  std::vector<double>* texture_costs) {
-  if (objective.extra_cost) {
-    objective.extra_cost = [texture_costs, cost = objective.extra_cost](const Landmark& landmark) {
-      return texture_costs->emplace_back(cost(landmark));
-    };
-  }
-  return SweepYaw(observation, objective, step);
 }
 
 // The sweep of an object that rests on one face.
@@ -120,9 +106,8 @@ RefinedObservation RefineOnFace(const Sequence& sequence, int detection_index,
   const OrientationProfile profile(sequence, detection, edges, prior, options, symmetry_options,
                                    points);
   const YawObjective objective = profile.Objective();
-  std::vector<double> texture_costs;
-  const YawSweep sweep = SweepYaw(profile.observation(), objective,
-                                  options.upright.yaw_grid_deg * kRadPerDeg, &texture_costs);
+  const YawSweep sweep =
+      SweepYaw(profile.observation(), objective, options.upright.yaw_grid_deg * kRadPerDeg);
   std::vector<YawSweep::Optimum> optima;
   for (const UprightSolution& optimum :
        LocalOptima(profile.observation(), objective, sweep, kMaxHypotheses)) {
@@ -134,7 +119,7 @@ RefinedObservation RefineOnFace(const Sequence& sequence, int detection_index,
     return result;
   }
   const Landmark& best = result.estimate.hypotheses.front().landmark_in_camera;
-  RecordCurves(sweep, texture_costs, options, &result.record);
+  RecordCurves(sweep, options, &result.record);
   profile.RecordPairs(best, &result.record);
   result.record.refined_yaw = Yaw(normal, best.frame_from_object.rotation);
   // The mirror plane of an object on its side is horizontal.

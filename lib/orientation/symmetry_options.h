@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "base/options.h"
@@ -28,6 +29,12 @@ struct SymmetryOptions {
   double min_viewing_cosine = 0.4;
   int min_pairs = 8;
   double min_pair_fraction = 0.25;
+
+  // The number of pairs that a cost needs, of so many samples on the object.
+  double MinPairs(size_t samples) const {
+    return std::max(static_cast<double>(min_pairs),
+                    min_pair_fraction * static_cast<double>(samples));
+  }
 
   void Describe(OptionVisitor& visit) {
     visit.Group("Texture symmetry: pairs of mirrored pixels");

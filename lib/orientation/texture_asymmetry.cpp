@@ -31,11 +31,6 @@ double Scale(const Landmark& landmark, Descriptor descriptor, const TextureOptio
   }
 }
 
-double MinPairs(size_t samples, const SymmetryOptions& options) {
-  return std::max(static_cast<double>(options.min_pairs),
-                  options.min_pair_fraction * static_cast<double>(samples));
-}
-
 std::vector<double> MirrorPlanePlaces(double range) {
   if (!(range > 0.0)) return {0.0};
   std::vector<double> places;
@@ -95,7 +90,7 @@ std::optional<MirroredTexture> TextureAsymmetry::Find(const Landmark& landmark_i
   for (Eigen::Index place = 0; place < residuals.cols(); ++place) {
     const Eigen::ArrayXd squared = residuals.col(place).square();
     const auto pairs = static_cast<double>(squared.isFinite().count());
-    if (pairs < MinPairs(samples.size(), symmetry_options_)) continue;
+    if (pairs < symmetry_options_.MinPairs(samples.size())) continue;
     const double sum = squared.isFinite().select(squared / (squared + squared_scale), 0.0).sum();
     const double asymmetry = sum / pairs;
     if (best && best->asymmetry <= asymmetry) continue;

@@ -33,11 +33,9 @@ std::vector<std::optional<double>> SymmetryCosts(const SymmetryImage& image, con
       ++sum.pairs;
     }
   }
-  const double required = std::max(static_cast<double>(options.min_pairs),
-                                   options.min_pair_fraction * static_cast<double>(samples.size()));
   std::vector<std::optional<double>> costs;
   for (const Sum& sum : sums) {
-    const bool is_known = sum.pairs >= required;
+    const bool is_known = sum.pairs >= options.MinPairs(samples.size());
     costs.push_back(is_known ? std::optional(sum.residuals / sum.pairs) : std::nullopt);
   }
   return costs;
