@@ -18,6 +18,41 @@ namespace {
 
 constexpr size_t kMinViews = 3;
 
+// An estimate per detection, each from the value of its object; a failure where that has none.
+template <typename Value, typename Estimator>
+LandmarkEstimates EstimateObservations(const Sequence& sequence,
+                                       const std::vector<std::optional<Value>>& of_objects,
+                                       int threads, const Estimator& estimator) {
+  LandmarkEstimates estimates;
+  estimates.observations.resize(sequence.detections.size());
+  ParallelFor("detections", static_cast<int>(sequence.detections.size()), threads, [&](int i) {
+    ObservationEstimate& estimate = estimates.observations[i];
+    estimate.detection_index = i;
+    const auto& value = of_objects[sequence.detections[i].object_index];
+    if (value) {
+      estimator(*value, &estimate);
+    } else {
+      estimate.failure = "no_ratio_for_label";
+    }
+  });
+  return estimates;
+}
+
+// The detected objects, still without landmarks; those that move have failed.
+std::vector<ObjectEstimate> DetectedObjects(const Sequence& sequence,
+                                            const std::vector<std::vector<int>>& detections) {
+  std::vector<ObjectEstimate> objects;
+  for (size_t i = 0; i < detections.size(); ++i) {
+    if (detections[i].empty()) continue;
+    ObjectEstimate object;
+    object.object_index = static_cast<int>(i);
+    object.observations = static_cast<int>(detections[i].size());
+    if (!sequence.objects[i].is_static) object.failure = kMovingObject;
+    objects.push_back(object);
+  }
+  return objects;
+}
+
 std::vector<Plane> TangentPlanesInWorld(const Sequence& sequence,
                                         const std::vector<int>& detections) {
   std::vector<Plane> planes;
@@ -55,25 +90,16 @@ std::vector<Hypothesis> SweepFaces(const std::vector<UprightObservation>& on_fac
 LandmarkEstimates InitialiseSingleFrame(const Sequence& sequence,
                                         const std::vector<std::optional<Eigen::Vector2d>>& ratios,
                                         const InitialiseOptions& options, int threads) {
-  LandmarkEstimates estimates;
-  estimates.observations.resize(sequence.detections.size());
-  ParallelFor("detections", static_cast<int>(sequence.detections.size()), threads, [&](int i) {
-    const Detection& detection = sequence.detections[i];
-    ObservationEstimate& estimate = estimates.observations[i];
-    estimate.detection_index = i;
-    const auto& ratio = ratios[detection.object_index];
-    if (!ratio) {
-      estimate.failure = "no_ratio_for_label";
-      return;
-    }
+  const auto estimator = [&](const Eigen::Vector2d& ratio, ObservationEstimate* estimate) {
+    const Detection& detection = sequence.detections[estimate->detection_index];
     SingleFrameSolution solution = InitialiseFromSingleFrame(
-        {sequence.CameraOf(detection), detection.box, detection.plane_in_camera, *ratio,
+        {sequence.CameraOf(detection), detection.box, detection.plane_in_camera, ratio,
          SceneAxisInCamera(sequence, detection)},
         options);
-    estimate.hypotheses = std::move(solution.hypotheses);
-    estimate.failure = std::move(solution.failure);
-  });
-  return estimates;
+    estimate->hypotheses = std::move(solution.hypotheses);
+    estimate->failure = std::move(solution.failure);
+  };
+  return EstimateObservations(sequence, ratios, threads, estimator);
 }
 
 LandmarkEstimates InitialiseUpright(const Sequence& sequence,
@@ -81,32 +107,24 @@ LandmarkEstimates InitialiseUpright(const Sequence& sequence,
                                     const UprightOptions& options, int threads,
                                     const std::vector<std::optional<YawPrior>>& yaw_priors,
                                     const PointsInFrames* points) {
-  LandmarkEstimates estimates;
-  estimates.observations.resize(sequence.detections.size());
-  ParallelFor("detections", static_cast<int>(sequence.detections.size()), threads, [&](int i) {
+  const auto estimator = [&](const ShapePrior& prior, ObservationEstimate* estimate) {
+    const int i = estimate->detection_index;
     const Detection& detection = sequence.detections[i];
-    ObservationEstimate& estimate = estimates.observations[i];
-    estimate.detection_index = i;
-    const auto& prior = priors[detection.object_index];
-    if (!prior) {
-      estimate.failure = "no_ratio_for_label";
-      return;
-    }
     std::vector<UprightObservation> on_faces;
     for (const auto& on_face : OnPossibleFaces(prior)) {
       on_faces.push_back(MakeUprightObservation(sequence, detection, *on_face, options));
       if (!yaw_priors.empty()) on_faces.back().yaw_prior = yaw_priors[i];
     }
     const double yaw_step = options.yaw_grid_deg * kRadPerDeg;
-    estimate.hypotheses = SweepFaces(on_faces, yaw_step);
-    const auto evidence = points ? points->Of(i, estimate.hypotheses) : std::nullopt;
+    estimate->hypotheses = SweepFaces(on_faces, yaw_step);
+    const auto evidence = points ? points->Of(i, estimate->hypotheses) : std::nullopt;
     if (evidence) {
       for (UprightObservation& on_face : on_faces) on_face.points = evidence;
-      estimate.hypotheses = SweepFaces(on_faces, yaw_step);
+      estimate->hypotheses = SweepFaces(on_faces, yaw_step);
     }
-    if (estimate.hypotheses.empty()) estimate.failure = WhyNoSolution(on_faces.back());
-  });
-  return estimates;
+    if (estimate->hypotheses.empty()) estimate->failure = WhyNoSolution(on_faces.back());
+  };
+  return EstimateObservations(sequence, priors, threads, estimator);
 }
 
 LandmarkEstimates InitialiseMultiView(const Sequence& sequence,
@@ -114,20 +132,11 @@ LandmarkEstimates InitialiseMultiView(const Sequence& sequence,
                                       const InitialiseOptions& options, int threads) {
   LandmarkEstimates estimates;
   const auto detections = DetectionsByObject(sequence);
-  for (size_t i = 0; i < detections.size(); ++i) {
-    if (detections[i].empty()) continue;
-    ObjectEstimate object;
-    object.object_index = static_cast<int>(i);
-    object.observations = static_cast<int>(detections[i].size());
-    estimates.objects.push_back(object);
-  }
+  estimates.objects = DetectedObjects(sequence, detections);
   ParallelFor("objects", static_cast<int>(estimates.objects.size()), threads, [&](int i) {
     ObjectEstimate& object = estimates.objects[i];
+    if (!object.failure.empty()) return;
     const auto index = static_cast<size_t>(object.object_index);
-    if (!sequence.objects[index].is_static) {
-      object.failure = kMovingObject;
-      return;
-    }
     MultiViewObservation observation = MakeMultiViewObservation(
         sequence, detections[index], priors[index], options.upright.detection_sigma_fraction,
         options.view_correlation_deg * kRadPerDeg);
@@ -208,23 +217,18 @@ LandmarkEstimates InitialiseCuboids(const Sequence& sequence,
 LandmarkEstimates InitialiseSvd(const Sequence& sequence) {
   LandmarkEstimates estimates;
   const auto detections = DetectionsByObject(sequence);
-  for (size_t i = 0; i < detections.size(); ++i) {
-    if (detections[i].empty()) continue;
-    ObjectEstimate object;
-    object.object_index = static_cast<int>(i);
-    object.observations = static_cast<int>(detections[i].size());
-    if (!sequence.objects[i].is_static) {
-      object.failure = kMovingObject;
-    } else if (detections[i].size() < kMinViews) {
+  estimates.objects = DetectedObjects(sequence, detections);
+  for (ObjectEstimate& object : estimates.objects) {
+    if (!object.failure.empty()) continue;
+    const std::vector<int>& own = detections[static_cast<size_t>(object.object_index)];
+    if (own.size() < kMinViews) {
       object.failure = "fewer_than_three_views";
-    } else if (const auto found =
-                   LandmarkFromTangentPlanes(TangentPlanesInWorld(sequence, detections[i]))) {
+    } else if (const auto found = LandmarkFromTangentPlanes(TangentPlanesInWorld(sequence, own))) {
       object.landmark_in_world = found->landmark;
       object.proper_ellipsoid = found->proper;
     } else {
       object.failure = "no_finite_quadric";
     }
-    estimates.objects.push_back(object);
   }
   return estimates;
 }

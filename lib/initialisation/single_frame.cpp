@@ -14,6 +14,7 @@
 #include "constraints/scale_ratio.h"
 #include "constraints/support.h"
 #include "geometry/angles.h"
+#include "model/occlusion.h"
 
 namespace soslam {
 namespace {
@@ -27,17 +28,16 @@ constexpr double kSameRelativeSize = 1e-2;
 std::optional<Landmark> Start(const SingleFrameObservation& observation) {
   const Plane& plane = observation.plane_in_camera;
   const Box& box = observation.box;
-  const Eigen::Vector3d foot_ray = observation.camera.Ray({box.Centre().x(), box.y_max});
-  const double depth = -plane.offset / plane.normal.dot(foot_ray);
-  if (!std::isfinite(depth) || !(depth > 0.0)) return std::nullopt;
+  const auto foot = GroundContactInCamera(observation.camera, box, plane);
+  if (!foot) return std::nullopt;
 
   const Eigen::Vector2d& ratio = observation.ratio;
-  const double half_width = 0.5 * box.Width() * depth / observation.camera.fx;
+  const double half_width = 0.5 * box.Width() * foot->z() / observation.camera.fx;
   const double c = half_width / std::sqrt(0.5 * ratio.squaredNorm());
   Landmark start;
   start.half_axes = {ratio.x() * c, ratio.y() * c, c};
   start.frame_from_object.translation =
-      depth * foot_ray + c * plane.normal + half_width * Eigen::Vector3d::UnitZ();
+      *foot + c * plane.normal + half_width * Eigen::Vector3d::UnitZ();
   return start;
 }
 
