@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "artefact/json_file.h"
+#include "association/agreement.h"
 #include "association/association.h"
 #include "evaluation/map_quality.h"
 #include "evaluation/metrics.h"

@@ -2,10 +2,8 @@
 #pragma once
 
 #include <array>
-#include <limits>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -100,111 +98,5 @@ Sequence WithoutPlanes(Sequence sequence);
 // false ones dropped. Throws SettingsError for malformed interchangeable_labels.
 Association Associate(const Sequence& sequence, const SemanticTable& table,
                       const AssociateOptions& options, int threads);
-
-// Models shared by all steps of data association: landmark fit, predicted box, and likelihood of
-// box and label. Keeps references.
-class AssociationModel {
- public:
-  AssociationModel(const Sequence& sequence, const SemanticTable& table,
-                   const AssociateOptions& options);
-
-  const Sequence& sequence() const { return sequence_; }
-  const AssociateOptions& options() const { return options_; }
-  const std::map<int, UpEstimate>& up_of_segments() const { return up_of_segments_; }
-  const Detection& DetectionAt(int index) const { return sequence_.detections[index]; }
-  const std::string& LabelOf(const Detection& detection) const {
-    return sequence_.ObjectOf(detection).label;
-  }
-  int PlaneOf(const Detection& detection) const {
-    return sequence_.ObjectOf(detection).plane_index;
-  }
-
-  // Fits the track's landmark to its detections, once for each label that it may have and, where
-  // its support plane is unknown, each plane. Boxes, sizes and votes decide among them. When the
-  // boxes determine no landmark, the track keeps its previous one.
-  void Fit(Track* track) const;
-
-  // Expected box of a track in a frame. None when the track has no landmark, its landmark is not
-  // entirely in front of the camera, or the frame is of another segment. Odometry drift is counted
-  // from the nearest frame in which the track was detected.
-  std::optional<Prediction> Predict(const Track& track, int frame_index) const;
-
-  // Likelihood of a detection's box and label given the track. None when an unseen object is more
-  // likely, or the detection is on another plane.
-  std::optional<BoxMatch> Match(const Track& track, const Prediction& prediction,
-                                const Detection& detection) const;
-  // True if the segment of two tracks is the same and the detector may give the labels of the other
-  // track to an object like the first.
-  bool MayBeOneObject(const Track& one, const Track& other) const;
-  // True if the label of a track is one of things that move.
-  bool Moves(const Track& track) const;
-  // Cost of assigning the detection to an unseen object, comparable to BoxMatch::cost.
-  double NewObjectCost(const Detection& detection) const;
-
- private:
-  int SegmentOf(const Track& track) const;
-  // What the track may stand on.
-  std::vector<Support> SupportsOf(const Track& track) const;
-  // Costs of the labels and supports that a track may have; its best fit on a support.
-  struct Hypotheses {
-    std::map<std::string, double> cost_of_label;
-    double cost = std::numeric_limits<double>::infinity();
-    double cost_at_free_height = std::numeric_limits<double>::infinity();
-    std::optional<FittedObject> fit;
-    int plane_index = kNoPlane;
-  };
-  void Try(const Track& track, const std::string& label, Hypotheses* hypotheses) const;
-
-  const Sequence& sequence_;
-  const SemanticTable& table_;
-  const AssociateOptions& options_;
-  std::map<int, UpEstimate> up_of_segments_;  // keyed by segment; empty when planes are given
-  BoxLikelihood boxes_;
-  LabelConfusion labels_;
-  std::set<std::string> moving_labels_;  // normalised
-};
-
-// Agreement of the estimated objects with the objects given in the sequence.
-struct Agreement {
-  // For each estimated object the index of its given object in Sequence::objects. One to one,
-  // assigned greedily by the number of shared detections; none when no remaining given object
-  // shares a detection.
-  std::vector<std::optional<int>> given_of_object;
-  // Number of static given objects with at least min_observations detections, and number of pairs
-  // of such an object and an estimated one whose intersection over union of detections is above
-  // 0.5.
-  int given_objects = 0;
-  int matched = 0;
-
-  // Shares of the estimated and of the given objects that are matched, and their harmonic mean.
-  // None without given objects.
-  std::optional<double> Precision() const;
-  std::optional<double> Recall() const;
-  std::optional<double> F1() const;
-};
-Agreement CompareWithGiven(const Sequence& sequence, const Association& association,
-                           int min_observations);
-
-// The sequence with the estimated objects (ids from 1) in place of the given ones. Keeps the
-// detections of these objects; all others are counted as rejected. Each object takes the ground
-// truth of its given object, if that is static, for evaluation.
-Sequence AssociatedSequence(const Sequence& sequence, const Association& association,
-                            const Agreement& agreement);
-
-// Assigns, frame by frame, the detections to existing tracks (at most one per track) or to new
-// tracks at the least total cost. Fills Association::detections and Association::tracks.
-Association LinkFrames(const AssociationModel& model, int threads);
-
-// Decides which of the tracks left after merging are objects, and sets the fate of all.
-void DropFalseTracks(const AssociationModel& model, int threads, Association* association);
-
-// Merges tracks of the same object: the larger track's landmark fits at least merge_share of the
-// smaller one's boxes (at most max_views of them, evenly spread), and the two are detected in the
-// same frame in at most max_shared_frames of the smaller one's frames; or their bodies take up the
-// same place (same_place_overlap). Smallest tracks first, each
-// into the one that fits most of its boxes, until no pair is left to merge. Where a merged object
-// has two detections in a frame, the one with the lower score is superseded. Landmarks of grown
-// tracks are refitted.
-void MergeTracks(const AssociationModel& model, int threads, Association* association);
 
 }  // namespace soslam

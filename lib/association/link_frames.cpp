@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "association/link_frames.h"
+
 #include <algorithm>
 #include <limits>
 #include <tuple>
 
-#include "association/association.h"
 #include "base/assignment.h"
 #include "base/parallel.h"
 #include "base/progress.h"

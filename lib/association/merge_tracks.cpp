@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "association/merge_tracks.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -6,7 +8,6 @@
 #include <tuple>
 #include <vector>
 
-#include "association/association.h"
 #include "base/parallel.h"
 #include "geometry/iou.h"
 #include "model/occlusion.h"

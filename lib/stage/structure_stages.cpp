@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "artefact/files.h"
+#include "association/agreement.h"
 #include "association/association.h"
 #include "base/error.h"
 #include "base/text.h"

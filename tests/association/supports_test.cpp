@@ -5,6 +5,7 @@
 #include <numbers>
 #include <random>
 
+#include "association/agreement.h"
 #include "association/association.h"
 #include "association/up_estimate.h"
 #include "geometry/angles.h"

@@ -5,6 +5,7 @@
 #include <string>
 #include <tuple>
 
+#include "association/agreement.h"
 #include "association/association.h"
 #include "support/random.h"
 #include "support/scene.h"

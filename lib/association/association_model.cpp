@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "association/association_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace soslam {
+namespace {
+
+std::set<std::string> LabelsOf(const Sequence& sequence) {
+  std::set<std::string> labels;
+  for (const Object& object : sequence.objects) labels.insert(object.label);
+  return labels;
+}
+
+}  // namespace
+
+AssociationModel::AssociationModel(const Sequence& sequence, const SemanticTable& table,
+                                   const AssociateOptions& options)
+    : sequence_(sequence),
+      table_(table),
+      options_(options),
+      up_of_segments_(sequence.planes.empty() ? UpOfSegments(sequence, table, options)
+                                              : std::map<int, UpEstimate>()),
+      boxes_(sequence, options),
+      labels_(LabelsOf(sequence), options),
+      moving_labels_(NormalisedLabels("moving_labels", options.moving_labels)) {}
+
+namespace {
+
+// Direction away from the most support planes, as floors, tables and shelves are parallel.
+Eigen::Vector3d UpOfPlanes(const Sequence& sequence) {
+  constexpr double kCosineOfParallel = 0.95;
+  const auto parallel_to = [&](const SupportPlane& plane) {
+    return std::ranges::count_if(sequence.planes, [&](const SupportPlane& other) {
+      return other.plane_in_world.normal.dot(plane.plane_in_world.normal) > kCosineOfParallel;
+    });
+  };
+  return std::ranges::max_element(sequence.planes, {}, parallel_to)->plane_in_world.normal;
+}
+
+// True if the foot of a body at a free height may be on a plane: nearer than half the body's
+// height, the errors of boxes or three standard deviations.
+bool MayStandOnSome(const Sequence& sequence, const FittedObject& free) {
+  constexpr double kErrorM = 0.2;
+  const Landmark& landmark = free.landmark_in_world;
+  const double half_height = landmark.half_axes.z();
+  return std::ranges::any_of(sequence.planes, [&](const SupportPlane& plane) {
+    const Eigen::Vector3d& normal = plane.plane_in_world.normal;
+    const double above = plane.plane_in_world.SignedDistance(landmark.Centre()) - half_height;
+    LandmarkStep d_above = LandmarkStep::Zero();
+    d_above.segment<3>(3) = normal;
+    d_above(8) = -half_height;
+    const double sigma = std::sqrt(d_above.dot(free.covariance * d_above));
+    return std::abs(above) < std::max({kErrorM, half_height, 3.0 * sigma});
+  });
+}
+
+// True if objects of this mount can be on a plane with this cosine between its normal and up.
+bool Fits(Mount mount, double cosine) {
+  constexpr double kCosineLimit = 0.7;
+  if (mount == Mount::kOnWall) return std::abs(cosine) < kCosineLimit;
+  return (mount == Mount::kStanding ? cosine : -cosine) > kCosineLimit;
+}
+
+// -log of the prior probability that an object stands on a plane of the sequence: low things stand
+// on tables and shelves, high ones on the floor. Infinite where its mount does not fit.
+double CostOfPlane(const Sequence& sequence, const Plane& plane_in_world, const ShapePrior& prior) {
+  constexpr double kTableHeightM = 0.2;      // over the floor, at least
+  constexpr double kUndecidedHeightM = 0.5;  // of things as often on the floor as on tables
+  const Eigen::Vector3d up = UpOfPlanes(sequence);
+  double floor = std::numeric_limits<double>::infinity();
+  for (const SupportPlane& plane : sequence.planes) {
+    if (!Fits(Mount::kStanding, plane.plane_in_world.normal.dot(up))) continue;
+    floor = std::min(floor, -plane.plane_in_world.offset);
+  }
+  const double cosine = plane_in_world.normal.dot(up);
+  if (!Fits(prior.mount, cosine)) return std::numeric_limits<double>::infinity();
+  const auto is_raised = [&](const Plane& plane) { return -plane.offset > floor + kTableHeightM; };
+  const auto alike = std::ranges::count_if(sequence.planes, [&](const SupportPlane& plane) {
+    return Fits(prior.mount, plane.plane_in_world.normal.dot(up)) &&
+           (prior.mount != Mount::kStanding ||
+            is_raised(plane.plane_in_world) == is_raised(plane_in_world));
+  });
+  if (prior.mount != Mount::kStanding) return std::log(static_cast<double>(alike));
+  const double odds = std::pow(prior.height_m->median / kUndecidedHeightM, 3.0);
+  const double probability = (is_raised(plane_in_world) ? 1.0 : odds) / (1.0 + odds);
+  return std::log(static_cast<double>(alike) / probability);
+}
+
+}  // namespace
+
+std::vector<Support> AssociationModel::SupportsOf(const Track& track) const {
+  if (sequence_.planes.empty()) return {{kNoPlane, up_of_segments_.at(SegmentOf(track))}};
+  std::vector<Support> supports;
+  for (int i = 0; i < static_cast<int>(sequence_.planes.size()); ++i) {
+    if (sequence_.HasSupports() && i != track.plane_index) continue;
+    supports.push_back({i, sequence_.planes[i].plane_in_world});
+  }
+  return supports;
+}
+
+void AssociationModel::Try(const Track& track, const std::string& label,
+                           Hypotheses* hypotheses) const {
+  ShapePrior prior = PriorOfLabel(table_, label, options_);
+  if (!sequence_.planes.empty()) prior = TurnedToSupport(prior);
+  const double cost_of_votes = labels_.CostOfVotes(track.votes, label);
+  const auto cost_of = [&](const FittedObject& fit) {
+    return cost_of_votes + options_.label_evidence_weight * fit.cost;
+  };
+  for (const Support& support : SupportsOf(track)) {
+    const double cost_of_plane =
+        sequence_.planes.empty() || sequence_.HasSupports()
+            ? 0.0
+            : CostOfPlane(sequence_, std::get<Plane>(support.in_world), prior);
+    if (!std::isfinite(cost_of_plane)) continue;
+    const auto fit = FitObject(sequence_, track.detections, prior, options_, support.in_world);
+    if (!fit) continue;
+    const double cost = cost_of(*fit) + cost_of_plane;
+    const auto [of_label, is_first] = hypotheses->cost_of_label.emplace(label, cost);
+    of_label->second = std::min(of_label->second, cost);
+    if (cost >= hypotheses->cost) continue;
+    hypotheses->cost = cost;
+    hypotheses->fit = fit;
+    hypotheses->plane_index = support.plane_index;
+  }
+  if (sequence_.planes.empty() || prior.mount != Mount::kStanding) return;
+  const UpEstimate up{UpOfPlanes(sequence_), Eigen::Matrix3d::Zero()};
+  const auto free = FitObject(sequence_, track.detections, prior, options_, up);
+  if (!free || MayStandOnSome(sequence_, *free)) return;
+  hypotheses->cost_at_free_height = std::min(
+      hypotheses->cost_at_free_height, cost_of(*free) - std::log(options_.no_support_probability));
+}
+
+void AssociationModel::Fit(Track* track) const {
+  Hypotheses hypotheses;
+  for (const std::string& label : labels_.Candidates(track->votes)) {
+    if (track->votes.contains(label) || table_.Contains(label)) Try(*track, label, &hypotheses);
+  }
+  if (hypotheses.fit) {
+    track->fit = hypotheses.fit;
+    track->plane_index = hypotheses.plane_index;
+    track->has_support = hypotheses.cost <= hypotheses.cost_at_free_height;
+  } else {
+    for (const auto& [label, score] : track->votes) {
+      hypotheses.cost_of_label[label] = labels_.CostOfVotes(track->votes, label);
+    }
+  }
+  track->labels = ProbabilitiesOfLabels(hypotheses.cost_of_label);
+}
+
+int AssociationModel::SegmentOf(const Track& track) const {
+  return sequence_.FrameOf(DetectionAt(track.detections.front())).segment;
+}
+
+std::optional<Prediction> AssociationModel::Predict(const Track& track, int frame_index) const {
+  if (!track.fit || SegmentOf(track) != sequence_.frames[frame_index].segment) {
+    return std::nullopt;
+  }
+  const auto frame_of = [this](int detection) { return DetectionAt(detection).frame_index; };
+  const auto next = std::ranges::lower_bound(track.detections, frame_index, {}, frame_of);
+  int nearest =
+      next == track.detections.end() ? frame_of(track.detections.back()) : frame_of(*next);
+  if (next != track.detections.begin()) {
+    const int before = frame_of(*std::prev(next));
+    if (std::abs(frame_index - before) <= std::abs(frame_index - nearest)) nearest = before;
+  }
+  return boxes_.Predict(*track.fit, nearest, frame_index);
+}
+
+std::optional<BoxMatch> AssociationModel::Match(const Track& track, const Prediction& prediction,
+                                                const Detection& detection) const {
+  if (sequence_.HasSupports() && PlaneOf(detection) != track.plane_index) return std::nullopt;
+  const double label_cost = -2.0 * std::log(labels_.Probability(LabelOf(detection), track.labels));
+  if (!std::isfinite(label_cost)) return std::nullopt;
+  const auto prior = table_.Find(soslam::LabelOf(track));
+  auto match = boxes_.Match(prediction, detection, prior ? prior->edge_bias : EdgeBias());
+  if (!match) return std::nullopt;
+  match->cost += label_cost - 2.0 * std::log(1.0 - options_.new_object_probability);
+  return match->cost < NewObjectCost(detection) ? match : std::nullopt;
+}
+
+bool AssociationModel::Moves(const Track& track) const {
+  return moving_labels_.contains(NormalisedLabel(soslam::LabelOf(track)));
+}
+
+bool AssociationModel::MayBeOneObject(const Track& one, const Track& other) const {
+  return SegmentOf(one) == SegmentOf(other) &&
+         std::ranges::all_of(other.votes, [&](const auto& vote) {
+           return labels_.Probability(vote.first, one.labels) > 0.0;
+         });
+}
+
+double AssociationModel::NewObjectCost(const Detection& detection) const {
+  return boxes_.CostOfAnyBox(detection) + labels_.CostOfAnyLabel() -
+         2.0 * std::log(options_.new_object_probability);
+}
+
+}  // namespace soslam

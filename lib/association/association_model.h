@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "association/association.h"
+#include "association/box_likelihood.h"
+#include "association/fit_object.h"
+#include "association/labels.h"
+#include "association/options.h"
+#include "association/up_estimate.h"
+#include "initialisation/semantic_table.h"
+#include "model/sequence.h"
+
+namespace soslam {
+
+// Models shared by all steps of data association: landmark fit, predicted box, and likelihood of
+// box and label. Keeps references.
+class AssociationModel {
+ public:
+  AssociationModel(const Sequence& sequence, const SemanticTable& table,
+                   const AssociateOptions& options);
+
+  const Sequence& sequence() const { return sequence_; }
+  const AssociateOptions& options() const { return options_; }
+  const std::map<int, UpEstimate>& up_of_segments() const { return up_of_segments_; }
+  const Detection& DetectionAt(int index) const { return sequence_.detections[index]; }
+  const std::string& LabelOf(const Detection& detection) const {
+    return sequence_.ObjectOf(detection).label;
+  }
+  int PlaneOf(const Detection& detection) const {
+    return sequence_.ObjectOf(detection).plane_index;
+  }
+
+  // Fits the track's landmark to its detections, once for each label that it may have and, where
+  // its support plane is unknown, each plane. Boxes, sizes and votes decide among them. When the
+  // boxes determine no landmark, the track keeps its previous one.
+  void Fit(Track* track) const;
+
+  // Expected box of a track in a frame. None when the track has no landmark, its landmark is not
+  // entirely in front of the camera, or the frame is of another segment. Odometry drift is counted
+  // from the nearest frame in which the track was detected.
+  std::optional<Prediction> Predict(const Track& track, int frame_index) const;
+
+  // Likelihood of a detection's box and label given the track. None when an unseen object is more
+  // likely, or the detection is on another plane.
+  std::optional<BoxMatch> Match(const Track& track, const Prediction& prediction,
+                                const Detection& detection) const;
+  // True if the segment of two tracks is the same and the detector may give the labels of the other
+  // track to an object like the first.
+  bool MayBeOneObject(const Track& one, const Track& other) const;
+  // True if the label of a track is one of things that move.
+  bool Moves(const Track& track) const;
+  // Cost of assigning the detection to an unseen object, comparable to BoxMatch::cost.
+  double NewObjectCost(const Detection& detection) const;
+
+ private:
+  int SegmentOf(const Track& track) const;
+  // What the track may stand on.
+  std::vector<Support> SupportsOf(const Track& track) const;
+  // Costs of the labels and supports that a track may have; its best fit on a support.
+  struct Hypotheses {
+    std::map<std::string, double> cost_of_label;
+    double cost = std::numeric_limits<double>::infinity();
+    double cost_at_free_height = std::numeric_limits<double>::infinity();
+    std::optional<FittedObject> fit;
+    int plane_index = kNoPlane;
+  };
+  void Try(const Track& track, const std::string& label, Hypotheses* hypotheses) const;
+
+  const Sequence& sequence_;
+  const SemanticTable& table_;
+  const AssociateOptions& options_;
+  std::map<int, UpEstimate> up_of_segments_;  // keyed by segment; empty when planes are given
+  BoxLikelihood boxes_;
+  LabelConfusion labels_;
+  std::set<std::string> moving_labels_;  // normalised
+};
+
+}  // namespace soslam
