@@ -100,7 +100,7 @@ HoldingChoice ChooseHolding(const std::vector<HoldingEvidence>& evidence, double
   }
   choice.best = BestOf(evidence, choice.costs);
   const double best_cost = choice.costs[choice.best];
-  // possibly of one that cannot be chosen
+  // It may be that of a holding that cannot be chosen.
   const double lowest_cost = std::ranges::min(choice.costs);
   double sum = 0.0;
   std::vector<double> weights;

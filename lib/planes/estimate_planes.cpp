@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "geometry/angles.h"
+#include "planes/plane_heights.h"
 #include "planes/planes_estimate.h"
 #include "planes/standing_body.h"
 #include "planes/up_prior.h"
@@ -328,18 +329,16 @@ std::optional<PlanesEstimate> FindPlanes(const Sequence& sequence,
   };
   const auto floors = planes_of(Mount::kStanding, attitude);
   const auto ceilings = planes_of(Mount::kHanging, DownOf(attitude, floors));
-  if (!floors && !ceilings) return std::nullopt;
-  PlanesEstimate estimate = !ceilings ? *floors
-                            : !floors ? *ceilings
-                                      : JoinedPlanes(*floors, *ceilings, options.parallel, priors);
-  estimate.up_of_cameras = attitude.up_in_world;
-  estimate.attitude_information = attitude.information;
+  std::optional<PlanesEstimate> estimate = floors ? floors : ceilings;
+  if (!estimate) return std::nullopt;
+  if (floors && ceilings) estimate = JoinedPlanes(*floors, *ceilings, options.parallel, priors);
+  estimate->up_of_cameras = attitude.up_in_world;
+  estimate->attitude_information = attitude.information;
   for (size_t i = 0; i < priors.size(); ++i) {
     const Mount mount = MountOf(priors[i]);
-    const bool has_planes = mount == Mount::kStanding  ? floors.has_value()
-                            : mount == Mount::kHanging ? ceilings.has_value()
-                                                       : false;
-    if (!has_planes) estimate.objects[i].reason = SupportReason::kNone;
+    const bool has_planes =
+        (mount == Mount::kStanding && floors) || (mount == Mount::kHanging && ceilings);
+    if (!has_planes) estimate->objects[i].reason = SupportReason::kNone;
   }
   return estimate;
 }

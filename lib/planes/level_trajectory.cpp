@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "planes/level_trajectory.h"
+
 #include <Eigen/Dense>
 #include <algorithm>
 
 #include "geometry/angles.h"
 #include "geometry/landmark.h"
-#include "planes/estimate_planes.h"
+#include "planes/poses.h"
 
 namespace soslam {
 namespace {
@@ -81,8 +83,7 @@ LevelTrajectory Level(const std::vector<SegmentView>& views, CameraHolding holdi
                               options.camera_pitch_sigma_deg * kRadPerDeg, correlation_rad,
                               holding);
   };
-  std::vector<Rigid3d> poses;
-  for (const SegmentView& view : views) poses.push_back(view.world_from_camera);
+  const std::vector<Rigid3d> poses = PosesOf(views);
   const UpPrior mean =
       WithVerticals(held(poses, correlation), views, vertical_sigma, correlation, kMaxLevelTilt);
   if (!(odometry_sigma > 0.0)) return {poses, mean};

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "planes/plane_heights.h"
+
 #include <algorithm>
 #include <limits>
 #include <numeric>
-
-#include "planes/estimate_planes.h"
 
 namespace soslam {
 namespace {

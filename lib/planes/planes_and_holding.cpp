@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "planes/planes_and_holding.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -6,6 +8,8 @@
 #include "geometry/angles.h"
 #include "planes/camera_holding.h"
 #include "planes/estimate_planes.h"
+#include "planes/level_trajectory.h"
+#include "planes/poses.h"
 
 namespace soslam {
 namespace {
@@ -25,8 +29,7 @@ struct Hypothesis {
 LevelTrajectory LevelFrames(const Sequence& sequence, const std::vector<SegmentView>& views,
                             const PlanesOptions& options, CameraHolding holding) {
   if (!views.empty()) return Level(views, holding, options);
-  std::vector<Rigid3d> poses;
-  for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
+  const std::vector<Rigid3d> poses = PosesOf(sequence);
   return {poses, UpPriorFromCameras(poses, options.camera_roll_sigma_deg * kRadPerDeg,
                                     options.camera_pitch_sigma_deg * kRadPerDeg,
                                     options.view_correlation_deg * kRadPerDeg, holding)};

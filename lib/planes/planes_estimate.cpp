@@ -7,6 +7,7 @@
 #include <map>
 
 #include "geometry/angles.h"
+#include "planes/poses.h"
 
 namespace soslam {
 
@@ -75,8 +76,7 @@ Plane GroundInCamera(double height_m) { return {-Eigen::Vector3d::UnitY(), heigh
 
 PlanesEstimate PlanesBelowCameras(const Sequence& sequence, double height_m) {
   PlanesEstimate estimate;
-  std::vector<Rigid3d> all;
-  for (const Frame& frame : sequence.frames) all.push_back(frame.world_from_camera);
+  const std::vector<Rigid3d> all = PosesOf(sequence);
   estimate.up_of_cameras = MeanOf(all, height_m).plane_in_world.normal;
   estimate.settled = true;
   for (const std::vector<int>& detections : DetectionsByObject(sequence)) {

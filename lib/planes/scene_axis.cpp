@@ -8,6 +8,7 @@
 #include "geometry/angles.h"
 #include "geometry/landmark.h"
 #include "geometry/rigid3.h"
+#include "planes/poses.h"
 
 namespace soslam {
 namespace {
@@ -28,9 +29,7 @@ struct Direction {
 std::vector<Direction> Directions(const Eigen::Vector3d& normal,
                                   const std::vector<SegmentView>& views, double correlation_rad) {
   const Eigen::Quaterniond level = UprightRotation(normal, 0.0);
-  std::vector<Rigid3d> poses;
-  for (const SegmentView& view : views) poses.push_back(view.world_from_camera);
-  const std::vector<double> shares = CameraWeights(poses, correlation_rad);
+  const std::vector<double> shares = CameraWeights(PosesOf(views), correlation_rad);
   std::vector<Direction> directions;
   for (size_t i = 0; i < views.size(); ++i) {
     const SegmentView& view = views[i];

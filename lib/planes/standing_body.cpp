@@ -8,7 +8,7 @@
 #include "base/levenberg_marquardt.h"
 #include "base/parallel.h"
 #include "initialisation/upright.h"
-#include "planes/estimate_planes.h"
+#include "planes/plane_heights.h"
 
 namespace soslam {
 namespace {

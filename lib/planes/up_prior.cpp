@@ -12,6 +12,7 @@
 #include "geometry/angles.h"
 #include "geometry/direction_weights.h"
 #include "geometry/landmark.h"
+#include "planes/poses.h"
 
 namespace soslam {
 
@@ -106,9 +107,7 @@ class LevelDirections {
 // vertical.
 LevelDirections NormalsOf(const std::vector<SegmentView>& views, double sigma,
                           double correlation_rad) {
-  std::vector<Rigid3d> poses;
-  for (const SegmentView& view : views) poses.push_back(view.world_from_camera);
-  const std::vector<double> shares = CameraWeights(poses, correlation_rad);
+  const std::vector<double> shares = CameraWeights(PosesOf(views), correlation_rad);
   std::vector<LevelDirection> normals;
   for (size_t i = 0; i < views.size(); ++i) {
     const Camera& camera = views[i].camera;

@@ -19,7 +19,7 @@
 #include "ground/ground_checks.h"
 #include "mapping/back_end.h"
 #include "mapping/initial_landmarks.h"
-#include "planes/estimate_planes.h"
+#include "planes/planes_and_holding.h"
 #include "planes/planes_estimate.h"
 #include "planes/scene_axis.h"
 #include "stage/segment_views.h"

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "geometry/angles.h"
+#include "planes/poses.h"
 #include "support/random.h"
 #include "support/scene.h"
 
@@ -31,9 +32,7 @@ Scene CuboidScene(int seed, int objects) {
 }
 
 UpPrior Attitude(const Sequence& sequence) {
-  std::vector<Rigid3d> poses;
-  for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
-  return UpPriorFromCameras(poses, 5.0 * kRadPerDeg, 30.0 * kRadPerDeg, 0.3);
+  return UpPriorFromCameras(PosesOf(sequence), 5.0 * kRadPerDeg, 30.0 * kRadPerDeg, 0.3);
 }
 
 PlanesEstimate Estimate(const Sequence& sequence, const PlanesOptions& options = ModelOptions()) {

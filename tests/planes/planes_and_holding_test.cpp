@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "planes/planes_and_holding.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +10,7 @@
 #include "geometry/angles.h"
 #include "planes/camera_holding.h"
 #include "planes/estimate_planes.h"
+#include "planes/poses.h"
 #include "support/expect_error.h"
 #include "support/scene.h"
 
@@ -62,12 +65,10 @@ TEST(SlowEstimatePlanesAndHolding, FindsUpForEachRoll) {
 // To the last digit.
 TEST(EstimatePlanesAndHolding, LevelCamerasHaveThePlanesOfTheirAttitude) {
   const Sequence sequence = NoisySequence(4, 4);
-  std::vector<Rigid3d> poses;
-  for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
   const PlanesOptions options = HoldingOptions();
-  const UpPrior attitude = UpPriorFromCameras(poses, options.camera_roll_sigma_deg * kRadPerDeg,
-                                              options.camera_pitch_sigma_deg * kRadPerDeg,
-                                              options.view_correlation_deg * kRadPerDeg);
+  const UpPrior attitude = UpPriorFromCameras(
+      PosesOf(sequence), options.camera_roll_sigma_deg * kRadPerDeg,
+      options.camera_pitch_sigma_deg * kRadPerDeg, options.view_correlation_deg * kRadPerDeg);
   const PlanesEstimate expected =
       FindPlanes(sequence, TrueCuboidPriors(sequence, kRatioLogSigma), attitude, options, 2)
           .value();

@@ -8,6 +8,7 @@
 
 #include "geometry/angles.h"
 #include "planes/estimate_planes.h"
+#include "planes/plane_heights.h"
 #include "planes/standing_body.h"
 #include "support/random.h"
 #include "support/scene.h"

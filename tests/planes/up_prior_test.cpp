@@ -10,7 +10,8 @@
 #include <vector>
 
 #include "geometry/angles.h"
-#include "planes/estimate_planes.h"
+#include "planes/level_trajectory.h"
+#include "planes/poses.h"
 #include "planes/scene_axis.h"
 #include "support/random.h"
 
@@ -119,8 +120,7 @@ TEST(RobustUpPriorFromCameras, SomeCamerasMayBeTurnedInAnyWay) {
   EXPECT_GT(plain_tilts / 20, 5.0 * kRadPerDeg) << "where the loss matters";
 }
 
-// RotatedAboutZ about their optical axes, cameras that are held so have the up that they had
-// before.
+// Turned about their optical axes, cameras that are held so have the up that they had before.
 TEST(UpPriorFromCameras, RolledCamerasHaveTheUpOfLevelOnes) {
   constexpr std::array kRolls = {CameraHolding::kLevel, CameraHolding::kRolled90,
                                  CameraHolding::kRolled180, CameraHolding::kRolled270};
@@ -164,9 +164,8 @@ std::vector<SegmentView> Room(const Eigen::Vector3d& up, int cameras, double arc
 }
 
 UpPrior HeldAttitude(const std::vector<SegmentView>& views) {
-  std::vector<Rigid3d> poses;
-  for (const SegmentView& view : views) poses.push_back(view.world_from_camera);
-  return UpPriorFromCameras(poses, 5.0 * kRadPerDeg, 30.0 * kRadPerDeg, kSegmentCorrelation);
+  return UpPriorFromCameras(PosesOf(views), 5.0 * kRadPerDeg, 30.0 * kRadPerDeg,
+                            kSegmentCorrelation);
 }
 
 // Edges are exact, so only those of other directions and the cameras' attitude disturb: far less

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <numbers>
 #include <ostream>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "mapping/back_end.h"
 #include "mapping/initial_landmarks.h"
 #include "planes/estimate_planes.h"
+#include "planes/poses.h"
 #include "planes/up_prior.h"
 #include "support/association_scenes.h"
 #include "support/random.h"
@@ -68,7 +70,7 @@ std::vector<Degeneracy> Degeneracies() {
          for (Frame& frame : sequence->frames) {
            frame.world_from_camera.rotation =
                frame.world_from_camera.rotation *
-               Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Vector3d::UnitY()));
+               Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi, Vector3d::UnitY()));
          }
          SeePlanesFromPoses(sequence);
        }},
@@ -310,11 +312,9 @@ TEST_P(DegenerateTest, Association) {
 TEST_P(DegenerateTest, SupportPlanes) {
   ExpectAnswerOrRefusal(
       [](const Sequence& sequence, const Priors& priors) {
-        std::vector<Rigid3d> poses;
-        for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
+        const UpPrior attitude = UpPriorFromCameras(PosesOf(sequence), 0.1, 0.5, 0.3);
         const auto estimate =
-            FindPlanes(sequence, priors, UpPriorFromCameras(poses, 0.1, 0.5, 0.3), PlanesOptions(),
-                       /*threads=*/1);
+            FindPlanes(sequence, priors, attitude, PlanesOptions(), /*threads=*/1);
         if (!estimate) ThrowNoPlanes(sequence);
         for (const EstimatedPlane& plane : estimate->planes) {
           EXPECT_TRUE(plane.plane_in_world.normal.allFinite());
