@@ -8,8 +8,10 @@
 
 #include "base/upper_median.h"
 #include "geometry/angles.h"
+#include "ground/group_boxes.h"
 #include "ground/horizontal_planes.h"
 #include "ground/object_heights.h"
+#include "planes/poses.h"
 
 namespace soslam {
 
@@ -148,8 +150,7 @@ class Estimation {
   }
 
   void FindAttitude(const std::vector<SegmentView>& views) {
-    std::vector<Rigid3d> poses;
-    for (const Frame& frame : sequence_.frames) poses.push_back(frame.world_from_camera);
+    const std::vector<Rigid3d> poses = PosesOf(sequence_);
     const double correlation = options_.view_correlation_deg * kRadPerDeg;
     attitude = RobustUpPriorFromCameras(poses, options_.camera_roll_sigma_deg * kRadPerDeg,
                                         options_.camera_pitch_sigma_deg * kRadPerDeg, correlation,

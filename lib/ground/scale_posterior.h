@@ -10,7 +10,7 @@ namespace soslam {
 // Scale by one interpretation of an object: its label, and what it stands on.
 struct ScaleHypothesis {
   std::string label;
-  int plane = 0;             // index of a plane, or kNoPlane: at a free height
+  int plane = 0;             // index of a plane, or kNoPlane of model/sequence.h: at a free height
   double log_scale = 0.0;    // logarithm of metres per unit of the world
   double log_sigma = 1.0;    // of the label's prior and the object's measured height
   double probability = 1.0;  // before the scale is known
@@ -41,8 +41,8 @@ struct ScalePosterior {
 };
 
 // Bayesian estimate: the height of each object is right under one of its hypotheses, or it says
-// nothing. If the objects contradict one another more than their
-// standard deviations allow, the distribution is widened. None without any evidence.
+// nothing. If the objects contradict one another more than their standard deviations allow, the
+// distribution is widened. None without any evidence.
 std::optional<ScalePosterior> EstimateScale(const std::vector<ScaleEvidence>& objects,
                                             const std::vector<KnownScale>& known);
 
