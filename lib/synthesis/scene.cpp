@@ -220,8 +220,7 @@ std::vector<SceneObject> ParseObjects(const json& entries, const std::vector<Sce
     SceneObject object;
     object.id = entry.at("id").get<int>();
     object.label = entry.at("label").get<std::string>();
-    const auto shape = std::ranges::find(kShapeNames, entry.at("shape").get<std::string>());
-    object.shape = static_cast<Shape>(shape - kShapeNames.begin());
+    object.shape = EnumFromName<Shape>(kShapeNames, entry.at("shape").get<std::string>());
     object.half_axes = VectorFromJson(entry.at("half_axes"));
     object.position_on_plane = Vector2(entry.at("position"));
     object.yaw = entry.value("yaw_deg", 0.0) * kRadPerDeg;
