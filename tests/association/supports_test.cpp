@@ -10,6 +10,7 @@
 #include "association/up_estimate.h"
 #include "geometry/angles.h"
 #include "support/association_scenes.h"
+#include "support/looking_at.h"
 #include "support/random.h"
 #include "support/scene.h"
 
@@ -150,9 +151,7 @@ double RandomNormal() { return std::normal_distribution<double>()(TestRandom());
 
 // The rotation of a camera that looks along the world's x axis, with z up.
 Eigen::Quaterniond LevelCamera() {
-  Eigen::Matrix3d axes;
-  axes << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  return Eigen::Quaterniond(axes);
+  return LookingAt(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX()).rotation;
 }
 
 Sequence SequenceOf(const std::vector<Eigen::Quaterniond>& rotations) {

@@ -8,21 +8,13 @@
 #include "initialisation/closed_form.h"
 #include "initialisation/initialise.h"
 #include "initialisation/yaw_sweep.h"
+#include "support/looking_at.h"
 #include "support/shape_exponents.h"
 
 namespace soslam {
 namespace {
 
 constexpr double kSigmaFraction = 0.02;
-
-// A camera at `position` that looks at `target`, level.
-Rigid3d LookingAt(const Eigen::Vector3d& position, const Eigen::Vector3d& target) {
-  const Eigen::Vector3d z = (target - position).normalized();
-  const Eigen::Vector3d x = z.cross(Eigen::Vector3d::UnitZ()).normalized();
-  Eigen::Matrix3d axes;
-  axes << x, z.cross(x), z;
-  return {Eigen::Quaterniond(axes), position};
-}
 
 // An upright body on the floor, seen with exact boxes, and what is known of it.
 struct World {

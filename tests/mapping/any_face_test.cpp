@@ -16,6 +16,7 @@
 #include "initialisation/initialise.h"
 #include "mapping/back_end.h"
 #include "mapping/initial_landmarks.h"
+#include "support/looking_at.h"
 #include "support/random.h"
 
 namespace soslam::any_face {
@@ -48,14 +49,6 @@ Landmark LandmarkOf(const Body& body) {
   return landmark;
 }
 
-Rigid3d LookingAtOrigin(const Eigen::Vector3d& position) {
-  const Eigen::Vector3d z = (Eigen::Vector3d(0.0, 0.0, 0.3) - position).normalized();
-  const Eigen::Vector3d x = z.cross(Eigen::Vector3d::UnitZ()).normalized();
-  Eigen::Matrix3d axes;
-  axes << x, z.cross(x), z;
-  return {Eigen::Quaterniond(axes), position};
-}
-
 Sequence Observe(const Landmark& landmark, const Views& views) {
   Sequence sequence;
   sequence.camera = TestCamera();
@@ -70,7 +63,8 @@ Sequence Observe(const Landmark& landmark, const Views& views) {
     const double angle = views.arc_rad * i / (views.frames - 1);
     Frame frame;
     frame.id = i;
-    frame.world_from_camera = LookingAtOrigin({3.0 * std::cos(angle), 3.0 * std::sin(angle), 1.5});
+    frame.world_from_camera =
+        LookingAt({3.0 * std::cos(angle), 3.0 * std::sin(angle), 1.5}, {0.0, 0.0, 0.3});
     const Rigid3d camera_from_world = frame.world_from_camera.Inverse();
     Box box = *OutlineBox(sequence.camera, Transform(camera_from_world, landmark));
     const double sigma_x = views.box_sigma_fraction * box.Width();

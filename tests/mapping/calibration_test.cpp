@@ -14,6 +14,7 @@
 #include "initialisation/upright.h"
 #include "mapping/back_end.h"
 #include "orientation/model_edges.h"
+#include "support/looking_at.h"
 #include "support/random.h"
 #include "support/simulated_points.h"
 
@@ -90,12 +91,8 @@ Truth RandomTruth(const Case& c, const OptimiseOptions& options) {
   // Cameras on an arc around it that look at it.
   for (int i = 0; i < kFrames; ++i) {
     const double angle = c.arc_rad * i / (kFrames - 1);
-    const Eigen::Vector3d position(4.0 * std::cos(angle), 4.0 * std::sin(angle), 1.6);
-    const Eigen::Vector3d z = (Eigen::Vector3d(0, 0, 0.4) - position).normalized();
-    const Eigen::Vector3d x = z.cross(Eigen::Vector3d::UnitZ()).normalized();
-    Eigen::Matrix3d axes;
-    axes << x, z.cross(x), z;
-    truth.world_from_camera.push_back({Eigen::Quaterniond(axes), position});
+    truth.world_from_camera.push_back(
+        LookingAt({4.0 * std::cos(angle), 4.0 * std::sin(angle), 1.6}, {0, 0, 0.4}));
   }
   return truth;
 }

@@ -23,6 +23,7 @@
 #include "geometry/rigid3.h"
 #include "support/dataset_fixture.h"
 #include "support/image_files.h"
+#include "support/looking_at.h"
 
 namespace soslam {
 
@@ -68,14 +69,9 @@ struct PlausibleDataset {
     const double angle = 0.3 + 1.4 * frame / kFrames;
     const Eigen::Vector3d centre(3.0 * std::cos(angle), 3.0 * std::sin(angle),
                                  height_of_floor + camera_height + 0.1 * std::sin(5.0 * angle));
-    const Eigen::Vector3d forward =
-        (Eigen::Vector3d(0.1 + sway * std::sin(5.0 * angle), 0.0, height_of_floor + 0.3) - centre)
-            .normalized();
-    const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
-    Eigen::Matrix3d axes;
-    axes << right, forward.cross(right), forward;
+    const Eigen::Vector3d target(0.1 + sway * std::sin(5.0 * angle), 0.0, height_of_floor + 0.3);
     const Eigen::AngleAxisd roll(roll_rad, Eigen::Vector3d::UnitZ());
-    return {Eigen::Quaterniond(axes) * roll, centre};
+    return {LookingAt(centre, target).rotation * roll, centre};
   }
 
   static std::vector<std::string> Labels() { return {"ball", "cup", "vase", "bowl", "bottle"}; }

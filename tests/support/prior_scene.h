@@ -16,6 +16,7 @@
 #include "geometry/angles.h"
 #include "ground/estimate_ground.h"
 #include "ground/horizontal_planes.h"
+#include "support/looking_at.h"
 #include "synthesis/simulate.h"
 
 namespace soslam {
@@ -145,17 +146,13 @@ class PriorSceneBuilder {
       const Eigen::Vector3d position(radius * std::cos(angle), radius * std::sin(angle),
                                      eye + 0.1 * std::sin(5.0 * angle));
       const Eigen::Vector3d target(0.6 * std::cos(2.0 * angle), 0.6 * std::sin(3.0 * angle), 0.5);
-      const Eigen::Vector3d z = (target - position).normalized();
-      const Eigen::Vector3d x = z.cross(Eigen::Vector3d::UnitZ()).normalized();
-      Eigen::Matrix3d rotation;
-      rotation << x, z.cross(x), z;
+      const Rigid3d level = LookingAt(position, target);
       const double roll = options_.roll_sigma_deg * kRadPerDeg * Normal();
       Frame frame;
       frame.id = i;
       frame.timestamp = 0.1 * i;
       frame.world_from_camera = {
-          (Eigen::Quaterniond(rotation) * Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ()))
-              .normalized(),
+          (level.rotation * Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ())).normalized(),
           position};
       scene_.sequence.frames.push_back(frame);
     }
