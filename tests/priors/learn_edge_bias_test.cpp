@@ -3,8 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "priors/learn_priors.h"
-#include "support/drawn_cuboids.h"
-#include "support/upright_bodies.h"
+#include "support/views_of_bodies.h"
 
 namespace soslam {
 namespace {
@@ -24,30 +23,13 @@ Box WithBias(const Box& outline, const EdgeBias& bias) {
           outline.x_max + bias[2] * width, outline.y_max + bias[3] * height};
 }
 
-// Objects with biased boxes. Each frame has its own world, whose origin is the body.
+// Objects with biased boxes.
 Sequence BiasedObjects(const std::string& label, int objects, int views, const EdgeBias& bias) {
   Sequence sequence;
   sequence.name = "views";
-  sequence.camera = TestCamera();
+  const auto box_of = [&](const Box& outline) { return WithBias(outline, bias); };
   for (int object = 0; object < objects; ++object) {
-    GroundTruth truth;
-    truth.landmark_in_world.half_axes = RandomVector(0.2, 0.5);
-    sequence.objects.push_back({object, label, 0, truth});
-    for (int view = 0; view < views;) {
-      Landmark in_camera = RandomUprightBody(RandomFloor(), kShapeExponent);
-      in_camera.half_axes = truth.landmark_in_world.half_axes;
-      const auto outline = OutlineBox(TestCamera(), in_camera);
-      if (!outline) continue;
-      Frame frame;
-      frame.true_world_from_camera = in_camera.frame_from_object.Inverse();
-      Detection detection;
-      detection.frame_index = static_cast<int>(sequence.frames.size());
-      detection.object_index = object;
-      detection.box = WithBias(*outline, bias);
-      sequence.frames.push_back(frame);
-      sequence.detections.push_back(detection);
-      ++view;
-    }
+    AddViewsOfBody(label, RandomVector(0.2, 0.5), kShapeExponent, views, box_of, &sequence);
   }
   return sequence;
 }

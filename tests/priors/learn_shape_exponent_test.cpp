@@ -3,35 +3,15 @@
 
 #include "priors/learn_priors.h"
 #include "support/drawn_cuboids.h"
-#include "support/upright_bodies.h"
+#include "support/views_of_bodies.h"
 
 namespace soslam {
 namespace {
 
-// A body seen from frames in the origin, in a world that each frame has its own part of: the camera
-// stands still and the body is somewhere else in each.
 Sequence ViewsOfABody(double shape_exponent, int views, double disturbance) {
   Sequence sequence;
-  sequence.camera = TestCamera();
-  GroundTruth truth;
-  truth.landmark_in_world.half_axes = {0.5, 0.3, 0.4};
-  sequence.objects = {{0, "thing", 0, truth}};
-  for (int i = 0; i < views; ++i) {
-    Landmark in_camera = RandomUprightBody(RandomFloor(), shape_exponent);
-    in_camera.half_axes = truth.landmark_in_world.half_axes;
-    const auto box = OutlineBox(TestCamera(), in_camera);
-    if (!box) continue;
-    Frame frame;
-    frame.true_world_from_camera = in_camera.frame_from_object.Inverse();
-    sequence.detections.push_back({static_cast<int>(sequence.frames.size()),
-                                   0,
-                                   1.0,
-                                   Disturbed(*box, disturbance),
-                                   {},
-                                   {},
-                                   {}});
-    sequence.frames.push_back(frame);
-  }
+  const auto box_of = [&](const Box& outline) { return Disturbed(outline, disturbance); };
+  AddViewsOfBody("thing", {0.5, 0.3, 0.4}, shape_exponent, views, box_of, &sequence);
   return sequence;
 }
 
