@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "support/cuboid_corners.h"
 #include "support/shape_exponents.h"
 
 namespace soslam {
@@ -94,18 +95,11 @@ TEST(OutlineBox, OfTheCuboidHoldsItsCorners) {
   const Camera camera = TestCamera();
   for (int i = 0; i < 100; ++i) {
     const Landmark landmark = WithShape(RandomLandmarkInCamera(), kCuboidExponent);
-    Box corners{1e9, 1e9, -1e9, -1e9};
     double nearest = 1e9;
-    for (int corner = 0; corner < 8; ++corner) {
-      const Eigen::Array3d side(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
-      const Eigen::Vector3d point =
-          landmark.frame_from_object * (side * landmark.half_axes.array()).matrix();
-      const Eigen::Vector2d pixel = *camera.Project(point);
-      corners = {std::min(corners.x_min, pixel.x()), std::min(corners.y_min, pixel.y()),
-                 std::max(corners.x_max, pixel.x()), std::max(corners.y_max, pixel.y())};
-      nearest = std::min(nearest, point.z());
+    for (const Eigen::Vector3d& corner : CornersOf(landmark)) {
+      nearest = std::min(nearest, corner.z());
     }
-    ExpectNear(*OutlineBox(camera, landmark), corners,
+    ExpectNear(*OutlineBox(camera, landmark), BoxAroundCorners(landmark),
                1.5 * camera.fy * kEdgeRounding * landmark.half_axes.sum() / nearest);
   }
 }

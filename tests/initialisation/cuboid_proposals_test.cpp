@@ -12,6 +12,7 @@
 #include "geometry/angles.h"
 #include "geometry/iou.h"
 #include "geometry/wireframe.h"
+#include "support/cuboid_corners.h"
 #include "support/random.h"
 #include "support/upright_bodies.h"
 
@@ -19,27 +20,6 @@ namespace soslam {
 namespace {
 
 constexpr double kTolerancePx = 1e-6;
-
-std::vector<Eigen::Vector3d> CornersInCamera(const Landmark& cuboid) {
-  std::vector<Eigen::Vector3d> corners;
-  for (int i = 0; i < 8; ++i) {
-    const Eigen::Vector3d signs(i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0);
-    corners.push_back(PointAt(cuboid, signs));
-  }
-  return corners;
-}
-
-// The tight box around the corners in the image: OutlineBox rounds corners off.
-Box BoxAround(const Landmark& cuboid) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  Box box = {kFar, kFar, -kFar, -kFar};
-  for (const Eigen::Vector3d& corner : CornersInCamera(cuboid)) {
-    const Eigen::Vector2d pixel = *TestCamera().Project(corner);
-    box = {std::min(box.x_min, pixel.x()), std::min(box.y_min, pixel.y()),
-           std::max(box.x_max, pixel.x()), std::max(box.y_max, pixel.y())};
-  }
-  return box;
-}
 
 int VisibleFaces(const Landmark& cuboid) {
   const Eigen::Vector3d camera = cuboid.frame_from_object.Inverse().translation;
@@ -49,7 +29,7 @@ int VisibleFaces(const Landmark& cuboid) {
 // A cuboid and its exact view.
 struct TrueCuboid {
   TrueCuboid(const Plane& plane, const Landmark& cuboid)
-      : landmark(cuboid), view{TestCamera(), BoxAround(cuboid), plane} {}
+      : landmark(cuboid), view{TestCamera(), BoxAroundCorners(cuboid), plane} {}
 
   double Yaw() const {
     return soslam::Yaw(view.plane_in_camera.normal, landmark.frame_from_object.rotation);
@@ -60,7 +40,7 @@ struct TrueCuboid {
     const Eigen::Vector3d& up = view.plane_in_camera.normal;
     const Eigen::Vector3d side = up.cross(TestCamera().Ray(view.box.Centre())).normalized();
     double smallest = std::numeric_limits<double>::infinity(), column = 0.0;
-    for (const Eigen::Vector3d& corner : CornersInCamera(landmark)) {
+    for (const Eigen::Vector3d& corner : CornersOf(landmark)) {
       if (up.dot(corner - landmark.Centre()) < 0.0) continue;
       const Eigen::Vector2d pixel = *TestCamera().Project(corner);
       const Eigen::Vector3d ray = TestCamera().Ray(pixel);
@@ -88,7 +68,7 @@ void ExpectSameCuboid(const Landmark& found, const Landmark& truth) {
   EXPECT_LT(found.frame_from_object.rotation.angularDistance(truth.frame_from_object.rotation),
             1e-6);
   EXPECT_EQ(found.shape_exponent, kCuboidExponent);
-  const auto found_corners = CornersInCamera(found), true_corners = CornersInCamera(truth);
+  const auto found_corners = CornersOf(found), true_corners = CornersOf(truth);
   for (size_t i = 0; i < true_corners.size(); ++i) {
     EXPECT_LT(
         (*TestCamera().Project(found_corners[i]) - *TestCamera().Project(true_corners[i])).norm(),
@@ -173,7 +153,7 @@ TEST(ProposeCuboids, AllFillTheBoxAndStandOnThePlane) {
     EXPECT_GT(proposals.size(), 15u);
     for (const CuboidProposal& proposal : proposals) {
       const Landmark& cuboid = proposal.landmark_in_camera;
-      const Box around = BoxAround(cuboid);
+      const Box around = BoxAroundCorners(cuboid);
       EXPECT_NEAR(around.x_min, box.x_min, kTolerancePx);
       EXPECT_NEAR(around.y_min, box.y_min, kTolerancePx);
       EXPECT_NEAR(around.x_max, box.x_max, kTolerancePx);
@@ -197,7 +177,7 @@ TEST(ProposeCuboids, FillTheBoxOnAnyPlaneOrAreNone) {
       ++proposed;
       EXPECT_TRUE(HasExtent(proposal.landmark_in_camera));
       ASSERT_TRUE(IsInFront(proposal.landmark_in_camera));
-      const Box around = BoxAround(proposal.landmark_in_camera);
+      const Box around = BoxAroundCorners(proposal.landmark_in_camera);
       EXPECT_GT(BoxOverlap(around, box), 1.0 - 1e-6);
     }
   }

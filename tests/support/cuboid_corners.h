@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "geometry/wireframe.h"
+#include "support/random.h"
+
+namespace soslam {
+
+// In the landmark's frame.
+inline std::vector<Eigen::Vector3d> CornersOf(const Landmark& cuboid) {
+  std::vector<Eigen::Vector3d> corners;
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Vector3d signs(i & 1 ? 1.0 : -1.0, i & 2 ? 1.0 : -1.0, i & 4 ? 1.0 : -1.0);
+    corners.push_back(PointAt(cuboid, signs));
+  }
+  return corners;
+}
+
+// The tight box around the corners in TestCamera's image: OutlineBox rounds corners off.
+inline Box BoxAroundCorners(const Landmark& cuboid_in_camera) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  Box box = {kFar, kFar, -kFar, -kFar};
+  for (const Eigen::Vector3d& corner : CornersOf(cuboid_in_camera)) {
+    const Eigen::Vector2d pixel = *TestCamera().Project(corner);
+    box = {std::min(box.x_min, pixel.x()), std::min(box.y_min, pixel.y()),
+           std::max(box.x_max, pixel.x()), std::max(box.y_max, pixel.y())};
+  }
+  return box;
+}
+
+}  // namespace soslam
