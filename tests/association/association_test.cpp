@@ -200,12 +200,7 @@ TEST(AssociateTest, TheOrderWithinAFrameDoesNotMatter) {
 
 TEST(AssociateTest, AMovedWorldChangesNoDecision) {
   const Sequence sequence = NoisySequence(3, {"thing"});
-  Sequence moved = sequence;
-  const Rigid3d motion = RandomRigid();
-  for (Frame& frame : moved.frames) frame.world_from_camera = motion * frame.world_from_camera;
-  for (SupportPlane& plane : moved.planes) {
-    plane.plane_in_world = Transform(motion, plane.plane_in_world);
-  }
+  const Sequence moved = Moved(RandomRigid(), sequence);
   EXPECT_EQ(Partition(AssociateAll(sequence)), Partition(AssociateAll(moved)));
 }
 
@@ -276,10 +271,9 @@ TEST(AssociateTest, ObjectsStayOnTheirPlane) {
   EXPECT_EQ(association.objects.size(), 2u);
 }
 
-// Neither planes nor the height of any label is known.
-// Without planes each scene takes a second.
-constexpr int kScenesWithoutPlanes = 2;
+constexpr int kScenesWithoutPlanes = 2;  // each takes a second
 
+// Neither planes nor the height of any label is known.
 TEST(AssociateWithoutPlanesTest, ExactBoxesAreTheirObjects) {
   ExpectNearlyAllFound(kScenesWithoutPlanes, 0.0, [](int seed) {
     const Sequence sequence =
@@ -291,10 +285,8 @@ TEST(AssociateWithoutPlanesTest, ExactBoxesAreTheirObjects) {
 TEST(AssociateWithoutPlanesTest, NoisyBoxesAreNearlyAllTheirObjects) {
   ExpectNearlyAllFound(kScenesWithoutPlanes, 0.8, [](int seed) {
     const Sequence sequence = NoisySequence(seed, {"thing", "other"});
-    Sequence seen = WithoutPlanes(WithoutIds(sequence));
-    const Rigid3d motion = RandomRigid();  // the axes of the world mean nothing
-    for (Frame& frame : seen.frames) frame.world_from_camera = motion * frame.world_from_camera;
-    return std::pair(sequence, seen);
+    // The axes of the world mean nothing.
+    return std::pair(sequence, Moved(RandomRigid(), WithoutPlanes(WithoutIds(sequence))));
   });
 }
 

@@ -135,10 +135,8 @@ TEST(InitialiseUpright, DoesNotDependOnWhereTheWorldIsNorOnItsQuarterTurns) {
   const auto priors = TruePriors(sequence);
   const LandmarkEstimates before = InitialiseUpright(sequence, priors, UprightOptions(), 2);
   const Rigid3d motion = {ExpRotation({0.0, 0.0, 0.5 * std::numbers::pi}), RandomVector(-5, 5)};
-  Sequence moved = sequence;
-  for (Frame& frame : moved.frames) frame.world_from_camera = motion * frame.world_from_camera;
-  for (auto& plane : moved.planes) plane.plane_in_world = Transform(motion, plane.plane_in_world);
-  const LandmarkEstimates after = InitialiseUpright(moved, priors, UprightOptions(), 2);
+  const LandmarkEstimates after =
+      InitialiseUpright(Moved(motion, sequence), priors, UprightOptions(), 2);
   for (size_t i = 0; i < before.observations.size(); ++i) {
     const auto& expected = before.observations[i].hypotheses;
     const auto& found = after.observations[i].hypotheses;

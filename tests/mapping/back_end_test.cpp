@@ -10,6 +10,7 @@
 #include "geometry/iou.h"
 #include "initialisation/initialise.h"
 #include "mapping/initial_landmarks.h"
+#include "support/cuboid_map.h"
 #include "support/random.h"
 #include "support/scene.h"
 #include "synthesis/simulate.h"
@@ -53,11 +54,7 @@ TEST(BackEnd, RecoversEllipsoidsFromTheirSingleFrameLandmarks) {
 TEST(BackEnd, ComesBackFromADisturbedStart) {
   const Sequence sequence = SyntheticSequence(RandomScene(5, 5, 20), false);
   BackEndInput input = EllipsoidInput(sequence);
-  for (auto& start : input.initial_landmarks) {
-    *start = RotatedAboutZ(*start, RandomUniform(-0.1, 0.1));
-    start->frame_from_object.translation += RandomVector(-0.05, 0.05);
-    start->half_axes *= RandomUniform(0.9, 1.1);
-  }
+  Disturb(&input);
   const Metrics metrics = EvaluateMap(sequence, OptimiseMap(input, OptimiseOptions()));
   for (const ObjectMetrics& object : metrics.objects) EXPECT_GT(object.iou, 0.99);
 }
@@ -74,9 +71,7 @@ TEST(BackEnd, MovesWithTheWorld) {
   const MapEstimate before = OptimiseMap(input, options);
 
   const Rigid3d motion = RandomRigid();
-  Sequence moved = sequence;
-  for (Frame& frame : moved.frames) frame.world_from_camera = motion * frame.world_from_camera;
-  for (auto& plane : moved.planes) plane.plane_in_world = Transform(motion, plane.plane_in_world);
+  const Sequence moved = Moved(motion, sequence);
   BackEndInput moved_input{moved, input.initial_landmarks, input.priors, {}, {}};
   for (auto& start : moved_input.initial_landmarks) *start = Transform(motion, *start);
   const MapEstimate after = OptimiseMap(moved_input, options);

@@ -12,14 +12,6 @@
 namespace soslam {
 namespace {
 
-void Disturb(BackEndInput* input) {
-  for (auto& start : input->initial_landmarks) {
-    *start = RotatedAboutZ(*start, RandomUniform(-0.1, 0.1));
-    start->frame_from_object.translation += RandomVector(-0.05, 0.05);
-    start->half_axes *= RandomUniform(0.9, 1.1);
-  }
-}
-
 void ExpectTruth(const Sequence& sequence, const MapEstimate& map, double min_iou) {
   for (const ObjectMetrics& object : EvaluateMap(sequence, map).objects) {
     EXPECT_GT(object.iou, min_iou);
@@ -314,9 +306,7 @@ TEST(TangencyBackEnd, MovesWithTheWorld) {
   const MapEstimate before = OptimiseMap(input, options);
 
   const Rigid3d motion = RandomRigid();
-  Sequence moved = sequence;
-  for (Frame& frame : moved.frames) frame.world_from_camera = motion * frame.world_from_camera;
-  for (auto& plane : moved.planes) plane.plane_in_world = Transform(motion, plane.plane_in_world);
+  const Sequence moved = Moved(motion, sequence);
   BackEndInput moved_input{moved, input.initial_landmarks, input.priors, {}, edge_images};
   for (auto& start : moved_input.initial_landmarks) *start = Transform(motion, *start);
   const MapEstimate after = OptimiseMap(moved_input, options);

@@ -23,6 +23,15 @@ inline BackEndInput TruthInput(const Sequence& sequence) {
   return input;
 }
 
+// Initial landmarks beside those of the truth.
+inline void Disturb(BackEndInput* input) {
+  for (auto& start : input->initial_landmarks) {
+    *start = RotatedAboutZ(*start, RandomUniform(-0.1, 0.1));
+    start->frame_from_object.translation += RandomVector(-0.05, 0.05);
+    start->half_axes *= RandomUniform(0.9, 1.1);
+  }
+}
+
 // Images in which each object's visible faces are drawn, for all of its detections.
 inline std::map<int, std::shared_ptr<const EdgeImage>> DrawnEdges(const Sequence& sequence) {
   std::map<int, std::shared_ptr<const EdgeImage>> images;
