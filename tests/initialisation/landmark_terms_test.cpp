@@ -105,6 +105,14 @@ TEST(RatioTerm, JacobianAgreesWithNumbers) {
   }
 }
 
+TEST(YawTerm, JacobianAgreesWithNumbers) {
+  for (int i = 0; i < 20; ++i) {
+    const StandingBody body(kCuboidExponent);
+    const YawTerm term(body.plane, {body.Yaw() + RandomUniform(-1.4, 1.4), 0.2});
+    ExpectCorrectTermJacobian(term, body.truth);
+  }
+}
+
 TEST(HeightTerm, JacobianAgreesWithNumbers) {
   for (int i = 0; i < 20; ++i) {
     const LogNormal height_m{RandomUniform(0.1, 2.0), RandomUniform(0.05, 0.5)};

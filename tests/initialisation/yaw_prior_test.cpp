@@ -7,7 +7,6 @@
 #include "initialisation/initialise.h"
 #include "initialisation/upright_observation.h"
 #include "support/random.h"
-#include "support/upright_bodies.h"
 
 namespace soslam {
 namespace {
@@ -131,22 +130,6 @@ TEST(YawPriors, OneBoxSaysNothing) {
   Sequence sequence = Drive(1.0, [](int) { return Place{3.5, 22.0, 0.4}; });
   sequence.detections.resize(1);
   EXPECT_FALSE(Priors(sequence, YawPriorSource::kMotion)[0]);
-}
-
-TEST(YawTerm, HasItsDerivative) {
-  for (int trial = 0; trial < 20; ++trial) {
-    const StandingBody body(kCuboidExponent);
-    const YawTerm term(body.plane, {body.Yaw() + RandomUniform(-1.4, 1.4), 0.2});
-    constexpr double kStep = 1e-6;
-    Eigen::VectorXd plus(1), minus(1), at(1);
-    LandmarkTerm::Jacobian jacobian(1, kLandmarkDof);
-    term.Evaluate(body.truth, at, &jacobian);
-    term.Evaluate(RotatedAboutZ(body.truth, kStep), plus, nullptr);
-    term.Evaluate(RotatedAboutZ(body.truth, -kStep), minus, nullptr);
-    const double d_turn = jacobian.row(0).head<3>().dot(body.plane.normal);
-    EXPECT_NEAR(d_turn, (plus[0] - minus[0]) / (2.0 * kStep), 1e-6);
-    EXPECT_EQ(jacobian.row(0).tail<6>().norm(), 0.0);
-  }
 }
 
 // The prior decides between yaws that explain a box equally well.
