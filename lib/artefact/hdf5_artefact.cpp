@@ -30,7 +30,7 @@ nlohmann::json HeaderOf(const Hdf5File& file) {
 }  // namespace
 
 void WriteArtefactHeader(const std::string& kind, const ArtefactInfo& info, Hdf5File* file) {
-  file->WriteText("/", kHeaderAttribute, ArtefactHeader(kind, info).dump());
+  file->WriteText("/", kHeaderAttribute, JsonText(ArtefactHeader(kind, info)));
 }
 
 Hdf5File OpenArtefact(const std::filesystem::path& path, const std::string& kind) {

@@ -142,6 +142,10 @@ json ParseJsonText(std::istream& text, const std::string& name) {
   }
 }
 
+std::string JsonText(const json& document, int indent) {
+  return document.dump(indent, ' ', /*ensure_ascii=*/false, json::error_handler_t::replace);
+}
+
 std::string Excerpt(const json& value) {
   constexpr size_t kMaxLength = 60;
   const std::string text = value.dump(-1, ' ', true);
@@ -210,7 +214,7 @@ std::string ArtefactText(const std::filesystem::path& path, const std::string& k
     throw std::logic_error(fmt::format("{}: would break the schema of kind '{}': {}", path.string(),
                                        kind, *violation));
   }
-  return body.dump(1) + "\n";
+  return JsonText(body, 1) + "\n";
 }
 
 void WriteArtefact(const std::filesystem::path& path, const std::string& kind,

@@ -55,6 +55,10 @@ nlohmann::json ParseJsonFile(const std::filesystem::path& path);
 // ParseJsonFile for a text that is not a file of its own; `name` stands for it in error messages.
 nlohmann::json ParseJsonText(std::istream& text, const std::string& name);
 
+// The document as text, on one line or with this indent. Bytes that are not UTF-8, as names of
+// files may have, become U+FFFD.
+std::string JsonText(const nlohmann::json& document, int indent = -1);
+
 // A value as ASCII text, truncated to fit on a line.
 std::string Excerpt(const nlohmann::json& value);
 

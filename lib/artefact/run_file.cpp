@@ -137,8 +137,7 @@ void WriteRun(const std::filesystem::path& path, const RunRecord& record) {
     throw std::logic_error(
         fmt::format("{}: would break its schema: {}", path.string(), *violation));
   }
-  constexpr bool kAscii = false;
-  WriteTextFile(path, document.dump(2, ' ', kAscii, json::error_handler_t::replace) + "\n");
+  WriteTextFile(path, JsonText(document, 2) + "\n");
 }
 
 RunRecord ReadRun(const std::filesystem::path& path) {

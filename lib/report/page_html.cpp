@@ -41,13 +41,11 @@ std::string Escaped(const std::string& text, char what, std::string_view by) {
   return escaped;
 }
 
-std::string Dump(const json& data) {
-  return data.dump(-1, ' ', false, json::error_handler_t::replace);
-}
-
 }  // namespace
 
-std::string Utf8(const std::string& bytes) { return json::parse(Dump(bytes)).get<std::string>(); }
+std::string Utf8(const std::string& bytes) {
+  return json::parse(JsonText(bytes)).get<std::string>();
+}
 
 std::string UrlOf(const std::string& name) {
   std::string url;
@@ -60,7 +58,7 @@ std::string UrlOf(const std::string& name) {
 }
 
 std::string PageText(const json& data) {
-  return Escaped(Dump(data), '<', "\\u003c");  // '<' would begin or end elements
+  return Escaped(JsonText(data), '<', "\\u003c");  // '<' would begin or end elements
 }
 
 std::string WithBlanks(std::string name) {

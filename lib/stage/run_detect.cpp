@@ -136,8 +136,8 @@ std::string Comments(const ArtefactInfo& info) {
   nlohmann::json header = ArtefactHeader("detections", info);
   const nlohmann::json inputs = header["inputs"];
   header.erase("inputs");
-  std::string text = fmt::format("# {}\n", header.dump());
-  for (const nlohmann::json& input : inputs) text += fmt::format("# input {}\n", input.dump());
+  std::string text = fmt::format("# {}\n", JsonText(header));
+  for (const nlohmann::json& input : inputs) text += fmt::format("# input {}\n", JsonText(input));
   return text;
 }
 

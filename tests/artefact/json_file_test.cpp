@@ -91,6 +91,15 @@ TEST_F(JsonFileTest, HeaderNamesWhatShapedTheArtefact) {
   EXPECT_EQ(header.at("inputs").at(1).at("file"), "b.txt");
 }
 
+TEST_F(JsonFileTest, NamesOfFilesNeedNotBeUtf8) {
+  const std::filesystem::path input = folder / "caf\xe9.txt";
+  std::ofstream(input) << "bytes";
+  WriteArtefact(file, "landmarks", {{{"labels", "\xe9"}}, {input}}, kEmptyLandmarks);
+  const json header = ReadArtefact(file, "landmarks").at("artefact");
+  EXPECT_EQ(header["inputs"][0]["file"], "caf\xef\xbf\xbd.txt");
+  EXPECT_EQ(header["settings"]["labels"], "\xef\xbf\xbd");
+}
+
 TEST_F(JsonFileTest, HeadersThatAreNotOursAreRefused) {
   json header = ArtefactHeader("landmarks", {});
   EXPECT_EQ(ReadErrorWithHeader(header), "");
