@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/command_line.h"
-#include "stage/image_stages.h"
+#include "stage/stages.h"
 
 int main(int argc, char** argv) {
   return soslam::StageMain<soslam::EdgesOptions>(

@@ -22,29 +22,11 @@
 #include "initialisation/object_points.h"
 #include "orientation/refine_orientation.h"
 #include "orientation/texture_asymmetry.h"
-#include "stage/read_points.h"
+#include "stage/read_evidence.h"
 #include "stage/stages.h"
 
 namespace soslam {
 namespace {
-
-LandmarkEstimates CuboidsOfImages(const Sequence& sequence, const StageFiles& files,
-                                  const CuboidOptions& options, int threads) {
-  const EdgesReader reader(files.at("edges"));
-  const auto edges_of = [&](const Frame& frame) {
-    EdgeMaps maps = reader.Read(frame.id);
-    const Camera& camera = sequence.CameraOf(frame);
-    if (maps.grey.cols != camera.width || maps.grey.rows != camera.height) {
-      throw InputError(fmt::format(
-          "{}: frame {} has {} x {} pixels; expected {} x {}, as its camera in {}: were the edges "
-          "made from another sequence?",
-          files.at("edges").string(), frame.id, maps.grey.cols, maps.grey.rows, camera.width,
-          camera.height, files.at("sequence").string()));
-    }
-    return maps;
-  };
-  return InitialiseCuboids(sequence, edges_of, options, threads);
-}
 
 // Throws SettingsError if points are to be used with another method than `needed`, or without file.
 void CheckPointEvidence(const PointOptions& options, std::string_view method,
@@ -74,6 +56,43 @@ std::string CountWithPoints(const std::optional<PointsInFrames>& points,
   return fmt::format("; points in {} of {} observations", count, estimates.observations.size());
 }
 
+// Says which labels have no entry in the semantic table.
+void WarnOfMissingLabels(const Sequence& sequence, const SemanticTable& table,
+                         const std::filesystem::path& file) {
+  const auto labels = LabelsWithoutEntry(sequence, table);
+  if (labels.empty()) return;
+  fmt::print(stderr, "soslam-initialise: not in {}: {}; {}\n", file.string(),
+             fmt::join(labels, ", "),
+             table.default_prior ? "its default is used" : "their objects are left out");
+}
+
+// The estimates of the method that the options name.
+LandmarkEstimates Initialise(const Sequence& sequence, const SemanticTable& table,
+                             const std::optional<PointsInFrames>& points,
+                             const InitialiseOptions& options, const StageFiles& files,
+                             int threads) {
+  if (options.method == InitialisationMethod::kSvd) return InitialiseSvd(sequence);
+  if (options.method == InitialisationMethod::kCuboidProposals) {
+    const EdgesOfSequence edges(sequence, files);
+    const auto edges_of = [&](const Frame& frame) { return edges.Read(frame); };
+    return InitialiseCuboids(sequence, edges_of, options.cuboids, threads);
+  }
+  if (options.ratio_prior == RatioPrior::kTable) {
+    WarnOfMissingLabels(sequence, table, files.at("table"));
+  }
+  if (options.method == InitialisationMethod::kSingleFrame) {
+    return InitialiseSingleFrame(sequence, ObjectRatios(sequence, table, options.ratio_prior),
+                                 options, threads);
+  }
+  const auto priors = ObjectPriors(sequence, table, options.ratio_prior, options.shape);
+  if (options.method == InitialisationMethod::kMultiView) {
+    return InitialiseMultiView(sequence, priors, options, threads);
+  }
+  return InitialiseUpright(sequence, priors, options.upright, threads,
+                           YawPriors(sequence, priors, options, threads),
+                           points ? &*points : nullptr);
+}
+
 }  // namespace
 
 void RunInitialise(const InitialiseOptions& options, const StageFiles& files, int threads) {
@@ -87,33 +106,7 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
   const Sequence sequence = ReadSequence(files.at("sequence"));
   const SemanticTable table = ReadSemanticTable(files.at("table"));
   const auto points = PointsInFramesOf(options.points, sequence, files);
-  LandmarkEstimates estimates;
-  if (options.method == InitialisationMethod::kSvd) {
-    estimates = InitialiseSvd(sequence);
-  } else if (uses_images) {
-    estimates = CuboidsOfImages(sequence, files, options.cuboids, threads);
-  } else {
-    if (options.ratio_prior == RatioPrior::kTable) {
-      const auto labels = LabelsWithoutEntry(sequence, table);
-      if (!labels.empty()) {
-        fmt::print(stderr, "soslam-initialise: not in {}: {}; {}\n", files.at("table").string(),
-                   fmt::join(labels, ", "),
-                   table.default_prior ? "its default is used" : "their objects are left out");
-      }
-    }
-    const auto priors = ObjectPriors(sequence, table, options.ratio_prior, options.shape);
-    if (options.method == InitialisationMethod::kMultiView) {
-      estimates = InitialiseMultiView(sequence, priors, options, threads);
-    } else if (options.method == InitialisationMethod::kYawSweep) {
-      estimates = InitialiseUpright(sequence, priors, options.upright, threads,
-                                    YawPriors(sequence, priors, options, threads),
-                                    points ? &*points : nullptr);
-    } else {
-      estimates = InitialiseSingleFrame(
-          sequence, ObjectRatios(sequence, table, options.ratio_prior), options, threads);
-    }
-  }
-
+  const LandmarkEstimates estimates = Initialise(sequence, table, points, options, files, threads);
   const auto failures = CountFailures(estimates);
   int failed = 0;
   for (const auto& [reason, count] : failures) failed += count;
@@ -145,9 +138,9 @@ namespace {
 class FrameInUse {
  public:
   void Expect() { ++to_come_; }
-  std::shared_ptr<const FrameEdges> Take(const EdgesReader& reader, int frame_id) {
+  std::shared_ptr<const FrameEdges> Take(const EdgesOfSequence& edges, const Frame& frame) {
     const std::lock_guard lock(mutex_);
-    if (!edges_) edges_ = std::make_shared<const FrameEdges>(reader.Read(frame_id));
+    if (!edges_) edges_ = std::make_shared<const FrameEdges>(edges.Read(frame));
     return --to_come_ > 0 ? edges_ : std::move(edges_);
   }
 
@@ -163,7 +156,7 @@ std::vector<RefinedObservation> RefineAll(const Sequence& sequence,
                                           const std::vector<std::optional<ShapePrior>>& priors,
                                           const std::optional<PointsInFrames>& points,
                                           const OrientationOptions& options,
-                                          const EdgesReader& reader, int threads) {
+                                          const EdgesOfSequence& all_edges, int threads) {
   const auto detection_of = [&](size_t i) -> const Detection& {
     return sequence.detections[initial[i]->detection_index];
   };
@@ -174,7 +167,7 @@ std::vector<RefinedObservation> RefineAll(const Sequence& sequence,
     const auto i = static_cast<size_t>(index);
     const Detection& detection = detection_of(i);
     const auto edges =
-        frames.at(detection.frame_index).Take(reader, sequence.FrameOf(detection).id);
+        frames.at(detection.frame_index).Take(all_edges, sequence.FrameOf(detection));
     const auto& prior = priors[detection.object_index];
     if (options.method == RefinementMethod::kProfile) {
       const int detection_index = initial[i]->detection_index;
@@ -227,7 +220,7 @@ void RunRefine(const OrientationOptions& options, const StageFiles& files, int t
 
   const auto points = PointsInFramesOf(point_options, sequence, files);
   auto refined = RefineAll(sequence, to_refine, priors, points, options,
-                           EdgesReader(files.at("edges")), threads);
+                           EdgesOfSequence(sequence, files), threads);
   std::vector<SymmetryRecord> curves;
   for (size_t i = 0; i < refined.size(); ++i) {
     failed += refined[i].estimate.failure.empty() ? 0 : 1;

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "artefact/files.h"
-#include "artefact/hdf5_artefact.h"
 #include "artefact/json_file.h"
 #include "base/error.h"
 #include "base/parallel.h"
@@ -19,7 +18,7 @@
 #include "mapping/initial_landmarks.h"
 #include "model/occlusion.h"
 #include "orientation/texture_asymmetry.h"
-#include "stage/read_points.h"
+#include "stage/read_evidence.h"
 #include "stage/stages.h"
 
 namespace soslam {
@@ -62,8 +61,8 @@ std::vector<int> ObservationsInImages(const Sequence& sequence, std::vector<int>
 }
 
 // Reads the edge maps for symmetry and edge alignment.
-void ReadImages(const OptimiseOptions& options, const std::filesystem::path& edges_file,
-                int threads, BackEndInput* input) {
+void ReadImages(const OptimiseOptions& options, const StageFiles& files, int threads,
+                BackEndInput* input) {
   const Sequence& sequence = input->sequence;
   const auto frame_of = [&](int index) {
     return static_cast<size_t>(sequence.detections[static_cast<size_t>(index)].frame_index);
@@ -81,12 +80,12 @@ void ReadImages(const OptimiseOptions& options, const std::filesystem::path& edg
   for (const auto* indices : {&for_symmetry, &for_edges}) {
     for (const int index : *indices) frame_indices.insert(frame_of(index));
   }
-  const EdgesReader reader(edges_file);
+  const EdgesOfSequence edges(sequence, files);
   const std::vector<size_t> to_read(frame_indices.begin(), frame_indices.end());
   std::vector<std::shared_ptr<const FrameEdges>> frames(sequence.frames.size());
   ParallelFor("edge maps", static_cast<int>(to_read.size()), threads, [&](int i) {
     const size_t frame = to_read[i];
-    frames[frame] = std::make_shared<const FrameEdges>(reader.Read(sequence.frames[frame].id));
+    frames[frame] = std::make_shared<const FrameEdges>(edges.Read(sequence.frames[frame]));
   });
   for (const int index : for_symmetry) {
     const Detection& detection = sequence.detections[index];
@@ -112,7 +111,7 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
   if (options.points.point_evidence) {
     input.points = FindObjectPoints(sequence, ReadPointsOf(sequence, files), options.points);
   }
-  if (UsesEdges(options)) ReadImages(options, files.at("edges"), threads, &input);
+  if (UsesEdges(options)) ReadImages(options, files, threads, &input);
   input.initial_landmarks = options.detection_model == DetectionModel::kTangency
                                 ? ChooseInitialUprightLandmarks(input, estimates, options, threads)
                                 : ChooseInitialLandmarks(sequence, estimates);

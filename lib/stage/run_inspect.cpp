@@ -18,7 +18,7 @@
 #include "inspection/doubts.h"
 #include "inspection/inspection.h"
 #include "inspection/overlay.h"
-#include "stage/image_stages.h"
+#include "stage/frame_images.h"
 
 namespace soslam {
 namespace {

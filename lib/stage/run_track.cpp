@@ -17,7 +17,7 @@
 #include "geometry/triangulation.h"
 #include "model/finding.h"
 #include "model/map_points.h"
-#include "stage/image_stages.h"
+#include "stage/frame_images.h"
 #include "stage/stages.h"
 
 namespace soslam {

@@ -11,7 +11,7 @@
 #include "geometry/angles.h"
 #include "image/edge_maps.h"
 #include "planes/scene_axis.h"
-#include "stage/image_stages.h"
+#include "stage/frame_images.h"
 
 namespace soslam {
 namespace {

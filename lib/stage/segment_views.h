@@ -7,7 +7,7 @@
 #include "cli/stage_files.h"
 #include "model/sequence.h"
 #include "planes/up_prior.h"
-#include "stage/image_stages.h"
+#include "stage/frame_images.h"
 
 namespace soslam {
 

@@ -13,6 +13,7 @@
 #include "evaluation/alignment.h"
 #include "ground/options.h"
 #include "image/detector_options.h"
+#include "image/edge_maps.h"
 #include "image/feature_tracks.h"
 #include "image/frame_choice.h"
 #include "initialisation/options.h"
@@ -94,6 +95,12 @@ void RunReconstruct(const ReconstructOptions& options, const StageFiles& files, 
 // Throws InputError for a bad image, NothingUsableError when no frame has an image.
 void RunTrack(const TrackOptions& options, const StageFiles& files, int threads);
 
+// soslam-edges: computes the edge maps of the undistorted image of every frame. Files: "dataset",
+// the folder of the frames' images; "sequence", sequence.json; "output", edges.h5. Throws
+// InputError for an image that is missing, damaged, outside the dataset folder or not of the
+// camera's size; NothingUsableError when no frame has an image; SettingsError.
+void RunEdges(const EdgesOptions& options, const StageFiles& files, int threads);
+
 // soslam-associate: estimates which detections belong to the same object. Files: "sequence",
 // sequence.json, whose objects and ids are used only to measure the agreement; "table", the
 // semantic table; "output", the sequence with the estimated objects, to write; "associations",
@@ -114,21 +121,24 @@ void RunPlanes(const PlanesOptions& options, const StageFiles& files, int thread
 // SettingsError for verticals without a dataset.
 void RunGround(const GroundOptions& options, const StageFiles& files, int threads);
 
-// soslam-initialise: sequence.json and the semantic table, for CubeSLAM's cuboids also edges.h5, to
-// initial.json: files "sequence", "table", "edges" (optional), "output". Throws SettingsError when
-// a method that needs edges has none, NothingUsableError when no observation gave a landmark.
+// soslam-initialise: sequence.json and the semantic table, for CubeSLAM's cuboids also edges.h5,
+// with point_evidence points.h5, to initial.json: files "sequence", "table", "edges" and "points"
+// (optional), "output". Throws SettingsError when a file is missing that the settings need,
+// InputError for edges or points of another sequence, NothingUsableError when no observation gave a
+// landmark.
 void RunInitialise(const InitialiseOptions& options, const StageFiles& files, int threads);
 
-// soslam-refine: initial.json and edges.h5 to refined.json and symmetry.h5: files "sequence",
-// "table", "initial", "edges", "output", "curves". Throws SettingsError for a descriptor without
-// derivative where one is needed, NothingUsableError when initial.json has no single-frame
-// landmarks.
+// soslam-refine: initial.json and edges.h5, with point_evidence also points.h5, to refined.json and
+// symmetry.h5: files "sequence", "table", "initial", "edges", "points" (optional), "output",
+// "curves". Throws SettingsError for a descriptor without derivative where one is needed, and
+// without points that the settings need; InputError as RunInitialise; NothingUsableError when
+// initial.json has no single-frame landmarks.
 void RunRefine(const OrientationOptions& options, const StageFiles& files, int threads);
 
 // soslam-optimise: initial.json or refined.json to map.json: files "sequence", "landmarks",
-// "table", "output" and, for symmetry, "edges". Throws SettingsError when symmetry is on without
-// edges or with a descriptor that has no derivative, NothingUsableError when no object has an
-// initial guess.
+// "table", "output", for symmetry and edge_alignment "edges", for point_evidence "points". Throws
+// SettingsError when a file is missing that the settings need, or symmetry has a descriptor without
+// derivative; InputError as RunInitialise; NothingUsableError when no object has an initial guess.
 void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int threads);
 
 // soslam-evaluate: evaluates any landmarks artefact (initial.json, refined.json, map.json) and

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "stage/image_stages.h"
 #include "stage/stages.h"
 #include "support/small_pipeline.h"
 

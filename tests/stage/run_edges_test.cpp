@@ -9,7 +9,7 @@
 #include "artefact/hdf5_artefact.h"
 #include "base/error.h"
 #include "image/read_image.h"
-#include "stage/image_stages.h"
+#include "stage/stages.h"
 #include "support/expect_error.h"
 #include "support/image_files.h"
 #include "support/printed.h"

@@ -131,10 +131,21 @@ TEST_F(RunInitialiseCuboidsTest, RefusesEdgesOfOtherFrames) {
 }
 
 // edges.h5 of images of another size, as after a camera.json was replaced.
-TEST_F(RunInitialiseCuboidsTest, RefusesEdgesOfImagesOfAnotherSize) {
+TEST_F(RunInitialiseCuboidsTest, AllStagesRefuseEdgesOfImagesOfAnotherSize) {
   WriteEdges();
+  Run();
   sequence_.camera.width = 1280;
-  ExpectError<InputError>([&] { Run(); }, {files_.at("edges").string(), "640", "1280"});
+  const std::vector<std::string> words = {files_.at("edges").string(), "640", "1280"};
+  ExpectError<InputError>([&] { Run(); }, words);
+  StageFiles files = files_;
+  files["initial"] = files["landmarks"] = files_.at("output");
+  files["output"] = folder_ / "later.json";
+  files["curves"] = folder_ / "symmetry.h5";
+  ExpectError<InputError>([&] { RunRefine({}, files, 2); }, words);
+  OptimiseOptions optimise;
+  optimise.detection_model = DetectionModel::kTangency;
+  optimise.edge_alignment = true;
+  ExpectError<InputError>([&] { RunOptimise(optimise, files, 2); }, words);
 }
 
 bool HasInput(const std::filesystem::path& artefact, const std::string& name) {

@@ -3,12 +3,30 @@
 
 #include <vector>
 
+#include "artefact/hdf5_artefact.h"
 #include "cli/stage_files.h"
+#include "image/edge_maps.h"
 #include "initialisation/point_term.h"
 #include "model/map_points.h"
 #include "model/sequence.h"
 
 namespace soslam {
+
+// What stages take as evidence besides boxes: files that must be of the sequence that they get.
+
+// The edge maps of a sequence in file "edges". Both arguments must outlive it.
+class EdgesOfSequence {
+ public:
+  EdgesOfSequence(const Sequence& sequence, const StageFiles& files);
+  // Thread-safe. Throws InputError when the frame is missing, or its maps are not of its camera's
+  // size: edges of other images would be evidence for anything in silence.
+  EdgeMaps Read(const Frame& frame) const;
+
+ private:
+  const Sequence& sequence_;
+  const StageFiles& files_;
+  EdgesReader reader_;
+};
 
 // Throws SettingsError if points are to be used and no file "points" is given.
 void CheckHasPoints(const PointOptions& options, const StageFiles& files);

@@ -6,8 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "cli/stage_files.h"
-#include "image/edge_maps.h"
 #include "image/read_image.h"
 #include "model/sequence.h"
 
@@ -39,11 +37,5 @@ class FrameImageReader {
   const Sequence& sequence_;
   std::optional<ImageUndistorter> undistorter_;
 };
-
-// soslam-edges: computes the edge maps of the undistorted image of every frame. Files: "dataset",
-// the folder of the frames' images; "sequence", sequence.json; "output", edges.h5. Throws
-// InputError for an image that is missing, damaged, outside the dataset folder or not of the
-// camera's size; NothingUsableError when no frame has an image; SettingsError.
-void RunEdges(const EdgesOptions& options, const StageFiles& files, int threads);
 
 }  // namespace soslam

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/read_points.h"
+#include "stage/read_evidence.h"
 
 #include <fmt/format.h>
 
@@ -10,6 +10,22 @@
 #include "base/error.h"
 
 namespace soslam {
+
+EdgesOfSequence::EdgesOfSequence(const Sequence& sequence, const StageFiles& files)
+    : sequence_(sequence), files_(files), reader_(files.at("edges")) {}
+
+EdgeMaps EdgesOfSequence::Read(const Frame& frame) const {
+  EdgeMaps maps = reader_.Read(frame.id);
+  const Camera& camera = sequence_.CameraOf(frame);
+  if (maps.grey.cols != camera.width || maps.grey.rows != camera.height) {
+    throw InputError(fmt::format(
+        "{}: frame {} has {} x {} pixels; expected {} x {}, as its camera in {}: were the edges "
+        "made from another sequence?",
+        files_.at("edges").string(), frame.id, maps.grey.cols, maps.grey.rows, camera.width,
+        camera.height, files_.at("sequence").string()));
+  }
+  return maps;
+}
 
 void CheckHasPoints(const PointOptions& options, const StageFiles& files) {
   if (options.point_evidence && !files.contains("points")) {
