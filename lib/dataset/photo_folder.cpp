@@ -2,11 +2,9 @@
 #include "dataset/photo_folder.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <set>
 #include <utility>
@@ -29,12 +27,6 @@ constexpr double kMaxFocalChange = 0.05;
 constexpr const char* kConversion =
     "mkdir jpg; for f in *.HEIC; do heif-convert -q 95 \"$f\" \"jpg/$f.jpg\"; done (Debian's "
     "package libheif-examples), and give the folder jpg";
-
-bool HasNameOfImage(const fs::path& path) {
-  static const std::set<std::string> kExtensions = {".jpg",  ".jpeg", ".jpe", ".png",
-                                                    ".webp", ".bmp",  ".tif", ".tiff"};
-  return kExtensions.contains(LowerCase(path.extension().string()));
-}
 
 // Image formats that are not read.
 bool HasNameOfOtherImage(const fs::path& path) {
@@ -117,6 +109,12 @@ std::optional<double> CommonFocalLength(std::vector<double> focal_lengths) {
 }
 
 }  // namespace
+
+bool HasNameOfImage(const fs::path& path) {
+  static const std::set<std::string> kExtensions = {".jpg",  ".jpeg", ".jpe", ".png",
+                                                    ".webp", ".bmp",  ".tif", ".tiff"};
+  return kExtensions.contains(LowerCase(path.extension().string()));
+}
 
 std::vector<Photo> ListPhotos(const fs::path& folder) {
   if (!IsFolder(folder)) {

@@ -11,6 +11,9 @@
 
 namespace soslam {
 
+// True if a file of this name is an image of a format that is read.
+bool HasNameOfImage(const std::filesystem::path& path);
+
 struct Photo {
   std::filesystem::path path;
   ImageHeader header;  // with a size of zero if it cannot be read

@@ -6,12 +6,12 @@
 #include <cctype>
 #include <chrono>
 #include <set>
-#include <sstream>
 
 #include "artefact/atomic_file.h"
 #include "base/error.h"
 #include "base/paths.h"
-#include "base/text.h"
+#include "dataset/photo_folder.h"
+#include "dataset/text_file.h"
 #include "stage/stages.h"
 #include "workflow/pipeline_settings.h"
 #include "workflow/plan.h"
@@ -80,7 +80,7 @@ FoundFiles FindFiles(const fs::path& dataset) {
     std::error_code ignored;  // a dangling link is no file
     if (!entry.is_regular_file(ignored)) continue;
     const fs::path extension = entry.path().extension();
-    const bool is_table = kTables.count(extension.string()) > 0;
+    const bool is_table = kTables.contains(extension.string());
     (is_table ? found.tables : found.others)
         .insert(entry.path().lexically_relative(dataset).string());
   }
@@ -89,11 +89,6 @@ FoundFiles FindFiles(const fs::path& dataset) {
         fmt::format("{}: its files cannot be listed: {}", dataset.string(), error.message()));
   }
   return found;
-}
-
-bool IsImage(const std::string& file) {
-  static const std::set<std::string> kExtensions = {".png", ".jpg", ".jpeg"};
-  return kExtensions.contains(LowerCase(fs::path(file).extension().string()));
 }
 
 // Fingerprint of what imports depend on: the content of tables, and the existence of images.
@@ -138,7 +133,7 @@ std::vector<std::string> PlannedVariants(const fs::path& pipelines, const fs::pa
 std::vector<std::string> PossibleVariants(const fs::path& pipelines, const std::string& name,
                                           const fs::path& dataset) {
   std::vector<std::string> variants = VariantNames(pipelines);
-  if (std::ranges::any_of(FindFiles(dataset).others, IsImage)) return variants;
+  if (std::ranges::any_of(FindFiles(dataset).others, HasNameOfImage)) return variants;
   std::erase_if(variants, [&](const std::string& variant) {
     return ReadVariant(pipelines, name, variant).stages.contains("edges");
   });
@@ -146,10 +141,9 @@ std::vector<std::string> PossibleVariants(const fs::path& pipelines, const std::
 }
 
 std::vector<std::string> SplitAtSpaces(const std::string& text) {
-  std::istringstream stream(text);
   std::vector<std::string> words;
-  for (std::string word; stream >> word;) {
-    if (std::ranges::find(words, word) == words.end()) words.push_back(word);
+  for (const std::string_view word : SplitWords(text)) {
+    if (std::ranges::find(words, word) == words.end()) words.emplace_back(word);
   }
   return words;
 }

@@ -341,6 +341,12 @@ TEST_F(RunPlanTest, AllVariantsOfADatasetWithoutImagesAreThoseThatLookAtNone) {
   Run("", "");
   EXPECT_THAT(Read("results/room/plan.mk"), HasSubstr("/Full/"));
   fs::remove(folder_ / "room/rgb/0.jpg");
+  for (const char* image : {"room/rgb/0.BMP", "room/rgb/0.tif", "room/rgb/0.webp"}) {
+    Write(image, "image");  // soslam-frames keeps photos in their format
+    Run("", "");
+    EXPECT_THAT(Read("results/room/plan.mk"), HasSubstr("/Full/")) << image;
+    fs::remove(folder_ / image);
+  }
   Run("", "");
   const std::string plan = Read("results/room/plan.mk");
   EXPECT_THAT(plan, Not(HasSubstr("/Full/")));
