@@ -227,8 +227,8 @@ std::vector<Table> QualityTables(const DatasetResult& dataset) {
   }
   quality.notes = {
       "True objects (detectable ones), landmarks (ignored ones), recall of the detectable at IoU "
-      "0.25. "
-      "Landmarks that match a true object with an IoU of so much or more: how many are right, "
+      "0.25. Landmarks that match a true object with an IoU of so much or more: how many are "
+      "right, "
       "precision, recall, F1, mean IoU.",
       OdometryNote(maps)};
   errors.notes = {

@@ -274,7 +274,10 @@ class MapOfVariant {
   }
 
   std::string PlanFigure(const PlanView& plan, int segment) const {
-    const int segments = sequence_.frames.back().segment + 1;
+    std::vector<int> segments;  // in the order of their frames
+    for (const Frame& frame : sequence_.frames) {
+      if (segments.empty() || segments.back() != frame.segment) segments.push_back(frame.segment);
+    }
     const auto key = [](const char* colour, const char* text) {
       return fmt::format("<span class=\"key\" style=\"background: var(--{})\"></span> {}", colour,
                          text);
@@ -288,7 +291,10 @@ class MapOfVariant {
           " Dashed objects are uncertain: most images that should show them do not, or by their "
           "95\u00a0% intervals they may stand beside their outline, or be half or twice as large.";
     }
-    if (segments > 1) caption += fmt::format(" Part {} of {}.", segment + 1, segments);
+    if (segments.size() > 1) {
+      const auto place = std::ranges::find(segments, segment) - segments.begin();
+      caption += fmt::format(" Part {} of {}.", place + 1, segments.size());
+    }
     return "<figure>\n" + PlanSvg(plan, kWidePlan) + PlanSvg(plan, kNarrowPlan) + "<figcaption>" +
            caption + "</figcaption>\n</figure>\n";
   }

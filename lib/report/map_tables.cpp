@@ -137,16 +137,15 @@ Table LostTable(const std::vector<DatasetResult>& datasets,
 
 Table LimitsTable(const std::vector<DatasetResult>& datasets,
                   const std::vector<std::string>& variants) {
-  Table table = {
-      "limits",
-      "What limits the found objects",
-      {"dataset", "variant", "object", "part", "IoU", "corrected", "centre m", "log size x, y, z",
-       "yaw deg"},
-      {},
-      4,
-      {"The part of the landmark (plane, size, yaw, place) that gains most if it is replaced by "
-       "the "
-       "true one, and the IoU then. Logarithms are of estimate over truth, along the true axes."}};
+  Table table = {"limits",
+                 "What limits the found objects",
+                 {"dataset", "variant", "object", "part", "IoU", "corrected", "centre m",
+                  "log size x, y, z", "yaw deg"},
+                 {},
+                 4,
+                 {"The part of the landmark (plane, size, yaw, place) that gains most if it is "
+                  "replaced by the true one, and the IoU then. Logarithms are of estimate over "
+                  "truth, along the true axes."}};
   ForEachMap(datasets, variants, [&](const DatasetResult& dataset, const VariantResult& variant) {
     for (const json& landmark : variant.metrics["map_quality"].at("landmarks")) {
       if (landmark.at("fate") != "found") continue;

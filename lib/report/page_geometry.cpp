@@ -16,8 +16,8 @@ json Rounded(double value, double per_unit) {
   return std::isfinite(value) ? json(std::round(value * per_unit) / per_unit) : json();
 }
 
-json Millimetres(double metres) { return Rounded(metres, 1e4); }
-json Tenths(double pixels) { return Rounded(pixels, 10.0); }
+json PageLength(double metres) { return Rounded(metres, 1e4); }
+json PageCoordinate(double pixels) { return Rounded(pixels, 10.0); }
 
 }  // namespace
 
@@ -32,7 +32,7 @@ json PageNumbers(const std::vector<double>& values) {
 }
 
 json PageVector(const Eigen::Vector3d& metres) {
-  return {Millimetres(metres.x()), Millimetres(metres.y()), Millimetres(metres.z())};
+  return {PageLength(metres.x()), PageLength(metres.y()), PageLength(metres.z())};
 }
 
 json PagePose(const Rigid3d& pose) {
@@ -50,8 +50,8 @@ json PageLandmark(const Landmark& landmark_in_world) {
 json PagePixels(const std::vector<Eigen::Vector2d>& pixels) {
   json numbers = json::array();
   for (const Eigen::Vector2d& pixel : pixels) {
-    numbers.push_back(Tenths(pixel.x()));
-    numbers.push_back(Tenths(pixel.y()));
+    numbers.push_back(PageCoordinate(pixel.x()));
+    numbers.push_back(PageCoordinate(pixel.y()));
   }
   return numbers;
 }
@@ -79,10 +79,10 @@ PlaneGrids GridsAround(const PointsByPlane& points, const std::vector<Plane>& pl
 }  // namespace
 
 PlaneGrids GridsOfSequence(const Sequence& sequence) {
+  if (!sequence.HasSupports()) return {};
   PointsByPlane points(sequence.planes.size());
   std::vector<Plane> planes;
   for (const SupportPlane& plane : sequence.planes) planes.push_back(plane.plane_in_world);
-  if (planes.empty()) return {};
   for (const Detection& detection : sequence.detections) {
     const Object& object = sequence.ObjectOf(detection);
     const auto plane_index = static_cast<size_t>(object.plane_index);

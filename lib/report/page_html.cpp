@@ -179,8 +179,7 @@ std::string FindingsHtml(const json& findings) {
     const auto text = [&](const char* key) { return HtmlText(finding.at(key).get<std::string>()); };
     items += fmt::format(
         "<li class=\"{}\"><strong>{}: {}</strong> <span class=\"faint\">({}, "
-        "{})</span><br>expected: "
-        "{}<br>likely cause: {}<br>remedy: {}</li>\n",
+        "{})</span><br>expected: {}<br>likely cause: {}<br>remedy: {}</li>\n",
         text("severity"), text("severity"), text("found"), text("check"), text("where"),
         text("expected"), text("cause"), text("remedy"));
   }

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "base/error.h"
+#include "dataset/text_file.h"
 #include "evaluation/statistics.h"
 #include "report/page_parts.h"
 #include "report/tables.h"
@@ -36,16 +37,17 @@ std::string Signed(double value, const Quantity& quantity) {
   return fmt::format("{:+.{}f}", value, quantity.decimals);
 }
 
-std::vector<Cell> RowOf(const Comparison& comparison, const std::string& dataset,
-                        const std::vector<double>& differences, const Quantity& quantity) {
+// A mean difference, bold if its interval excludes zero, and the ends of that.
+struct DifferenceTexts {
+  Cell mean;
+  std::string low, high;
+};
+
+DifferenceTexts TextsOf(const std::vector<double>& differences, const Quantity& quantity) {
   const PairedDifference difference = MeanDifference(differences);
   const auto& interval = difference.confidence_95;
   const bool is_clear = interval && (interval->low > 0.0 || interval->high < 0.0);
-  return {dataset,
-          comparison.variant,
-          comparison.baseline,
-          std::to_string(difference.objects),
-          Cell(Signed(difference.mean, quantity), is_clear),
+  return {Cell(Signed(difference.mean, quantity), is_clear),
           interval ? Signed(interval->low, quantity) : kNoValue,
           interval ? Signed(interval->high, quantity) : kNoValue};
 }
@@ -72,8 +74,7 @@ std::vector<Comparison> ParseComparisons(const std::string& lists) {
   std::istringstream list_stream(lists);
   for (std::string list; std::getline(list_stream, list, ',');) {
     std::vector<std::string> variants;
-    std::istringstream words(list);
-    for (std::string word; words >> word;) variants.push_back(word);
+    for (const std::string_view word : SplitWords(list)) variants.emplace_back(word);
     if (variants.size() < 2) {
       throw SettingsError(fmt::format("compare: found '{}'; expected two or more variants", list));
     }
@@ -146,8 +147,8 @@ std::vector<Compared> ComparedObjects(const std::vector<DatasetResult>& datasets
 
 // "+0.245 (+0.194 to +0.296)"
 Cell WithInterval(const std::vector<double>& differences, const Quantity& quantity) {
-  const std::vector<Cell> row = RowOf({}, "", differences, quantity);
-  return {fmt::format("{} ({} to {})", row[4].text, row[5].text, row[6].text), row[4].bold};
+  const auto [mean, low, high] = TextsOf(differences, quantity);
+  return {fmt::format("{} ({} to {})", mean.text, low, high), mean.bold};
 }
 
 }  // namespace
@@ -163,7 +164,9 @@ Table DifferencesTable(const std::vector<DatasetResult>& datasets,
                  {"Mean over objects with 95 % t interval; bold where it excludes 0."}};
   for (const Comparison& comparison : comparisons) {
     for (const Compared& compared : ComparedObjects(datasets, comparison, quantity)) {
-      table.rows.push_back(RowOf(comparison, compared.name, compared.differences, quantity));
+      const auto [mean, low, high] = TextsOf(compared.differences, quantity);
+      table.rows.push_back({compared.name, comparison.variant, comparison.baseline,
+                            std::to_string(compared.differences.size()), mean, low, high});
     }
   }
   return table;

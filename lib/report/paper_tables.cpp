@@ -51,38 +51,21 @@ constexpr const char* kBoldNote =
     "Bold: the best measured value of a row, if over all of its objects. Values over fewer objects "
     "have their number in brackets.";
 
+const std::vector<std::string> kInitialVariants = {"SVD",     "Cube",      "Init1-1", "InitP",
+                                                   "InitPT",  "MultiView", "InitS",   "InitST",
+                                                   "InitSTE", "InitSP",    "InitSTEP"};
+const std::vector<std::string> kMapVariants = {"Quadric", "OursP",   "OursPT", "OursS",
+                                               "OursST",  "OursSTE", "OursSP", "OursSTEP"};
 const std::vector<RowKind> kSingleFrameRows = {{"/summary/", "all observations"},
                                                {"/first_observation/", "first observation"}};
 const std::vector<RowKind> kMapRows = {{"/summary/", "measured"}};
 
-std::vector<Layout> Layouts() {
-  return {{"I",
-           "table_1_initial_iou",
-           "Initialisation, IoU",
-           kIou,
-           {"SVD", "Cube", "Init1-1", "InitP", "InitPT", "MultiView", "InitS", "InitST", "InitSTE",
-            "InitSP", "InitSTEP"},
-           kSingleFrameRows},
-          {"II",
-           "table_2_initial_rotation",
-           "Initialisation, Rot (degrees)",
-           kRotation,
-           {"SVD", "Cube", "Init1-1", "InitP", "InitPT", "MultiView", "InitS", "InitST", "InitSTE",
-            "InitSP", "InitSTEP"},
-           kSingleFrameRows},
-          {"III",
-           "table_3_map_iou",
-           "Map, IoU",
-           kIou,
-           {"Quadric", "OursP", "OursPT", "OursS", "OursST", "OursSTE", "OursSP", "OursSTEP"},
-           kMapRows},
-          {"IV",
-           "table_4_map_rotation",
-           "Map, Rot (degrees)",
-           kRotation,
-           {"Quadric", "OursP", "OursPT", "OursS", "OursST", "OursSTE", "OursSP", "OursSTEP"},
-           kMapRows}};
-}
+const std::vector<Layout> kLayouts = {
+    {"I", "table_1_initial_iou", "Initialisation, IoU", kIou, kInitialVariants, kSingleFrameRows},
+    {"II", "table_2_initial_rotation", "Initialisation, Rot (degrees)", kRotation, kInitialVariants,
+     kSingleFrameRows},
+    {"III", "table_3_map_iou", "Map, IoU", kIou, kMapVariants, kMapRows},
+    {"IV", "table_4_map_rotation", "Map, Rot (degrees)", kRotation, kMapVariants, kMapRows}};
 
 // One mean per column.
 using Means = std::vector<std::optional<ObjectMean>>;
@@ -332,7 +315,7 @@ ObjectMean WeightedMean(const std::vector<ObjectMean>& means) {
 std::vector<Table> PaperTables(const std::vector<DatasetResult>& datasets,
                                const Published& published) {
   std::vector<Table> tables;
-  for (const Layout& layout : Layouts()) {
+  for (const Layout& layout : kLayouts) {
     const bool is_measured = std::ranges::any_of(datasets, [&](const DatasetResult& dataset) {
       return HasAny(MeansOf(dataset, layout, layout.row_kinds.front()));
     });

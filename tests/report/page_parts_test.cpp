@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <openssl/evp.h>
 
 #include <cmath>
 #include <opencv2/core.hpp>
@@ -148,6 +149,13 @@ TEST(GridsOfMap, AreOnThePlanesOfTheMap) {
   EXPECT_TRUE(GridsOfMap({}, sequence).empty());
 }
 
+TEST(GridsOfSequence, AreNoneWhereItIsNotKnownOnWhichPlaneObjectsStand) {
+  Sequence sequence = CuboidSequence(3, 5);
+  EXPECT_FALSE(GridsOfSequence(sequence)[kFloor].empty());
+  for (Object& object : sequence.objects) object.plane_index = kNoPlane;
+  EXPECT_TRUE(GridsOfSequence(sequence).empty());
+}
+
 TEST(UpOfSegment, IsTheFloorsAndNotTheWalls) {
   Sequence sequence = CuboidSequence(3, 5);
   const Plane floor = sequence.planes[kFloor].plane_in_world;
@@ -256,18 +264,9 @@ TEST(EncodeImages, LeaveOutWhatIsNotThereAndNameWhatIsDamaged) {
 
 // The size of a JPEG file in base 64.
 cv::Size SizeOf(const std::string& base64) {
-  const std::string kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::vector<unsigned char> bytes;
-  unsigned bits = 0, count = 0;
-  for (const char c : base64) {
-    const size_t digit = kDigits.find(c);
-    if (digit == std::string::npos) break;
-    bits = (bits << 6U) | static_cast<unsigned>(digit);
-    count += 6;
-    if (count < 8) continue;
-    count -= 8;
-    bytes.push_back(static_cast<unsigned char>((bits >> count) & 0xFFU));
-  }
+  const auto* text = reinterpret_cast<const unsigned char*>(base64.data());
+  std::vector<unsigned char> bytes(base64.size());
+  EVP_DecodeBlock(bytes.data(), text, static_cast<int>(base64.size()));
   return cv::imdecode(bytes, cv::IMREAD_COLOR).size();
 }
 

@@ -258,6 +258,16 @@ TEST_F(RunPagesTest, TheMapFromAboveKeepsToItsRoom) {
   expect_fewer_pictures_below(section(kMaxPageBytes), 0);
 }
 
+// Segments may be named by the numbers of recordings, of which a dataset has some.
+TEST_F(RunPagesTest, PartsAreCounted) {
+  for (Frame& frame : sequence_.frames) frame.segment = 13;
+  WriteOurs("OursS");
+  EXPECT_THAT(Markup(), testing::Not(HasSubstr(" Part ")));
+  sequence_.frames.back().segment = 20;
+  WriteOurs("OursS");
+  EXPECT_THAT(Markup(), HasSubstr(" Part 1 of 2."));
+}
+
 TEST_F(RunPagesTest, PhotosWithoutAPoseAreListed) {
   WriteOurs("OursS");
   EXPECT_THAT(Markup(), testing::Not(HasSubstr("Photos without a pose")));
