@@ -83,7 +83,7 @@ void RefuseLearningFromHeldOut(const std::vector<Sequence>& learned,
   std::set<std::string> names;
   for (const Sequence& sequence : learned) names.insert(sequence.name);
   for (const Sequence& sequence : held_out) {
-    if (names.count(sequence.name) > 0) {
+    if (names.contains(sequence.name)) {
       throw SettingsError(fmt::format(
           "sequence '{}' is given as --sequence and as --held_out; expected one of them",
           sequence.name));
@@ -138,10 +138,10 @@ void RunLearnPriors(const LearnPriorsOptions& options, const StageFiles& files, 
   RefuseLearningFromHeldOut(sequences, held_out);
 
   SemanticRows base;
-  if (files.count("base") > 0) base = ReadSemanticRows(files.at("base"));
+  if (files.contains("base")) base = ReadSemanticRows(files.at("base"));
   const SemanticTable base_table = LookUpTable(base);
   std::vector<PriorSource> sources;
-  if (files.count("furniture") > 0) {
+  if (files.contains("furniture")) {
     sources.push_back(ReadCatalogueSource(files, base_table, held_out));
   }
   for (const Sequence& sequence : sequences) {
@@ -155,7 +155,7 @@ void RunLearnPriors(const LearnPriorsOptions& options, const StageFiles& files, 
 
   ArtefactInfo info = {OptionsToJson(options), sequence_files};
   for (const char* name : {"base", "furniture", "furniture_labels"}) {
-    if (files.count(name) > 0) info.inputs.push_back(files.at(name));
+    if (files.contains(name)) info.inputs.push_back(files.at(name));
   }
   info.inputs.insert(info.inputs.end(), held_out_files.begin(), held_out_files.end());
   WriteSemanticRows(files.at("output"), learned, info);

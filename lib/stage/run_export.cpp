@@ -28,7 +28,7 @@ struct Output {
 
 bool OnlyTrajectory(const StageFiles& files) {
   return std::ranges::none_of(kOutputs, [&](const std::string& output) {
-    return output != "trajectory" && files.count(output) > 0;
+    return output != "trajectory" && files.contains(output);
   });
 }
 
@@ -73,7 +73,7 @@ nlohmann::json ReadQuality(const fs::path& metrics, const fs::path& map) {
 
 void ApplyEvaluation(const ExportOptions& options, const StageFiles& files,
                      std::vector<World>* worlds) {
-  if (files.count("metrics") == 0) return;
+  if (!files.contains("metrics")) return;
   const nlohmann::json quality = ReadQuality(files.at("metrics"), files.at("map"));
   if (!quality.is_null()) {
     AddVerdicts(quality, worlds);
@@ -89,7 +89,7 @@ std::vector<World> ReadWorlds(const ExportOptions& options, const StageFiles& fi
   const PlaneNeed need = OnlyTrajectory(files) ? PlaneNeed::kNotNeeded : PlaneNeed::kNeeded;
   const Sequence sequence = ReadSequence(files.at("sequence"), need);
   if (options.truth) return WorldsOfTruth(sequence);
-  if (files.count("map") == 0) return WorldsOfOdometry(sequence);
+  if (!files.contains("map")) return WorldsOfOdometry(sequence);
   std::vector<World> worlds = WorldsOfMap(sequence, ReadMap(files.at("map"), sequence));
   ApplyEvaluation(options, files, &worlds);
   return worlds;
@@ -104,11 +104,11 @@ bool HasLandmark(const World& world) {
 void CheckWorlds(const std::vector<World>& worlds, const StageFiles& files) {
   const bool has_frame =
       std::ranges::any_of(worlds, [](const World& world) { return !world.frames.empty(); });
-  if (files.count("trajectory") > 0 && !has_frame) {
+  if (files.contains("trajectory") && !has_frame) {
     throw NothingUsableError(files.at("sequence").string() + ": has no poses of this kind");
   }
   if (!OnlyTrajectory(files) && std::ranges::none_of(worlds, HasLandmark)) {
-    throw NothingUsableError(files.at(files.count("map") > 0 ? "map" : "sequence").string() +
+    throw NothingUsableError(files.at(files.contains("map") ? "map" : "sequence").string() +
                              ": has no landmarks of this kind");
   }
 }
@@ -125,11 +125,11 @@ std::vector<Output> MakeOutputs(const std::vector<World>& worlds, const ExportOp
   std::vector<Output> outputs;
   const auto add = [&](const std::string& name,
                        const std::function<std::string(const std::vector<World>&)>& text) {
-    if (files.count(name) > 0) outputs.push_back({files.at(name), text(worlds)});
+    if (files.contains(name)) outputs.push_back({files.at(name), text(worlds)});
   };
   const auto add_each = [&](const std::string& name,
                             const std::function<std::string(const World&)>& text) {
-    if (files.count(name) == 0) return;
+    if (!files.contains(name)) return;
     const fs::path& path = files.at(name);
     for (const World& world : worlds) {
       outputs.push_back(

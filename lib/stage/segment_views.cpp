@@ -31,7 +31,7 @@ std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, double min_le
   const bool has_images =
       std::ranges::any_of(sequence.frames, [](const Frame& frame) { return !frame.image.empty(); });
   if (!has_images) return {};
-  if (files.count("dataset") == 0) {
+  if (!files.contains("dataset")) {
     throw SettingsError(
         "verticals is true; expected --dataset with the images, or verticals = false");
   }

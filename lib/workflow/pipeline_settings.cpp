@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 
 #include "artefact/json_file.h"
 #include "association/options.h"
@@ -40,24 +39,57 @@ json Resolve(const json& values, const std::string& where) {
 struct PipelineStage {
   const char* name;
   json (*resolve)(const json& values, const std::string& where);
-  std::vector<std::string> needs;  // stages whose artefacts it reads
+  std::vector<std::string> needs;      // stages whose artefacts it reads
+  std::set<std::string> other_inputs;  // arguments: "dataset" and "table"
+  std::vector<StageOutput> outputs;
   // Its setting that asks for it unless it is "given"; null for a stage that 'stages' lists.
   const char* asked_by = nullptr;
 };
 
-const std::array<PipelineStage, 10>& Stages() {
-  static const std::array<PipelineStage, 10> stages = {{
-      {"import", &Resolve<ImportOptions>, {}},
-      {"ground", &Resolve<GroundOptions>, {"import"}, "ground"},
-      {"associate", &Resolve<AssociateOptions>, {"import"}, "association"},
-      {"planes", &Resolve<PlanesOptions>, {"import"}, "planes"},
-      {"edges", &Resolve<EdgesOptions>, {"import"}},
-      {"track", &Resolve<TrackOptions>, {"import"}},
-      {"initialise", &Resolve<InitialiseOptions>, {"import"}},
-      {"refine", &Resolve<OrientationOptions>, {"import", "initialise", "edges"}},
-      {"optimise", &Resolve<OptimiseOptions>, {"import", "initialise"}},
-      {"evaluate", &Resolve<EvaluateOptions>, {"import", "initialise"}},
-  }};
+const std::vector<PipelineStage>& Stages() {
+  const StageOutput sequence = {"output", "sequence.json"};
+  static const std::vector<PipelineStage> stages = {
+      {"import", &Resolve<ImportOptions>, {}, {"dataset"}, {sequence}},
+      {"ground",
+       &Resolve<GroundOptions>,
+       {"import"},
+       {"dataset", "table"},
+       {sequence, {"world", "world.json"}},
+       "ground"},
+      {"associate",
+       &Resolve<AssociateOptions>,
+       {"import"},
+       {"table"},
+       {sequence, {"associations", "associations.json"}},
+       "association"},
+      {"planes",
+       &Resolve<PlanesOptions>,
+       {"import"},
+       {"dataset", "table"},
+       {sequence, {"report", "planes.json"}},
+       "planes"},
+      {"edges", &Resolve<EdgesOptions>, {"import"}, {"dataset"}, {{"output", "edges.h5"}}},
+      {"track", &Resolve<TrackOptions>, {"import"}, {"dataset"}, {{"output", "points.h5"}}},
+      {"initialise",
+       &Resolve<InitialiseOptions>,
+       {"import"},
+       {"table"},
+       {{"output", "initial.json"}}},
+      {"refine",
+       &Resolve<OrientationOptions>,
+       {"import", "initialise", "edges"},
+       {"table"},
+       {{"output", "refined.json"}, {"curves", "symmetry.h5"}}},
+      {"optimise",
+       &Resolve<OptimiseOptions>,
+       {"import", "initialise"},
+       {"table"},
+       {{"output", "map.json"}}},
+      {"evaluate",
+       &Resolve<EvaluateOptions>,
+       {"import", "initialise"},
+       {},
+       {{"output", "metrics.json"}}}};
   return stages;
 }
 
@@ -156,7 +188,7 @@ std::vector<json> ReadVariantLayers(fs::path file) {
 void CheckNeeds(const VariantSettings& settings, const std::string& file) {
   for (const std::string& name : settings.stages) {
     for (const std::string& needed : FindStage(name)->needs) {
-      if (settings.stages.count(needed) == 0) {
+      if (!settings.stages.contains(needed)) {
         throw SettingsError(
             fmt::format("{}: stage '{}' needs stage '{}' in 'stages'", file, name, needed));
       }
@@ -180,6 +212,15 @@ void CheckNeeds(const VariantSettings& settings, const std::string& file) {
 }
 
 }  // namespace
+
+std::vector<StageOutput> OutputsOfStage(const std::string& stage) {
+  const PipelineStage* found = FindStage(stage);
+  return found == nullptr ? std::vector<StageOutput>() : found->outputs;
+}
+
+bool StageReads(const std::string& stage, const std::string& input) {
+  return FindStage(stage)->other_inputs.contains(input);
+}
 
 bool UsesImages(const std::string& stage, const json& settings) {
   if (stage == "initialise") return settings.at("method") == "cuboid_proposals";
@@ -228,7 +269,7 @@ VariantSettings ReadVariant(const fs::path& pipelines, const std::string& datase
   settings.stages = merged.at("stages").get<std::set<std::string>>();
   settings.semantic_table = merged.value("semantic_table", "priors/semantic_table.json");
   for (const PipelineStage& stage : Stages()) {
-    const bool is_listed = settings.stages.count(stage.name) > 0;
+    const bool is_listed = settings.stages.contains(stage.name);
     if (!is_listed && stage.asked_by == nullptr) continue;
     const json resolved = stage.resolve(merged.value(stage.name, json::object()),
                                         fmt::format("{}: {}", file, stage.name));

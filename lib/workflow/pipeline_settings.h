@@ -21,6 +21,18 @@ struct VariantSettings {
 // All stages that a variant may run, in order of execution.
 std::vector<std::string> PipelineStages();
 
+// An output of a stage: argument name and file name. OutputsOfStage is empty for programs that are
+// not stages of a plan.
+struct StageOutput {
+  std::string argument;
+  std::string file;
+};
+std::vector<StageOutput> OutputsOfStage(const std::string& stage);
+
+// True if a stage of a plan gets the dataset's folder as `input` "dataset", the semantic table as
+// "table".
+bool StageReads(const std::string& stage, const std::string& input);
+
 // The names of all pipelines/variants/<name>.json, sorted. Throws SettingsError when there are
 // none.
 std::vector<std::string> VariantNames(const std::filesystem::path& pipelines);

@@ -23,7 +23,7 @@ class ChainBuilder {
   // The instances of all stages that the variant runs, in order.
   std::vector<StageInstance> Build() {
     for (const std::string& stage : PipelineStages()) {
-      if (settings_.stages.count(stage) > 0) Append(stage);
+      if (settings_.stages.contains(stage)) Append(stage);
     }
     return std::move(chain_);
   }
@@ -34,11 +34,7 @@ class ChainBuilder {
     instance.stage = stage;
     instance.settings = settings_.options.at(stage);
     instance.inputs = Inputs(stage);
-    static const std::set<std::string> kReadTable = {"ground",     "associate", "planes",
-                                                     "initialise", "refine",    "optimise"};
-    if (kReadTable.contains(stage)) {
-      instance.semantic_table = settings_.semantic_table;
-    }
+    if (StageReads(stage, "table")) instance.semantic_table = settings_.semantic_table;
     instance.key = Key(instance);
     ids_[stage] = instance.Id();
     chain_.push_back(std::move(instance));
@@ -68,7 +64,7 @@ class ChainBuilder {
   // The output of the first of these stages that is in the variant.
   ArtefactSource Latest(const std::vector<std::string>& stages) const {
     const auto found = std::ranges::find_if(
-        stages, [&](const std::string& stage) { return ids_.count(stage) > 0; });
+        stages, [&](const std::string& stage) { return ids_.contains(stage); });
     if (found == stages.end()) throw std::logic_error("no stage that gives this input");
     return Output(*found);
   }
@@ -96,28 +92,6 @@ const StageInstance& Plan::Instance(const std::string& id) const {
   return *found;
 }
 
-const std::vector<StageOutput>& OutputsOfStage(const std::string& stage) {
-  static const std::map<std::string, std::vector<StageOutput>> outputs = {
-      {"import", {{"output", "sequence.json"}}},
-      {"ground", {{"output", "sequence.json"}, {"world", "world.json"}}},
-      {"associate", {{"output", "sequence.json"}, {"associations", "associations.json"}}},
-      {"planes", {{"output", "sequence.json"}, {"report", "planes.json"}}},
-      {"edges", {{"output", "edges.h5"}}},
-      {"track", {{"output", "points.h5"}}},
-      {"initialise", {{"output", "initial.json"}}},
-      {"refine", {{"output", "refined.json"}, {"curves", "symmetry.h5"}}},
-      {"optimise", {{"output", "map.json"}}},
-      {"evaluate", {{"output", "metrics.json"}}}};
-  static const std::vector<StageOutput> none;
-  const auto found = outputs.find(stage);
-  return found == outputs.end() ? none : found->second;
-}
-
-bool ReadsDataset(const std::string& stage) {
-  static const std::set<std::string> stages = {"import", "ground", "planes", "edges", "track"};
-  return stages.contains(stage);
-}
-
 std::vector<Prerequisite> PrerequisitesOf(const StageInstance& instance) {
   using Folder = Prerequisite::Folder;
   std::vector<Prerequisite> files = {
@@ -127,9 +101,7 @@ std::vector<Prerequisite> PrerequisitesOf(const StageInstance& instance) {
     files.push_back({Folder::kResults, InstancePath(source.instance, source.file)});
   }
   if (instance.stage == "import") files.push_back({Folder::kResults, kDatasetListing});
-  if (ReadsDataset(instance.stage)) {
-    files.push_back({Folder::kResults, kImagesListing});
-  }
+  if (StageReads(instance.stage, "dataset")) files.push_back({Folder::kResults, kImagesListing});
   if (!instance.semantic_table.empty()) {
     files.push_back({Folder::kPipelines, instance.semantic_table});
   }

@@ -42,17 +42,6 @@ struct Plan {
   const StageInstance& Instance(const std::string& id) const;
 };
 
-// An output of a stage: argument name and file name. OutputsOfStage is empty for programs that are
-// not stages of a plan.
-struct StageOutput {
-  std::string argument;
-  std::string file;
-};
-const std::vector<StageOutput>& OutputsOfStage(const std::string& stage);
-
-// True for stages that get the dataset's folder.
-bool ReadsDataset(const std::string& stage);
-
 // A file that a stage instance depends on: executable, settings, input artefact, listing or
 // semantic table.
 struct Prerequisite {

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "workflow/pipeline_settings.h"
 #include "workflow/plan.h"
 
 namespace soslam {
@@ -153,7 +154,7 @@ std::vector<std::string> Prerequisites(const StageInstance& instance) {
 
 std::string Command(const StageInstance& instance) {
   std::string command = "soslam-" + instance.stage;
-  if (ReadsDataset(instance.stage)) command += " --dataset $(dataset)";
+  if (StageReads(instance.stage, "dataset")) command += " --dataset $(dataset)";
   if (instance.stage == "ground") command += " --points $(dataset)/points.h5";
   for (const auto& [argument, source] : instance.inputs) {
     command += fmt::format(" --{} {}", argument, Shared(source.instance, source.file));

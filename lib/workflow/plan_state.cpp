@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/paths.h"
 #include "report/results_tree.h"
+#include "workflow/pipeline_settings.h"
 
 namespace soslam {
 namespace {
