@@ -10,16 +10,17 @@
 #include <vector>
 
 #include "dataset/dataset_checks.h"
+#include "dataset/tracked_rays.h"
 #include "evaluation/statistics.h"
 #include "geometry/angles.h"
 
 namespace soslam {
 namespace {
 
-constexpr size_t kFewest = 10;  // minimum number of usable boxes
+constexpr size_t kFewestBoxes = 10;
 constexpr double kCutPx = 2.0;  // boxes this near to the border count as cut by the image
 
-// A box and the true landmark with its id, in the same camera's frame.
+// A box and the true landmark with its id, in its camera's frame.
 struct BoxAndTruth {
   Box box;
   Camera camera;
@@ -59,7 +60,7 @@ std::optional<double> MedianAngleDeg(const std::vector<BoxAndTruth>& pairs) {
     angles.push_back(
         AngleBetweenDeg(camera.Ray(box.Centre()), landmark.frame_from_object.translation));
   }
-  return angles.size() < kFewest ? std::nullopt : MedianOf(angles);
+  return angles.size() < kFewestBoxes ? std::nullopt : MedianOf(angles);
 }
 
 std::vector<Finding> CheckCentres(const ImportView& view) {
@@ -74,8 +75,7 @@ std::vector<Finding> CheckCentres(const ImportView& view) {
                   *as_read),
       "true objects where their boxes see them",
       "true objects in another world, unit or order of axes than the poses, or ids that are not "
-      "the "
-      "detections'",
+      "the detections'",
       "give objects.json in the world of the true poses, in metres, with the detections' ids"};
   for (const int shift : {-1, 1}) {
     const auto shifted = MedianAngleDeg(BoxesAndTruth(view, shift));
@@ -106,7 +106,7 @@ std::vector<Finding> CheckTrueSizes(const ImportView& view) {
     if (box.Height() <= 0.0) continue;
     log_factors.push_back(std::log(HeightPx(camera, landmark) / box.Height()));
   }
-  if (log_factors.size() < kFewest) return {};
+  if (log_factors.size() < kFewestBoxes) return {};
   const double factor = std::exp(*MedianOf(log_factors));
   if (factor < kLargestFactor && factor > 1.0 / kLargestFactor) return {};
   const bool is_of_unit = factor > kFactorOfUnit || factor < 1.0 / kFactorOfUnit;
@@ -208,9 +208,9 @@ std::vector<Eigen::Vector3d> PointsOnPlane(const ImportView& view, int plane_ind
     if (object.plane_index == plane_index) on_plane.insert(object.id);
   }
   std::vector<Eigen::Vector3d> points;
-  for (const TrackedObject& thing : TrackedThings(view)) {
-    if (thing.object_id && !on_plane.contains(*thing.object_id)) continue;
-    const auto point = NearestPointInWorld(thing.rays, pose);
+  for (const TrackedObject& object : TrackedObjects(view)) {
+    if (object.object_id && !on_plane.contains(*object.object_id)) continue;
+    const auto point = NearestPointInWorld(object.rays, pose);
     if (point) points.push_back(*point);
   }
   return points;
@@ -263,8 +263,8 @@ bool AreAlong(const Plane& plane, const std::vector<Eigen::Vector3d>& points) {
 }
 
 std::vector<Finding> CheckAttitude(const MainPlane& main) {
-  constexpr size_t kFewest = 3;
-  if (!IsUpright(main.detections) || main.points_in_world.size() < kFewest) return {};
+  constexpr size_t kFewestPoints = 3;
+  if (!IsUpright(main.detections) || main.points_in_world.size() < kFewestPoints) return {};
   if (AreAlong(main.plane.plane_in_world, main.points_in_world)) return {};
   return {
       {"plane_attitude", Severity::kWarning,

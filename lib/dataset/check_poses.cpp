@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dataset/dataset_checks.h"
+#include "dataset/tracked_rays.h"
 #include "evaluation/trajectory_error.h"
 #include "geometry/angles.h"
 #include "geometry/rigid3.h"
@@ -140,8 +141,6 @@ const std::array kReadings = {
                 "translations with y and z swapped, beside rotations that are not",
                 "swap y and z of the translations", &WithCentreSwapped}};
 
-using Things = std::vector<TrackedObject>;
-
 std::optional<Rigid3d> PoseAt(const ImportView& view, size_t frame) {
   const ListedFrame& listed = view.content.frames[frame];
   return listed.has_pose ? std::optional(listed.frame.world_from_camera) : std::nullopt;
@@ -186,11 +185,11 @@ struct Explanation {
   RayError error;         // remaining error once it is corrected
 };
 
-Things Mirrored(Things things) {
-  for (TrackedObject& thing : things) {
-    for (TrackedRay& ray : thing.rays) ray.ray_in_camera.x() *= -1.0;
+std::vector<TrackedObject> Mirrored(std::vector<TrackedObject> objects) {
+  for (TrackedObject& object : objects) {
+    for (TrackedRay& ray : object.rays) ray.ray_in_camera.x() *= -1.0;
   }
-  return things;
+  return objects;
 }
 
 // Order of the frame numbers as strings: 0, 1, 10, 11, 2, ...
@@ -209,8 +208,9 @@ std::vector<size_t> Inverse(const std::vector<size_t>& order) {
 
 // An explanation for each reading of the poses and each order of the frames with which objects can
 // be triangulated.
-std::vector<Explanation> Explanations(const ImportView& view, const Things& things) {
-  const Things mirrored = Mirrored(things);
+std::vector<Explanation> Explanations(const ImportView& view,
+                                      const std::vector<TrackedObject>& objects) {
+  const std::vector<TrackedObject> mirrored = Mirrored(objects);
   std::vector<Explanation> explanations;
   for (const PoseReading& reading : kReadings) {
     if (reading.is_turned_in_body && view.content.may_have_poses_of_body) continue;
@@ -219,7 +219,7 @@ std::vector<Explanation> Explanations(const ImportView& view, const Things& thin
       return pose ? std::optional(reading.WorldFromCamera(*pose)) : std::nullopt;
     };
     const auto error =
-        MedianRayError(reading.are_boxes_mirrored ? mirrored : things, pose_as_meant);
+        MedianRayError(reading.are_boxes_mirrored ? mirrored : objects, pose_as_meant);
     if (!error) continue;
     explanations.push_back({reading.name, reading.cause, reading.remedy, false, *error});
   }
@@ -227,7 +227,7 @@ std::vector<Explanation> Explanations(const ImportView& view, const Things& thin
   // `frame_meant`: for each frame, that whose pose belongs to its boxes.
   const auto add_order = [&](const char* name, const char* cause, const char* remedy,
                              const std::vector<size_t>& frame_meant) {
-    const auto error = MedianRayError(things, [&](size_t frame) -> std::optional<Rigid3d> {
+    const auto error = MedianRayError(objects, [&](size_t frame) -> std::optional<Rigid3d> {
       const size_t meant = frame_meant[frame];
       if (frames[meant].frame.segment != frames[frame].frame.segment) return std::nullopt;
       return PoseAt(view, meant);
@@ -250,14 +250,15 @@ std::vector<Explanation> Explanations(const ImportView& view, const Things& thin
 
 // Searches for the best explanation. Under a wrong convention of poses or frame order the rays to
 // objects diverge; under the right one they meet to within a degree.
-std::optional<Explanation> BestExplanation(const ImportView& view, const Things& things,
+std::optional<Explanation> BestExplanation(const ImportView& view,
+                                           const std::vector<TrackedObject>& objects,
                                            const RayError& as_read) {
   constexpr double kFitsDeg = 1.0;
   constexpr double kMuchBetter = 0.25;
   if (as_read.median_deg <= kFitsDeg) return std::nullopt;
   std::optional<Explanation> best;
   double best_deg = std::min(kFitsDeg, kMuchBetter * as_read.median_deg);
-  for (Explanation& explanation : Explanations(view, things)) {
+  for (Explanation& explanation : Explanations(view, objects)) {
     const RayError& error = explanation.error;
     if (!IsComparable(error, as_read) || error.median_deg >= best_deg) continue;
     best_deg = error.median_deg;
@@ -266,9 +267,10 @@ std::optional<Explanation> BestExplanation(const ImportView& view, const Things&
   return best;
 }
 
-std::vector<Finding> CheckReadings(const ImportView& view, const Things& things,
+std::vector<Finding> CheckReadings(const ImportView& view,
+                                   const std::vector<TrackedObject>& objects,
                                    const RayError& as_read) {
-  const auto best = BestExplanation(view, things, as_read);
+  const auto best = BestExplanation(view, objects, as_read);
   if (!best) return {};
   // Rays that meet behind the cameras may come from objects that move faster than the cameras.
   const bool is_certain = !best->is_order && (as_read.median_deg <= 90.0 || DoCamerasTurn(view));
@@ -285,14 +287,15 @@ std::vector<Finding> CheckReadings(const ImportView& view, const Things& things,
 
 // Finds boxes that are one image late or early: rays meet clearly better with a shift in one
 // direction, and worse in the other. A first image without boxes confirms it.
-std::vector<Finding> CheckFrameNumbers(const ImportView& view, const Things& things,
+std::vector<Finding> CheckFrameNumbers(const ImportView& view,
+                                       const std::vector<TrackedObject>& objects,
                                        const RayError& as_read) {
   constexpr double kClearlyBetter = 0.7;
   constexpr double kBetter = 0.85;
   constexpr double kLeastDeg = 0.02;
   constexpr double kFitsDeg = 2.0;
   const auto error_at = [&](int shift) {
-    return MedianRayError(things, [&](size_t frame) { return PoseBeside(view, frame, shift); });
+    return MedianRayError(objects, [&](size_t frame) { return PoseBeside(view, frame, shift); });
   };
   const int first_id = view.content.frames.front().frame.id;
   const bool is_first_empty = std::ranges::none_of(
@@ -339,19 +342,20 @@ std::vector<Finding> CheckBody(const ImportView& view, const std::optional<RayEr
 
 // Warns if objects are far from where they are seen, relative to the size of their boxes, under any
 // convention. If they are right from the true poses, the estimates drift, which CheckTruth reports.
-std::vector<Finding> CheckContradiction(const ImportView& view, const Things& things,
+std::vector<Finding> CheckContradiction(const ImportView& view,
+                                        const std::vector<TrackedObject>& objects,
                                         const RayError& as_read) {
   constexpr double kLargestShare = 0.2;
-  constexpr size_t kFewestThings = 3;
-  if (as_read.median_share <= kLargestShare || as_read.things < kFewestThings) return {};
-  const auto from_truth = MedianRayError(things, [&](size_t frame) {
+  constexpr size_t kFewestObjects = 3;
+  if (as_read.median_share <= kLargestShare || as_read.objects < kFewestObjects) return {};
+  const auto from_truth = MedianRayError(objects, [&](size_t frame) {
     return view.content.frames[frame].frame.true_world_from_camera;
   });
   if (IsComparable(from_truth, as_read) && from_truth->median_share <= kLargestShare) return {};
   return {{kBoxesAgainstPoses, Severity::kWarning,
            fmt::format("{} things are {:.2f} degrees from where they are seen, {:.2g} times half "
                        "the diagonal of their boxes (medians)",
-                       as_read.things, as_read.median_deg, as_read.median_share),
+                       as_read.objects, as_read.median_deg, as_read.median_share),
            fmt::format("at most {:g} times; things that stand still", kLargestShare),
            "poses, the order of frames, or ids contradict the boxes; or poses that drift far",
            "look at the boxes of one id in several images: soslam-inspect; then at poses and time "
@@ -362,14 +366,14 @@ std::vector<Finding> CheckContradiction(const ImportView& view, const Things& th
 
 std::vector<Finding> CheckPoses(const ImportView& view) {
   constexpr size_t kFewestRays = 15;
-  const Things things = TrackedThings(view);
-  auto as_read = MedianRayError(things, [&](size_t frame) { return PoseAt(view, frame); });
+  const std::vector<TrackedObject> objects = TrackedObjects(view);
+  auto as_read = MedianRayError(objects, [&](size_t frame) { return PoseAt(view, frame); });
   if (as_read && as_read->rays < kFewestRays) as_read.reset();
   std::vector<Finding> findings;
-  if (as_read) findings = CheckReadings(view, things, *as_read);
-  if (findings.empty() && as_read) findings = CheckFrameNumbers(view, things, *as_read);
+  if (as_read) findings = CheckReadings(view, objects, *as_read);
+  if (findings.empty() && as_read) findings = CheckFrameNumbers(view, objects, *as_read);
   if (findings.empty()) findings = CheckBody(view, as_read);
-  if (findings.empty() && as_read) findings = CheckContradiction(view, things, *as_read);
+  if (findings.empty() && as_read) findings = CheckContradiction(view, objects, *as_read);
   return findings;
 }
 

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
 #include <filesystem>
-#include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,8 +28,7 @@ struct Advice {
   std::string remedy;
 };
 
-// Checks for common mistakes in datasets (one file each). All checks return their findings and
-// throw nothing.
+// Checks for common mistakes in datasets. They return their findings and throw nothing.
 
 // Plausibility of the intrinsics: normalised, in millimetres, of another image size.
 std::vector<Finding> CheckCamera(const ImportView& view);
@@ -72,42 +68,5 @@ std::vector<Finding> CheckTimestamps(const std::vector<ListedImage>& images,
 
 // All checks of a dataset, including the findings of its reader; errors first.
 std::vector<Finding> CheckDataset(const ImportView& view);
-
-// Viewing ray through the centre of a box.
-struct TrackedRay {
-  size_t frame = 0;  // index in DatasetContent::frames
-  Eigen::Vector3d ray_in_camera;
-  double half_diagonal_deg = 0.0;  // of the box
-};
-
-// An object seen in several boxes.
-struct TrackedObject {
-  std::optional<int> object_id;  // none: the only object with its label
-  std::vector<TrackedRay> rays;
-};
-
-// Objects that are identified by object id or, without ids, by a label that occurs at most once per
-// frame. Without boxes that the image cuts or below min_score, moving objects, and objects with
-// fewer than four boxes.
-std::vector<TrackedObject> TrackedThings(const ImportView& view);
-
-// Pose of a frame, by index in DatasetContent::frames; none where there is none.
-using PoseOfFrame = std::function<std::optional<Rigid3d>(size_t frame)>;
-
-// Triangulates the point nearest to the rays of an object from these poses (least squares); none
-// where the rays are too few or too parallel.
-std::optional<Eigen::Vector3d> NearestPointInWorld(const std::vector<TrackedRay>& rays,
-                                                   const PoseOfFrame& world_from_camera);
-
-// Disagreement of poses and boxes: angles between rays and triangulated points.
-struct RayError {
-  double median_deg = 0.0;
-  double median_share = 0.0;  // relative to the half diagonals of the boxes
-  size_t rays = 0;            // of the objects with a triangulated point
-  size_t things = 0;
-};
-// Median error over all objects; none when no object can be triangulated.
-std::optional<RayError> MedianRayError(const std::vector<TrackedObject>& things,
-                                       const PoseOfFrame& world_from_camera);
 
 }  // namespace soslam

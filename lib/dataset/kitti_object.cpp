@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-
 #include <fmt/format.h>
 
 #include <optional>
-#include <string>
 
 #include "base/error.h"
 #include "base/paths.h"

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/tracked_rays.h"
+
 #include <Eigen/Geometry>
 #include <map>
 #include <set>
 #include <string>
 
-#include "dataset/dataset_checks.h"
 #include "evaluation/statistics.h"
 #include "geometry/angles.h"
 #include "geometry/triangulation.h"
@@ -37,7 +38,7 @@ std::set<std::string> RepeatedLabels(const std::vector<DetectionRow>& rows) {
 
 }  // namespace
 
-std::vector<TrackedObject> TrackedThings(const ImportView& view) {
+std::vector<TrackedObject> TrackedObjects(const ImportView& view) {
   const DatasetContent& content = view.content;
   std::map<int, size_t> frame_index;
   for (size_t i = 0; i < content.frames.size(); ++i) frame_index[content.frames[i].frame.id] = i;
@@ -54,16 +55,16 @@ std::vector<TrackedObject> TrackedThings(const ImportView& view) {
     if (row.score < view.options.min_score || moving.contains(row.object_id)) continue;
     if (!content.has_object_ids && repeated.contains(row.label)) continue;
     const std::string name = content.has_object_ids ? std::to_string(row.object_id) : row.label;
-    TrackedObject& thing = by_name[name];
-    if (content.has_object_ids) thing.object_id = row.object_id;
-    thing.rays.push_back(
+    TrackedObject& object = by_name[name];
+    if (content.has_object_ids) object.object_id = row.object_id;
+    object.rays.push_back(
         {frame, camera.Ray(row.box.Centre()).normalized(), HalfDiagonalDeg(camera, row.box)});
   }
-  std::vector<TrackedObject> things;
-  for (auto& [name, thing] : by_name) {
-    if (thing.rays.size() > kFewestRays) things.push_back(std::move(thing));
+  std::vector<TrackedObject> objects;
+  for (auto& [name, object] : by_name) {
+    if (object.rays.size() > kFewestRays) objects.push_back(std::move(object));
   }
-  return things;
+  return objects;
 }
 
 std::optional<Eigen::Vector3d> NearestPointInWorld(const std::vector<TrackedRay>& rays,
@@ -78,15 +79,15 @@ std::optional<Eigen::Vector3d> NearestPointInWorld(const std::vector<TrackedRay>
   return NearestPointToRays(in_world, kLeastSpread);
 }
 
-std::optional<RayError> MedianRayError(const std::vector<TrackedObject>& things,
+std::optional<RayError> MedianRayError(const std::vector<TrackedObject>& objects,
                                        const PoseOfFrame& world_from_camera) {
   std::vector<double> errors_deg, shares;
-  size_t things_met = 0;
-  for (const TrackedObject& thing : things) {
-    const auto point_in_world = NearestPointInWorld(thing.rays, world_from_camera);
+  size_t met = 0;
+  for (const TrackedObject& object : objects) {
+    const auto point_in_world = NearestPointInWorld(object.rays, world_from_camera);
     if (!point_in_world) continue;
-    ++things_met;
-    for (const TrackedRay& ray : thing.rays) {
+    ++met;
+    for (const TrackedRay& ray : object.rays) {
       const auto pose = world_from_camera(ray.frame);
       if (!pose) continue;
       errors_deg.push_back(AngleBetweenDeg(ray.ray_in_camera, pose->Inverse() * *point_in_world));
@@ -95,7 +96,7 @@ std::optional<RayError> MedianRayError(const std::vector<TrackedObject>& things,
   }
   if (errors_deg.empty()) return std::nullopt;
   const size_t rays = errors_deg.size();
-  return RayError{*MedianOf(std::move(errors_deg)), *MedianOf(std::move(shares)), rays, things_met};
+  return RayError{*MedianOf(std::move(errors_deg)), *MedianOf(std::move(shares)), rays, met};
 }
 
 }  // namespace soslam

@@ -6,6 +6,7 @@
 #include "dataset/dataset_content.h"
 #include "support/dataset_fixture.h"
 #include "support/expect_error.h"
+#include "support/temporary_folder.h"
 
 namespace soslam {
 namespace {
@@ -103,7 +104,8 @@ TEST_P(BadDatasetTest, IsRefusedByName) {
   } else {
     dataset.Replace(bad.file, bad.from, bad.to);
   }
-  const auto folder = FreshTestFolder() / "small";
+  const TemporaryFolder temporary;
+  const std::filesystem::path folder = temporary / "small";
   dataset.Write(folder);
   ExpectError<InputError>([&] { ImportDataset(folder, {}); }, {bad.message, bad.file});
 }
@@ -114,20 +116,22 @@ TEST(BadDatasetFolderTest, NoTrajectoryAtAll) {
   DatasetFixture dataset;
   dataset.files.erase("odometry.txt");
   dataset.files.erase("groundtruth.txt");
-  const auto folder = FreshTestFolder();
+  const TemporaryFolder temporary;
+  const std::filesystem::path& folder = temporary.path();
   dataset.Write(folder);
   EXPECT_THROW(ImportDataset(folder, {}), InputError);
 }
 
 TEST(BadDatasetFolderTest, NoFolder) {
-  EXPECT_THROW(ImportDataset(FreshTestFolder() / "absent", {}), InputError);
+  EXPECT_THROW(ImportDataset(TemporaryFolder() / "absent", {}), InputError);
 }
 
 TEST(BadDatasetFolderTest, SeveralPlanesNeedASupportPlane) {
   DatasetFixture dataset;
   dataset.files["planes.json"] =
       R"([{"id": 0, "normal": [0, 0, 1], "d": 0}, {"id": 1, "normal": [0, 0, 1], "d": -0.7}])";
-  const auto folder = FreshTestFolder();
+  const TemporaryFolder temporary;
+  const std::filesystem::path& folder = temporary.path();
   dataset.Write(folder);
   ExpectError<InputError>([&] { ImportDataset(folder, {}); },
                           {"object 2 ('box') has no support_plane"});
@@ -153,7 +157,8 @@ TEST(BadDatasetFolderTest, BoxesWithoutIdsNeedNoSupportPlane) {
     without_ids += line.substr(0, id) + line.substr(line.find(',', id + 1)) + "\n";
   }
   rows = without_ids;
-  const auto folder = FreshTestFolder();
+  const TemporaryFolder temporary;
+  const std::filesystem::path& folder = temporary.path();
   dataset.Write(folder);
   const Sequence sequence = ImportDataset(folder, {});
   EXPECT_EQ(sequence.planes.size(), 2U);

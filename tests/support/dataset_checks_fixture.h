@@ -24,6 +24,7 @@
 #include "support/dataset_fixture.h"
 #include "support/image_files.h"
 #include "support/looking_at.h"
+#include "support/temporary_folder.h"
 
 namespace soslam {
 
@@ -256,7 +257,8 @@ class DatasetChecksTest : public testing::Test {
 
   PlausibleDataset dataset;
   ImportOptions options;
-  std::filesystem::path folder = FreshTestFolder() / "small";
+  TemporaryFolder temporary_;
+  std::filesystem::path folder = temporary_ / "small";
 };
 
 }  // namespace soslam
