@@ -12,7 +12,6 @@
 #include <mutex>
 #include <numeric>
 #include <span>
-#include <stdexcept>
 #include <type_traits>
 
 #include "artefact/hdf5_types.h"

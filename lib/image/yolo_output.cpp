@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <map>
 #include <opencv2/core.hpp>
 #include <opencv2/dnn.hpp>

@@ -45,14 +45,14 @@ namespace fs = std::filesystem;
 struct ChosenFrames {
   FramesRecord record;
   cv::Size source_size;  // of the images that were chosen from, upright
-  std::vector<std::filesystem::path> inputs;
+  std::vector<fs::path> inputs;
   bool is_cut_short = false;  // the video has fewer frames than it announces
 };
 
-inline bool IsLeftOut(const SourceFrame& frame) { return frame.rejection.has_value(); }
+bool IsLeftOut(const SourceFrame& frame) { return frame.rejection.has_value(); }
 
 // First line of detections.csv.
-inline constexpr std::string_view kFrameBoxesMark = "# Written by soslam-frames";
+constexpr std::string_view kFrameBoxesMark = "# Written by soslam-frames";
 
 // The likely cause and the remedy where much is left out for one reason.
 struct FrameAdvice {
@@ -75,7 +75,7 @@ constexpr std::array kAdvice = {
 double Scaled(double coordinate, double scale) { return (coordinate + 0.5) * scale - 0.5; }
 
 // Boxes of soslam-detect name their images, which are all of the frames.
-void RefuseBoxesOfOtherImages(const std::filesystem::path& path, size_t frames) {
+void RefuseBoxesOfOtherImages(const fs::path& path, size_t frames) {
   std::ifstream stream(path);
   size_t images = 0;
   for (std::string line; std::getline(stream, line) && line.starts_with('#');) {
@@ -135,7 +135,7 @@ std::string FrameListText(const std::vector<SourceFrame>& frames) {
 
 // The text of detections.csv: the boxes of the chosen images among those of all images in the file
 // `path`. Prints how many they are. Throws InputError if there are none.
-std::string FrameBoxesText(const std::filesystem::path& path, const ChosenFrames& chosen) {
+std::string FrameBoxesText(const fs::path& path, const ChosenFrames& chosen) {
   std::vector<std::optional<int>> rows;
   int row = 0;
   for (const SourceFrame& frame : chosen.record.frames) {

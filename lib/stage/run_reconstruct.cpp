@@ -199,8 +199,8 @@ void CheckCamera(const ColmapModel& model, const Given& given, const fs::path& d
   }
   throw InputError(
       fmt::format("{}: is another camera than the model's (fx {:.2f}, not {:.2f}, or another "
-                  "distortion); expected a model of this "
-                  "camera, or calibration estimated, which replaces the file by the model's camera",
+                  "distortion); expected a model of this camera, or calibration estimated, which "
+                  "replaces the file by the model's camera",
                   (dataset / "camera.json").string(), found.fx, expected.fx));
 }
 
@@ -255,6 +255,28 @@ std::string InWords(const std::optional<double>& value, const char* unit) {
   return value ? fmt::format("{:.2f} {}", *value, unit) : "unknown";
 }
 
+// `unlisted`: images of the model that the dataset does not list.
+void PrintReconstructionSummary(const fs::path& dataset, const ReconstructionSummary& summary,
+                                const std::vector<std::string>& unlisted) {
+  fmt::print(
+      "{}: registered {} of {} images, {} points, median reprojection error {}, median "
+      "triangulation angle {}{}\n",
+      dataset.string(), summary.registered, summary.images, summary.points,
+      InWords(summary.median_reprojection_error_px, "px"),
+      InWords(summary.median_triangulation_angle_deg, "degrees"),
+      summary.components.size() > 1
+          ? fmt::format("; {} images in a second component", summary.components[1].images)
+          : "");
+  if (!summary.images_without_pose.empty()) {
+    fmt::print("{}: without a pose, and not used: {}\n", dataset.string(),
+               NamesInWords(summary.images_without_pose));
+  }
+  if (!unlisted.empty()) {
+    fmt::print("{}: {} in the model, but not in rgb.txt: {}\n", dataset.string(),
+               Counted(unlisted.size(), "image"), NamesInWords(unlisted));
+  }
+}
+
 }  // namespace
 
 void RunReconstruct(const ReconstructOptions& options, const StageFiles& files, int threads) {
@@ -289,24 +311,7 @@ void RunReconstruct(const ReconstructOptions& options, const StageFiles& files, 
   info.inputs.push_back(dataset / "rgb.txt");
   ReportFindings("reconstruct", info.findings);
   WriteAll(dataset, output, given, model, reconstruction, summary, info);
-  fmt::print(
-      "{}: registered {} of {} images, {} points, median reprojection error {}, median "
-      "triangulation angle {}{}\n",
-      dataset.string(), summary.registered, summary.images, summary.points,
-      InWords(summary.median_reprojection_error_px, "px"),
-      InWords(summary.median_triangulation_angle_deg, "degrees"),
-      summary.components.size() > 1
-          ? fmt::format("; {} images in a second component", summary.components[1].images)
-          : "");
-  if (!summary.images_without_pose.empty()) {
-    fmt::print("{}: without a pose, and not used: {}\n", dataset.string(),
-               NamesInWords(summary.images_without_pose));
-  }
-  if (!reconstruction.unlisted.empty()) {
-    fmt::print("{}: {} in the model, but not in rgb.txt: {}\n", dataset.string(),
-               Counted(reconstruction.unlisted.size(), "image"),
-               NamesInWords(reconstruction.unlisted));
-  }
+  PrintReconstructionSummary(dataset, summary, reconstruction.unlisted);
 }
 
 }  // namespace soslam
