@@ -13,7 +13,6 @@
 #include "artefact/run_file.h"
 #include "base/error.h"
 #include "base/hash.h"
-#include "support/dataset_fixture.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 
@@ -28,7 +27,8 @@ class AtomicFileTest : public testing::Test {
     return static_cast<int>(std::distance(fs::directory_iterator(folder), {}));
   }
 
-  fs::path folder = FreshTestFolder();
+  TemporaryFolder temporary_;
+  fs::path folder = temporary_.path();
   fs::path file = folder / "result.txt";
 };
 

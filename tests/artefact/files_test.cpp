@@ -10,7 +10,6 @@
 #include "artefact/model_json.h"
 #include "base/error.h"
 #include "model/occlusion.h"
-#include "support/dataset_fixture.h"
 #include "support/expect_error.h"
 #include "support/random_estimates.h"
 #include "support/temporary_folder.h"
@@ -23,7 +22,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 class ArtefactFilesTest : public testing::Test {
  protected:
-  std::filesystem::path folder = FreshTestFolder();
+  TemporaryFolder folder;
   std::filesystem::path file = folder / "artefact.json";
   std::filesystem::path again = folder / "again.json";
   Sequence sequence = RandomSequence();

@@ -5,9 +5,9 @@
 #include "artefact/json_file.h"
 #include "artefact/run_file.h"
 #include "base/error.h"
-#include "support/dataset_fixture.h"
 #include "support/expect_error.h"
 #include "support/random_estimates.h"
+#include "support/temporary_folder.h"
 
 namespace soslam {
 // Files of every schema version that was ever released stay readable.
@@ -188,7 +188,9 @@ class EditedFileTest : public testing::TestWithParam<Edit> {
     ExpectError<InputError>(read, {"artefact.json: ", GetParam().message});
   }
 
-  const std::filesystem::path file = FreshTestFolder() / "artefact.json";
+  const TemporaryFolder folder;
+
+  const std::filesystem::path file = folder / "artefact.json";
   const Sequence sequence = RandomSequence();
 };
 

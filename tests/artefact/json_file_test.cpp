@@ -9,8 +9,8 @@
 #include <limits>
 
 #include "base/error.h"
-#include "support/dataset_fixture.h"
 #include "support/expect_error.h"
+#include "support/temporary_folder.h"
 
 namespace soslam {
 namespace {
@@ -46,13 +46,13 @@ class JsonFileTest : public testing::Test {
     return InputErrorOf([&] { ReadArtefact(file, "landmarks"); });
   }
 
-  std::filesystem::path folder = FreshTestFolder();
+  TemporaryFolder folder;
   std::filesystem::path file = folder / "some.json";
 };
 
 TEST_F(JsonFileTest, UnreadableTextIsRefusedOnOneLine) {
   EXPECT_THAT(InputErrorOf([&] { ParseJsonFile(folder / "none.json"); }), HasSubstr("none.json"));
-  EXPECT_THAT(InputErrorOf([&] { ParseJsonFile(folder); }), HasSubstr("cannot be read"));
+  EXPECT_THAT(InputErrorOf([&] { ParseJsonFile(folder.path()); }), HasSubstr("cannot be read"));
   EXPECT_THAT(ParseErrorOf(""), HasSubstr("is empty"));
   EXPECT_THAT(ParseErrorOf("{\n\"a\": nan}"),
               AllOf(HasSubstr("some.json: parse error at line 2"), Not(HasSubstr("\n"))));

@@ -13,6 +13,7 @@
 #include "support/expect_error.h"
 #include "support/labelled_boxes.h"
 #include "support/run_command.h"
+#include "support/temporary_folder.h"
 
 namespace soslam {
 // Folders of images in the formats of others, down to the imported sequence.
@@ -60,7 +61,8 @@ class FolderFormatsTest : public testing::Test {
     return sequence.detections.at(0);
   }
 
-  std::filesystem::path folder_ = FreshTestFolder() / "folder";
+  TemporaryFolder temporary_;
+  std::filesystem::path folder_ = temporary_ / "folder";
   ImportOptions options_;
 };
 

@@ -29,7 +29,8 @@ class ImportTest : public testing::Test {
 
   DatasetFixture dataset;
   ImportOptions options;
-  std::filesystem::path folder = FreshTestFolder() / "small";
+  TemporaryFolder temporary_;
+  std::filesystem::path folder = temporary_ / "small";
 };
 
 TEST_F(ImportTest, ReadsEverything) {

@@ -47,7 +47,8 @@ class KittiTrackingTest : public testing::Test {
 
   KittiTrackingFixture fixture;
   ImportOptions options;
-  std::filesystem::path folder = FreshTestFolder() / "kitti";
+  TemporaryFolder temporary_;
+  std::filesystem::path folder = temporary_ / "kitti";
 };
 
 TEST_F(KittiTrackingTest, EachRecordingIsASegment) {
@@ -245,7 +246,8 @@ class KittiObjectTest : public testing::Test {
   Sequence Import() const { return ImportDataset(folder, options); }
 
   ImportOptions options;
-  std::filesystem::path folder = FreshTestFolder() / "kitti_object";
+  TemporaryFolder temporary_;
+  std::filesystem::path folder = temporary_ / "kitti_object";
 };
 
 TEST_F(KittiObjectTest, EachFrameIsASegment) {

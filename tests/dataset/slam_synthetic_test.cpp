@@ -5,6 +5,7 @@
 #include "dataset/dataset_content.h"
 #include "support/dataset_fixture.h"
 #include "support/expect_error.h"
+#include "support/temporary_folder.h"
 
 namespace soslam {
 namespace {
@@ -37,7 +38,8 @@ class SlamSyntheticTest : public testing::Test {
   }
   Sequence Import() const { return ImportDataset(folder_, options_); }
 
-  std::filesystem::path folder_ = FreshTestFolder();
+  TemporaryFolder temporary_;
+  std::filesystem::path folder_ = temporary_.path();
   ImportOptions options_;
 };
 

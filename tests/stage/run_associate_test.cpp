@@ -136,12 +136,8 @@ TEST_F(RunAssociateTest, SaysWhereUpIsOpen) {
 }
 
 TEST_F(RunAssociateTest, SameBytesForAnyNumberOfThreads) {
-  Run(1);
-  const std::string sequence = FileBytes(File("output"));
-  const std::string associations = FileBytes(File("associations"));
-  Run(3);
-  EXPECT_EQ(FileBytes(File("output")), sequence);
-  EXPECT_EQ(FileBytes(File("associations")), associations);
+  ExpectSameBytesForThreads([&](int threads) { Run(threads); },
+                            {File("output"), File("associations")});
 }
 
 TEST_F(RunAssociateTest, ThereIsNothingToDoForGivenObjects) {

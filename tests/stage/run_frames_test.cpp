@@ -129,12 +129,8 @@ TEST_F(RunFramesTest, SameBytesForAnyNumberOfThreads) {
   AddViews(5);
   FrameOptions options;
   options.max_image_px = 200;
-  Run(photos_, options, 1);
-  const std::string frames = FileBytes(output_ / "frames.json");
-  const std::string image = FileBytes(output_ / "rgb/view_3.jpg");
-  Run(photos_, options, 3);
-  EXPECT_EQ(FileBytes(output_ / "frames.json"), frames);
-  EXPECT_EQ(FileBytes(output_ / "rgb/view_3.jpg"), image);
+  ExpectSameBytesForThreads([&](int threads) { Run(photos_, options, threads); },
+                            {output_ / "frames.json", output_ / "rgb/view_3.jpg"});
 }
 
 TEST_F(RunFramesTest, ADatasetIsReplacedUnlessItHasFilesOfOthers) {

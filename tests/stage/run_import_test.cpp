@@ -25,7 +25,7 @@ class RunImportTest : public testing::Test {
   }
 
   DatasetFixture dataset;
-  std::filesystem::path folder = FreshTestFolder();
+  TemporaryFolder folder;
   StageFiles files = {{"dataset", folder / "small"}, {"output", folder / "sequence.json"}};
 };
 

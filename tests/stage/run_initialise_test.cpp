@@ -88,10 +88,7 @@ TEST_F(RunInitialiseCuboidsTest, FindsCuboidsThatOverlapTheTruth) {
 
 TEST_F(RunInitialiseCuboidsTest, GivesTheSameBytesForAnyNumberOfThreads) {
   WriteEdges();
-  Run(1);
-  const std::string bytes = FileBytes(files_.at("output"));
-  Run(3);
-  EXPECT_EQ(FileBytes(files_.at("output")), bytes);
+  ExpectSameBytesForThreads([&](int threads) { Run(threads); }, {files_.at("output")});
 }
 
 TEST_F(RunInitialiseCuboidsTest, NamesWhatHasNoCuboid) {

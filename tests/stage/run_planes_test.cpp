@@ -120,12 +120,7 @@ TEST_F(RunPlanesTest, ReportSaysHowCamerasAreHeld) {
 }
 
 TEST_F(SlowRunPlanesTest, SameBytesWithAnyNumberOfThreads) {
-  Run(1);
-  const std::string output = FileBytes(File("output"));
-  const std::string report = FileBytes(File("report"));
-  Run(4);
-  EXPECT_EQ(FileBytes(File("output")), output);
-  EXPECT_EQ(FileBytes(File("report")), report);
+  ExpectSameBytesForThreads([&](int threads) { Run(threads); }, {File("output"), File("report")});
 }
 
 TEST_F(RunPlanesTest, CameraHeightIsTheGroundOfEveryFrame) {
@@ -274,12 +269,8 @@ TEST_F(RunGroundTest, WritesTheWorldAndTheSequenceInIt) {
 }
 
 TEST_F(RunGroundTest, ResultsDoNotDependOnThreads) {
-  RunGround(options_, files_, 1);
-  const std::string world = FileBytes(files_.at("world"));
-  const std::string output = FileBytes(files_.at("output"));
-  RunGround(options_, files_, 3);
-  EXPECT_EQ(FileBytes(files_.at("world")), world);
-  EXPECT_EQ(FileBytes(files_.at("output")), output);
+  ExpectSameBytesForThreads([&](int threads) { RunGround(options_, files_, threads); },
+                            {files_.at("world"), files_.at("output")});
 }
 
 TEST_F(RunGroundTest, RefusesSeveralSegments) {

@@ -5,7 +5,6 @@
 #include <opencv2/imgproc.hpp>
 
 #include "artefact/files.h"
-#include "dataset/text_file.h"
 #include "geometry/distortion.h"
 #include "stage/stages.h"
 #include "support/drawn_photos.h"
@@ -40,19 +39,15 @@ class RunTrackTest : public testing::Test {
     }
   }
 
-  std::vector<MapPoint> Run(const TrackOptions& options = {}, int threads = 2,
-                            const std::string& output = "points.h5") {
+  std::vector<MapPoint> Run(int threads = 2) {
     WriteSequence(folder_ / "sequence.json", sequence_, {});
-    RunTrack(options, Files(output), threads);
-    return ReadPoints(folder_ / output);
+    RunTrack({}, files_, threads);
+    return ReadPoints(files_.at("output"));
   }
-  StageFiles Files(const std::string& output = "points.h5") {
-    return {{"dataset", folder_.path()},
-            {"sequence", folder_ / "sequence.json"},
-            {"output", folder_ / output}};
-  }
-
   TemporaryFolder folder_;
+  StageFiles files_ = {{"dataset", folder_.path()},
+                       {"sequence", folder_ / "sequence.json"},
+                       {"output", folder_ / "points.h5"}};
   Sequence sequence_;
 };
 
@@ -84,10 +79,7 @@ TEST_F(RunTrackTest, ObservationsAreWhereThePointsProject) {
 }
 
 TEST_F(RunTrackTest, SameBytesForAnyNumberOfThreads) {
-  Run({}, 1, "one.h5");
-  Run({}, 4, "four.h5");
-  EXPECT_EQ(ReadWholeFile(folder_ / "one.h5", "artefact"),
-            ReadWholeFile(folder_ / "four.h5", "artefact"));
+  ExpectSameBytesForThreads([&](int threads) { Run(threads); }, {files_.at("output")});
 }
 
 TEST_F(RunTrackTest, PointsOfASegmentAreSeenInIt) {

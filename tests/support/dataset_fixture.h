@@ -12,17 +12,6 @@
 
 namespace soslam {
 
-// An empty folder of the running test's own.
-inline std::filesystem::path FreshTestFolder() {
-  const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-  std::string name = std::string(info->test_suite_name()) + "." + info->name();
-  for (char& c : name) c = c == '/' ? '_' : c;
-  const auto folder = std::filesystem::path(testing::TempDir()) / "soslam" / name;
-  std::filesystem::remove_all(folder);
-  std::filesystem::create_directories(folder);
-  return folder;
-}
-
 // The text files of a small valid dataset, for a test to change before writing them: four images,
 // one plane, object 1 (cup, with ground truth, detected four times) and object 2 (box, detected
 // three times). All detections are usable with the default options.

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <vector>
 
 namespace soslam {
 
@@ -34,6 +35,16 @@ inline std::string FileBytes(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   EXPECT_TRUE(stream) << path;
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+// Expects that run(threads) writes the same bytes to these files for any number of threads.
+template <typename Run>
+void ExpectSameBytesForThreads(const Run& run, const std::vector<std::filesystem::path>& files) {
+  run(1);
+  std::vector<std::string> bytes;
+  for (const std::filesystem::path& file : files) bytes.push_back(FileBytes(file));
+  run(3);
+  for (size_t i = 0; i < files.size(); ++i) EXPECT_EQ(FileBytes(files[i]), bytes[i]) << files[i];
 }
 
 // Writes a file; returns its path.
