@@ -88,7 +88,7 @@ class Comparison {
       if (one[i] == two[i] || (std::isnan(one[i]) && std::isnan(two[i]))) continue;
       const double absolute = std::abs(one[i] - two[i]);
       const double size = std::max(std::abs(one[i]), std::abs(two[i]));
-      if (absolute <= tolerance_ * std::max(size, 1.0)) continue;
+      if (std::isfinite(size) && absolute <= tolerance_ * std::max(size, 1.0)) continue;
       ++found.differing;
       // NaN counts as a larger difference than any other.
       if (found.one.empty() || absolute > *found.absolute || std::isnan(absolute)) {

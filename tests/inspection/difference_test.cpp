@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
@@ -146,6 +147,18 @@ TEST_F(DifferenceTest, InfiniteDistancesAreEqual) {
   ASSERT_EQ(differences.content.size(), 1u);
   EXPECT_EQ(differences.content[0].place, "/frames/000000/grey");
   EXPECT_EQ(differences.content[0].absolute, 9.0);
+}
+
+TEST_F(DifferenceTest, InfiniteNumbersDifferFromFiniteOnes) {
+  SymmetryRecord record = Record();
+  record.cost["grey"][2] = std::numeric_limits<double>::infinity();
+  WriteSymmetry(One(), {record}, {});
+  record.cost["grey"][2] = 3.0;
+  WriteSymmetry(Two(), {record}, {});
+  const Differences differences = Compare(1e-9);
+  ASSERT_EQ(differences.content.size(), 1u);
+  EXPECT_EQ(differences.content[0].one, "inf");
+  EXPECT_EQ(differences.content[0].two, "3");
 }
 
 TEST_F(DifferenceTest, KindsHaveToBeEqual) {
