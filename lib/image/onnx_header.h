@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -30,16 +29,12 @@ struct OnnxHeader {
   std::map<std::string, std::string> metadata;  // Ultralytics: "names", "task", "end2end", ...
 };
 
-// Reads the header of an ONNX file that CheckOnnx accepts. Throws InputError, naming the file
-// `name`, for a file without graph, and for one with absurdly many inputs or outputs.
+// Reads the header of an ONNX file. Throws InputError, naming the file `name`, for one that is
+// damaged, has no graph or absurdly many inputs or outputs; and, naming the tensor, for a tensor
+// that has not as many numbers as its shape needs: OpenCV derives their number from the shape.
 OnnxHeader ReadOnnxHeader(std::string_view bytes, const std::string& name);
 
 // The shape as text, "[1, 3, ?, 640]".
 std::string ShapeText(const std::vector<std::int64_t>& shape);
-
-// Checks that an ONNX file is complete, and that each of its tensors has as many numbers as its
-// shape needs: OpenCV derives their number from the shape. Throws InputError, naming the file
-// `name` and the tensor.
-void CheckOnnx(std::string_view bytes, const std::string& name);
 
 }  // namespace soslam

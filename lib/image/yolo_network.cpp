@@ -150,7 +150,6 @@ NetworkFile ReadNetworkFile(const fs::path& path) {
   NetworkFile file{path.string(),
                    {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()},
                    {}};
-  CheckOnnx(file.bytes, file.name);
   file.header = ReadOnnxHeader(file.bytes, file.name);
   if (const auto reason = CertainlyFails(file); reason && kIsOldOpenCv) {
     throw InputError(

@@ -29,10 +29,7 @@ const FuzzTarget kImage("image", [](const HostileInput& input) {
 const FuzzTarget kNetworks("networks", [](const HostileInput& input) {
   const auto file = input.AsFile("network.onnx");
   const std::string bytes = FileBytes(file);
-  IsAccepted(file, [&] {
-    CheckOnnx(bytes, file.string());
-    ReadOnnxHeader(bytes, file.string());
-  });
+  IsAccepted(file, [&] { ReadOnnxHeader(bytes, file.string()); });
 });
 
 }  // namespace
