@@ -2,14 +2,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <opencv2/core/mat.hpp>
 #include <string>
 #include <vector>
 
 #include "geometry/camera.h"
-#include "image/edge_maps.h"
-#include "model/symmetry_record.h"
 
 namespace soslam {
 
@@ -73,19 +70,5 @@ inline constexpr int kTileWidth = kPictureWidth / 2;
 // A grey or colour picture (CV_8UC1, CV_8UC3) in colour, enlarged by the smallest whole factor that
 // gives it this width.
 cv::Mat DrawingGround(const cv::Mat& image, int min_width = kPictureWidth);
-
-// Layers of a picture of a frame's edge maps.
-enum class EdgeLayer { kAll, kGrey, kEdges, kDistance, kNearest };
-inline constexpr std::array kEdgeLayerNames = {"all", "grey", "edges", "distance", "nearest"};
-
-// One layer, or all of them side by side, in colour (CV_8UC3), each with a caption: the image with
-// its corners; the edges; the distance transform, bright for large distances; the direction to the
-// nearest edge as hue.
-cv::Mat EdgesPicture(const EdgeMaps& maps, EdgeLayer layer, const std::string& title);
-
-// The pixels that are used for symmetry and their mirror pixels, joined in pairs, on the part of
-// `image` (CV_8UC1) around them.
-cv::Mat SymmetryPicture(const SymmetryRecord& record, const cv::Mat& image,
-                        const std::string& title);
 
 }  // namespace soslam

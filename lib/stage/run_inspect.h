@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "inspection/canvas.h"
+#include "inspection/evidence_pictures.h"
 
 namespace soslam {
 

@@ -12,6 +12,7 @@
 #include "base/options.h"
 #include "ground/ground_checks.h"
 #include "inspection/canvas.h"
+#include "inspection/evidence_pictures.h"
 #include "support/expect_error.h"
 #include "support/scene.h"
 #include "support/temporary_folder.h"
