@@ -53,7 +53,7 @@ class Reader : public OptionVisitor {
 
   void RefuseUnknown() const {
     for (const auto& item : values_.items()) {
-      if (known_.count(item.key()) == 0) {
+      if (!known_.contains(item.key())) {
         throw SettingsError(fmt::format("{}: unknown setting '{}'; known are {}", where_,
                                         item.key(), fmt::join(known_, ", ")));
       }

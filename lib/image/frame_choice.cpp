@@ -59,7 +59,6 @@ MotionTracker::MotionTracker(const cv::Mat& small) : small_(small) {
 
 std::optional<double> MotionTracker::MedianDisplacement(const cv::Mat& small) const {
   constexpr double kMaxReturnErrorPx = 1.0;
-  constexpr size_t kMinFoundFraction = 3;  // one of three
   if (features_.empty() || small.size() != small_.size()) return std::nullopt;
   std::vector<uchar> is_found, is_returned;
   const Points from = features_;
@@ -72,9 +71,7 @@ std::optional<double> MotionTracker::MedianDisplacement(const cv::Mat& small) co
     if (cv::norm(returned(i) - from(i)) > kMaxReturnErrorPx) continue;
     displacements.push_back(cv::norm(to(i) - from(i)));
   }
-  if (kMinFoundFraction * displacements.size() < static_cast<size_t>(from.rows)) {
-    return std::nullopt;
-  }
+  if (3 * displacements.size() < static_cast<size_t>(from.rows)) return std::nullopt;
   return UpperMedian(std::move(displacements)) / std::max(small_.cols, small_.rows);
 }
 

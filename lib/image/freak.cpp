@@ -18,7 +18,7 @@ constexpr int kFieldsOfRing = 6;
 // thirds of its pattern scale of 22 px.
 constexpr std::array<double, kFreakRings> kRingRadii = {24, 18, 13, 9, 6, 4, 3, 0};
 constexpr double kPxPerRadius = 22.0 / 36.0;
-// Radius of the outer ring, and the standard deviation of its fields, px.
+// Radius of the outer ring plus the standard deviation of its fields, px.
 constexpr int kFreakPatchRadius = 22;
 
 // Standard deviation of the Gaussian of a ring's fields, px: half the ring's radius; for the centre

@@ -104,8 +104,6 @@ std::optional<int> ExifOrientation(std::string_view exif) {
 
 namespace {
 
-using namespace std::string_view_literals;
-
 // TIFF 6.0, section 8 and "Tiled images".
 constexpr std::uint64_t kWidth = 256, kHeight = 257, kBitsPerSample = 258, kCompression = 259;
 constexpr std::uint64_t kSamplesPerPixel = 277;

@@ -63,8 +63,9 @@ bool IsVideo(std::string_view first_bytes) {
 }
 
 VideoReader::VideoReader(const std::filesystem::path& path) : path_(path) {
-  if (!IsFile(path))
+  if (!IsFile(path)) {
     throw InputError(fmt::format("{}: no such file; expected {}", path.string(), kFormats));
+  }
   RecordInput(path);
   if (!IsVideo(FirstBytes(path))) {
     throw InputError(
@@ -94,8 +95,8 @@ bool VideoReader::Next() {
   if (!capture_->read(image_) || image_.empty()) return false;
   if (++frames_ > kMaxFrames) {
     throw InputError(
-        fmt::format("{}: has more than {} frames; expected a shorter one, or "
-                    "one with fewer frames per second",
+        fmt::format("{}: has more than {} frames; expected a shorter one, or one with fewer frames "
+                    "per second",
                     path_.string(), kMaxFrames));
   }
   const double time_s = capture_->get(cv::CAP_PROP_POS_MSEC) / 1000.0;

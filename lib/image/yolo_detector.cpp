@@ -79,9 +79,8 @@ void CheckBoxesArePossible(const BoxTally& tally, const YoloFormat& format,
   if (tally.tiny + tally.outside <= kMostImpossible * tally.boxes) return;
   throw InputError(fmt::format(
       "{}: of {} boxes {} are smaller than {} pixels of the input and {} others are outside of the "
-      "image; "
-      "expected boxes of objects. Taken for {}: another layout or other pixel values are likely "
-      "(output_layout, pixel_values)",
+      "image; expected boxes of objects. Taken for {}: another layout or other pixel values are "
+      "likely (output_layout, pixel_values)",
       network, tally.boxes, tally.tiny, kTinySide, tally.outside, format.Text()));
 }
 

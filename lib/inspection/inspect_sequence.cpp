@@ -98,10 +98,18 @@ Inspection InspectSequence(const std::filesystem::path& file) {
                       {"frames", FramesInWords(sequence)},
                       {"objects", ObjectsInWords(sequence)},
                       {"detections", DetectionsInWords(sequence)}};
-  inspection.table.columns = {{"object", ""},     {"label", ""},           {"plane", ""},
-                              {"views", ""},      {"first_frame", ""},     {"last_frame", ""},
-                              {"mean_score", ""}, {"mean_width", "px", 0}, {"mean_height", "px", 0},
-                              {"cut_boxes", ""},  {"truth", ""},           {"static", ""}};
+  inspection.table.columns = {{"object"},
+                              {"label"},
+                              {"plane"},
+                              {"views"},
+                              {"first_frame"},
+                              {"last_frame"},
+                              {"mean_score"},
+                              {"mean_width", "px", 0},
+                              {"mean_height", "px", 0},
+                              {"cut_boxes"},
+                              {"truth"},
+                              {"static"}};
   const auto by_object = DetectionsByObject(sequence);
   for (size_t i = 0; i < sequence.objects.size(); ++i) {
     inspection.table.rows.push_back(ObjectRow(sequence, sequence.objects[i], by_object[i]));
