@@ -148,7 +148,8 @@ std::string JsonText(const json& document, int indent) {
 
 std::string Excerpt(const json& value) {
   constexpr size_t kMaxLength = 60;
-  const std::string text = value.dump(-1, ' ', true);
+  const std::string text =
+      value.dump(-1, ' ', /*ensure_ascii=*/true, json::error_handler_t::replace);
   return text.size() <= kMaxLength ? text : text.substr(0, kMaxLength) + "...";
 }
 

@@ -2,10 +2,7 @@
 #include "association/fit_object.h"
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <cmath>
-#include <limits>
-#include <memory>
 #include <numbers>
 #include <vector>
 

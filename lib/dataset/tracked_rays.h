@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dataset/dataset_checks.h"
+#include "geometry/rigid3.h"
 
 namespace soslam {
 

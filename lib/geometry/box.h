@@ -45,7 +45,7 @@ inline double CommonArea(const Box& one, const Box& other) {
   return std::max(0.0, width) * std::max(0.0, height);
 }
 
-// The intersection over union of two boxes; 0 where they only touch.
+// The intersection over union of two boxes; 0 unless they have an area in common.
 inline double BoxOverlap(const Box& one, const Box& other) {
   const double both = CommonArea(one, other);
   return both > 0.0 ? both / (one.Area() + other.Area() - both) : 0.0;

@@ -7,9 +7,10 @@
 
 namespace soslam {
 
-// The nine degrees of freedom of a landmark in tangent space: rotation vector (in the landmark's
-// frame, applied from the left, rad), centre (m), log half axes. Derivatives by a landmark are with
-// respect to these, in this order; residuals mostly have the landmark in the camera frame.
+// The nine degrees of freedom of a landmark in tangent space: rotation vector (in the frame that
+// the landmark is given in, applied from the left, rad), centre (m), log half axes. Derivatives by
+// a landmark are with respect to these, in this order; residuals mostly have the landmark in the
+// camera frame.
 inline constexpr int kLandmarkDof = 9;
 using LandmarkStep = Eigen::Matrix<double, kLandmarkDof, 1>;
 using LandmarkJacobian3 = Eigen::Matrix<double, 3, kLandmarkDof>;

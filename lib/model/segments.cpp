@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "model/segments.h"
 
+#include <cmath>
+
 namespace soslam {
 
 std::vector<std::optional<int>> SegmentsOfObjects(const Sequence& sequence) {
@@ -16,17 +18,19 @@ std::vector<std::optional<int>> SegmentsOfObjects(const Sequence& sequence) {
 }
 
 Eigen::Vector3d UpOfSegment(const Sequence& sequence, int segment) {
-  // Least cosine of the angle between up and the upright direction of the segment's images, and
-  // least mean cosine of theirs.
+  // Least cosine of the angle between up and the upright direction of the segment's images.
   constexpr double kMinUprightCosine = 0.2;
+  // Least length of the sum of n upright directions, in units of sqrt(n), which is that of random
+  // directions.
+  constexpr double kMinUprightSum = 0.5;
   Eigen::Vector3d upright = Eigen::Vector3d::Zero();
-  int frames = 0;
+  double frames = 0.0;
   for (const Frame& frame : sequence.frames) {
     if (frame.segment != segment) continue;
     upright -= frame.world_from_camera.rotation * Eigen::Vector3d::UnitY();
     ++frames;
   }
-  if (upright.norm() <= kMinUprightCosine * frames)
+  if (!(upright.norm() > kMinUprightSum * std::sqrt(frames)))
     upright = Eigen::Vector3d::UnitZ();  // the camera looks in all directions
   upright.normalize();
   Eigen::Vector3d up = upright;

@@ -13,8 +13,8 @@ namespace soslam {
 std::vector<std::optional<int>> SegmentsOfObjects(const Sequence& sequence);
 
 // The up direction in a segment's world: the normal of that plane of its detections which is
-// closest to upright in its images; without such planes, the mean upright direction of its images,
-// or z where they look in all directions.
+// closest to upright, or upright itself without such planes. Upright is the mean upright direction
+// of the segment's images, or z where they look in all directions.
 Eigen::Vector3d UpOfSegment(const Sequence& sequence, int segment);
 
 }  // namespace soslam

@@ -17,7 +17,7 @@ struct PlanesAndHolding {
   Sequence level;  // the sequence with poses that have the same up everywhere
 };
 
-// EstimatePlanes for each camera holding in kCameraHoldings; returns the most probable result.
+// Finds the planes for each camera holding in kCameraHoldings; returns the most probable result.
 // `views`: per frame, with the segments among which vertical edges are searched; empty to not use
 // vertical edges.
 PlanesAndHolding EstimatePlanesAndHolding(const Sequence& sequence,

@@ -198,11 +198,7 @@ class Learner {
   LearnPriorsOptions options_;
 };
 
-}  // namespace
-
-namespace {
-
-// Those of the upright object, as catalogues and tables have them.
+// The true half axes of an object that stands upright, as catalogues and tables have them.
 Eigen::Vector3d TrueHalfAxes(const Object& object, const SemanticTable& table) {
   Eigen::Vector3d half_axes = InOwnAxes(object.ground_truth->landmark_in_world).half_axes;
   const bool is_on_wall = table.Find(object.label).value_or(ShapePrior()).mount == Mount::kOnWall;

@@ -52,9 +52,7 @@ cv::Rect Around(const Box& box, const Camera& camera) {
 
 // The largest box that is whole, or else the largest, among the frames with an image.
 const SeenBox* BestBox(const std::vector<SeenBox>& boxes, const ImageSource& images) {
-  const auto rank = [](const SeenBox& seen) {
-    return std::pair(seen.is_whole, seen.box.Width() * seen.box.Height());
-  };
+  const auto rank = [](const SeenBox& seen) { return std::pair(seen.is_whole, seen.box.Area()); };
   const SeenBox* best = nullptr;
   for (const SeenBox& seen : boxes) {
     if (!images.has(seen.frame_index)) continue;

@@ -104,7 +104,7 @@ PlaneGrids GridsOfMap(const MapEstimate& map, const Sequence& sequence) {
   if (points.empty()) return {};
   for (const ObjectEstimate& estimate : map.objects) {
     const Object& object = sequence.objects[estimate.object_index];
-    if (!estimate.landmark_in_world) continue;
+    if (!estimate.landmark_in_world || object.plane_index == kNoPlane) continue;
     points[object.plane_index].push_back(estimate.landmark_in_world->Centre());
   }
   return GridsAround(points, map.planes_in_world);

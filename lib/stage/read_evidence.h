@@ -12,14 +12,12 @@
 
 namespace soslam {
 
-// What stages take as evidence besides boxes: files that must be of the sequence that they get.
-
 // The edge maps of a sequence in file "edges". Both arguments must outlive it.
 class EdgesOfSequence {
  public:
   EdgesOfSequence(const Sequence& sequence, const StageFiles& files);
   // Thread-safe. Throws InputError when the frame is missing, or its maps are not of its camera's
-  // size: edges of other images would be evidence for anything in silence.
+  // size, as those of other images.
   EdgeMaps Read(const Frame& frame) const;
 
  private:

@@ -7,7 +7,6 @@
 #include "cli/stage_files.h"
 #include "model/sequence.h"
 #include "planes/up_prior.h"
-#include "stage/frame_images.h"
 
 namespace soslam {
 

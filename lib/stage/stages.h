@@ -112,7 +112,7 @@ void RunAssociate(const AssociateOptions& options, const StageFiles& files, int 
 // soslam-planes: files "sequence", "table" and, with verticals, the images of folder "dataset" to
 // "output", the sequence with estimated planes, and "report", planes.json. Throws SettingsError for
 // planes = given and for verticals without a dataset, InputError for estimated planes of several
-// segments, NothingUsableError as EstimatePlanes, and when no object is on a plane.
+// segments, NothingUsableError when no plane is found or no object is on one.
 void RunPlanes(const PlanesOptions& options, const StageFiles& files, int threads);
 
 // soslam-ground: files "sequence", "points" (points.h5), "table" and, with verticals, the images of

@@ -47,7 +47,7 @@ struct PipelineStage {
 };
 
 const std::vector<PipelineStage>& Stages() {
-  const StageOutput sequence = {"output", "sequence.json"};
+  static const StageOutput sequence = {"output", "sequence.json"};
   static const std::vector<PipelineStage> stages = {
       {"import", &Resolve<ImportOptions>, {}, {"dataset"}, {sequence}},
       {"ground",
@@ -219,7 +219,8 @@ std::vector<StageOutput> OutputsOfStage(const std::string& stage) {
 }
 
 bool StageReads(const std::string& stage, const std::string& input) {
-  return FindStage(stage)->other_inputs.contains(input);
+  const PipelineStage* found = FindStage(stage);
+  return found != nullptr && found->other_inputs.contains(input);
 }
 
 bool UsesImages(const std::string& stage, const json& settings) {

@@ -6,7 +6,6 @@
 #include "geometry/angles.h"
 #include "initialisation/initialise.h"
 #include "initialisation/upright_observation.h"
-#include "support/random.h"
 
 namespace soslam {
 namespace {

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "geometry/angles.h"
-#include "planes/estimate_planes.h"
 #include "planes/plane_heights.h"
 #include "planes/standing_body.h"
 #include "support/random.h"

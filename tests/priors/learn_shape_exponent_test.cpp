@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "priors/learn_priors.h"
-#include "support/drawn_cuboids.h"
 #include "support/views_of_bodies.h"
 
 namespace soslam {

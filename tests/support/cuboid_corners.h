@@ -10,7 +10,7 @@
 
 namespace soslam {
 
-// In the landmark's frame.
+// The eight corners of a cuboid, in the frame that the landmark is given in.
 inline std::vector<Eigen::Vector3d> CornersOf(const Landmark& cuboid) {
   std::vector<Eigen::Vector3d> corners;
   for (int i = 0; i < 8; ++i) {

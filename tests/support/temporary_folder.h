@@ -42,7 +42,11 @@ template <typename Run>
 void ExpectSameBytesForThreads(const Run& run, const std::vector<std::filesystem::path>& files) {
   run(1);
   std::vector<std::string> bytes;
-  for (const std::filesystem::path& file : files) bytes.push_back(FileBytes(file));
+  for (const std::filesystem::path& file : files) {
+    bytes.push_back(FileBytes(file));
+    EXPECT_FALSE(bytes.back().empty()) << file;
+    std::filesystem::remove(file);
+  }
   run(3);
   for (size_t i = 0; i < files.size(); ++i) EXPECT_EQ(FileBytes(files[i]), bytes[i]) << files[i];
 }
