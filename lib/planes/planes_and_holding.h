@@ -12,6 +12,7 @@
 
 namespace soslam {
 
+// Planes under the most probable camera holding.
 struct PlanesAndHolding {
   PlanesEstimate estimate;
   Sequence level;  // the sequence with poses that have the same up everywhere
