@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <set>
@@ -59,13 +58,6 @@ TEST(ScaleFromWorld, SaysWhatContradictsScaleAndUp) {
   EXPECT_EQ(ScaleFromWorld(world, {}).warning,
             "The scale may be wrong by more than that: the heights of objects contradict one "
             "another. Up may be wrong by more than that: the photos are turned in many ways.");
-}
-
-TEST(ScaleFromWorld, SaysPlainlyThatItIsUnknown) {
-  const ScaleOfMap scale = ScaleFromWorld(World({}), {});
-  EXPECT_FALSE(scale.in_metres);
-  EXPECT_NE(scale.sentence.find("no unit"), std::string::npos);
-  EXPECT_NE(scale.sentence.find("Up ± 0.4°"), std::string::npos);
 }
 
 TEST(ScaleFromWorld, WithoutTheFileIsThatOfTheSequence) {
@@ -169,11 +161,6 @@ TEST_F(SupportInWordsTest, SaysThatAnObjectLies) {
   EXPECT_EQ(Words(1), "on its side, on plane 7, 72 cm above the lowest plane");
 }
 
-TEST_F(SupportInWordsTest, IsTheGroundWhereEachObjectHasAPlane) {
-  while (sequence_.planes.size() < 9) sequence_.planes.push_back(sequence_.planes.back());
-  EXPECT_EQ(Words(1), "on the ground");
-}
-
 TEST_F(SupportInWordsTest, IsTheFloorWhereSomethingTallIsOnIt) {
   map_.objects[0].landmark_in_world->half_axes.z() = 0.4;
   EXPECT_EQ(Words(0), "on the floor");
@@ -181,8 +168,6 @@ TEST_F(SupportInWordsTest, IsTheFloorWhereSomethingTallIsOnIt) {
   EXPECT_EQ(Words(0, {false, 0.0, ""}), "on the lowest plane");
   EXPECT_EQ(Words(0, {.up_is_in_doubt = true}), "on the lowest plane");
 }
-
-using testing::HasSubstr;
 
 json Track(const std::string& fate, const json& merged_into = {}) {
   json merge;
@@ -202,21 +187,6 @@ TEST(FateInWords, IsASentenceOfItsOwnForEachFate) {
     EXPECT_TRUE(reasons.insert(reason).second) << reason;
   }
   EXPECT_EQ(reasons.size(), kTrackFateNames.size() - 2);
-}
-
-TEST(FateInWords, HasTheNumbersOfTheDecision) {
-  EXPECT_EQ(FateInWords(Track("rarely_detected"), {}),
-            "detected in only 3 of the 58 images that should show it");
-  EXPECT_THAT(FateInWords(Track("too_few_detections"), {{"min_observations", 3}}),
-              HasSubstr("fewer than 3 boxes"));
-  EXPECT_EQ(FateInWords(Track("a_fate_to_come"), {}), "a fate to come");
-}
-
-TEST(FailureInWords, IsTheReasonOrItsNameWithBlanks) {
-  EXPECT_EQ(FailureInWords("moving"), "it moves, or may move");
-  EXPECT_EQ(FailureInWords("fewer_than_three_views"), "seen in fewer than three images");
-  EXPECT_EQ(FailureInWords("no_start"), "no initial estimate");
-  EXPECT_EQ(FailureInWords("another_reason"), "another reason");
 }
 
 // Associations of seven detections, and the sequence that has those that were not used.
@@ -282,11 +252,6 @@ TEST_F(TracksLeftOutTest, AreRefusedWithATrackThatIsNotThere) {
   associations_["detections"][1]["track"] = 1;
   associations_["tracks"][1]["merge"] = {{"into_track", 2}};  // a circle
   EXPECT_EQ(TracksLeftOut(associations_, sequence_).size(), 3u);
-}
-
-TEST_F(TracksLeftOutTest, AreUnknownInSequencesOfOldVersions) {
-  sequence_.rejected.clear();
-  EXPECT_TRUE(TracksLeftOut(associations_, sequence_).empty());
 }
 
 }  // namespace

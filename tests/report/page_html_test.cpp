@@ -28,19 +28,6 @@ TEST(HtmlText, IsTextWithinElementsAndQuotes) {
             "&lt;b a=&#39;1&#39; c=&quot;2&quot;&gt; &amp; \xef\xbf\xbd");
 }
 
-TEST(HtmlTable, HasRowsWithTheirIndices) {
-  Table table;
-  table.name = "metrics";
-  table.header = {"<a>", "b"};
-  table.rows = {{"x", {"1.00", true}}, {"&", "2.00"}};
-  EXPECT_EQ(HtmlTable(table, {7, 3}),
-            "<div class=\"scroll metrics\"><table>\n"
-            "<thead><tr><th>&lt;a&gt;</th><th>b</th></tr></thead>\n<tbody>\n"
-            "<tr data-index=\"7\"><td>x</td><td class=\"best\">1.00</td></tr>\n"
-            "<tr data-index=\"3\"><td>&amp;</td><td>2.00</td></tr>\n"
-            "</tbody>\n</table></div>\n");
-}
-
 TEST(PageHtml, EndsNoElementBecauseOfWhatItShows) {
   const std::string html = PageHtml("</title> & \xff", "<p>shown</p>",
                                     {{"label", "</script><script>alert(1)"}}, PageScripts::kNone);

@@ -61,12 +61,6 @@ TEST(PageDescriptors, TellWhereTheTrueYawHasNoCost) {
   EXPECT_TRUE(PageDescriptors({gap}).at("wave").at("near_where_known").is_null());
 }
 
-TEST(PageDescriptors, NeedTheTruth) {
-  SymmetryRecord record = Record(40, 1, 44);
-  record.true_yaw.reset();
-  EXPECT_TRUE(PageDescriptors({record}).empty());
-}
-
 // Frames with ids `first_id`, 10 more and so on; a detection in every `step`-th.
 Sequence Recording(int frames, int step, int first_id = 10) {
   Sequence sequence;
@@ -149,13 +143,6 @@ TEST(GridsOfMap, AreOnThePlanesOfTheMap) {
   EXPECT_TRUE(GridsOfMap({}, sequence).empty());
 }
 
-TEST(GridsOfSequence, AreNoneWhereItIsNotKnownOnWhichPlaneObjectsStand) {
-  Sequence sequence = CuboidSequence(3, 5);
-  EXPECT_FALSE(GridsOfSequence(sequence)[kFloor].empty());
-  for (Object& object : sequence.objects) object.plane_index = kNoPlane;
-  EXPECT_TRUE(GridsOfSequence(sequence).empty());
-}
-
 TEST(UpOfSegment, IsTheFloorsAndNotTheWalls) {
   Sequence sequence = CuboidSequence(3, 5);
   const Plane floor = sequence.planes[kFloor].plane_in_world;
@@ -168,14 +155,6 @@ TEST(UpOfSegment, IsTheFloorsAndNotTheWalls) {
   EXPECT_LT((UpOfSegment(sequence, 0) - floor.normal).norm(), 1e-12);
 }
 
-TEST(UpOfSegment, IsThatOfTheImagesWithoutAFloor) {
-  Sequence sequence = CuboidSequence(3, 5);
-  const Eigen::Vector3d normal = sequence.planes[kFloor].plane_in_world.normal;
-  sequence.planes[kFloor].plane_in_world.normal = normal.unitOrthogonal();
-  EXPECT_GT(UpOfSegment(sequence, 0).dot(normal), 0.7);
-  EXPECT_NEAR(UpOfSegment(sequence, 1).norm(), 1.0, 1e-12);  // none of its frames
-}
-
 using testing::ElementsAre;
 
 const auto kNoImage = [](int) { return false; };
@@ -185,31 +164,12 @@ TEST(FramesToShow, AreThoseWithImages) {
               ElementsAre(20, 60));
 }
 
-TEST(FramesToShow, AreAllWhereThereAreNoImages) {
-  EXPECT_EQ(FramesToShow(Recording(9, 2), kNoImage).size(), 9u);
-}
-
 TEST(FramesToShow, AreFewOfManyAndHaveDetections) {
   const Sequence sequence = Recording(1000, 4);
   const std::set<int> ids = FramesToShow(sequence, kNoImage);
   EXPECT_EQ(ids.size(), kMaxShownFrames);
   for (const int id : ids) EXPECT_EQ((id / 10 - 1) % 4, 0);
   EXPECT_GT(*ids.rbegin(), 9000);
-}
-
-TEST(SelectForPage, HasAllThatIsShownAndSomeOfTheWay) {
-  const Sequence sequence = Recording(5000, 2);
-  const PageSelection selection = SelectForPage(sequence, {10, 40, 30030});
-  EXPECT_THAT(selection.shown, ElementsAre(0, 3, 3002));
-  EXPECT_THAT(selection.detections, ElementsAre(0, 1501));
-  EXPECT_GE(selection.frames.size(), kMaxWayFrames);
-  EXPECT_LE(selection.frames.size(), kMaxWayFrames + 3);
-  for (const int frame : selection.shown) {
-    EXPECT_TRUE(selection.Shows(frame));
-    EXPECT_EQ(selection.frames[selection.PlaceOfFrame(frame)], frame);
-  }
-  EXPECT_EQ(selection.PlaceOfDetection(1501), 1);
-  EXPECT_FALSE(selection.Shows(1));
 }
 
 cv::Mat Noise() {
@@ -312,16 +272,6 @@ json Fitted(size_t max_bytes) {
       max_bytes, [](const json& all) { return PageText(all).size(); }, &data);
   EXPECT_LE(PageText(data).size(), max_bytes + 200);  // the notes
   return data;
-}
-
-TEST(FitPageData, ChangesNothingThatFits) { EXPECT_EQ(Fitted(6 * kPart), Data()); }
-
-TEST(FitPageData, LeavesOutCurvesFirst) {
-  json expected = Data();
-  expected["symmetries"][0]["curves"] = json::array();
-  expected["notes"].push_back(
-      "For lack of room the cost over yaw of single observations is left out.");
-  EXPECT_EQ(Fitted(5 * kPart), expected);
 }
 
 TEST(FitPageData, ThenKeepsTheNumbersOfSingleFramesOnly) {

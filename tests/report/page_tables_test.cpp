@@ -70,20 +70,6 @@ TEST(DatasetTables, HaveTheNumbersOfAllVariantsTheBestBold) {
               HasSubstr("<td>InitP</td><td>2</td><td>9</td><td class=\"best\">0.400</td></tr>"));
 }
 
-TEST(DatasetTables, ExplainOnlyWhatIsMeasured) {
-  json page = Page();
-  EXPECT_THAT(DatasetTables(page), AllOf(HasSubstr("IoU: overlap of the cuboids"),
-                                         HasSubstr("ATE: root"), HasSubstr("Worst first")));
-  page["has_true_objects"] = false;
-  for (json& variant : page["variants"]) variant["metrics"]["summary"]["iou_mean"] = nullptr;
-  const std::string html = DatasetTables(page);
-  EXPECT_THAT(html, AllOf(HasSubstr("<td>OursP</td><td class=\"best\">0.0123</td>"),
-                          HasSubstr("ATE: root")));
-  for (const char* words : {"cuboids", "Rot", "yaw error", "Yaw error", "Worst first"}) {
-    EXPECT_THAT(html, Not(HasSubstr(words)));
-  }
-}
-
 TEST(DatasetTables, HaveTheObjectsOfEachVariantWorstFirst) {
   const std::string html = DatasetTables(Page());
   EXPECT_THAT(html, HasSubstr("<details open><summary>OursS</summary>"));
@@ -95,47 +81,11 @@ TEST(DatasetTables, HaveTheObjectsOfEachVariantWorstFirst) {
   EXPECT_THAT(html, Not(HasSubstr("<cup>")));
 }
 
-TEST(DatasetTables, HaveWhatCameOutOfTheStages) {
-  EXPECT_THAT(
-      DatasetTables(Page()),
-      AllOf(HasSubstr("<td>OursP</td><td>1</td><td>1 too few views</td><td>12</td><td>yes</td>"
-                      "<td>40 detection</td><td>2 behind camera</td>"),
-            HasSubstr("<td>SVD</td><td>failed: &lt;x&gt;</td>"), HasSubstr("a note")));
-}
-
-TEST(DatasetTables, BeginWithTheMapAndLeadToTheFindingsBelow) {
-  json page = Page();
-  page["map_section"] = "<section>the map</section>\n";
-  page["findings"] = {{{"severity", "error"},
-                       {"check", "up"},
-                       {"found", "f"},
-                       {"expected", "e"},
-                       {"cause", "c"},
-                       {"remedy", "r"},
-                       {"where", "w"}}};
-  const std::string html = DatasetTables(page);
-  EXPECT_LT(html.find("<a href=\"#remarks\">1 finding</a>"), html.find("the map</section>"));
-  EXPECT_LT(html.find("the map</section>"), html.find("<div id=\"remarks\">\n<h3>Findings"));
-  EXPECT_LT(html.find("<h3>Findings"), html.find("<h2>Numbers"));
-  EXPECT_THAT(DatasetTables(Page()), Not(HasSubstr("#remarks")));
-}
-
 TEST(DetailedVariants, AreThoseWithMostToShowFirst) {
   json page = Page();
   EXPECT_EQ(DetailedVariants(page), (std::vector<size_t>{2, 1, 0}));
   page["variants"][2]["numbers_only"] = true;
   EXPECT_EQ(DetailedVariants(page), (std::vector<size_t>{1, 0}));
-}
-
-TEST(OverviewTables, LeadToTheDatasets) {
-  json dataset = Page();
-  dataset["counts"] = dataset["sequences"][0]["counts"];
-  json lost = dataset;
-  lost["counts"] = nullptr;
-  lost["variants"] = json::array();
-  EXPECT_THAT(OverviewTables({{"datasets", {dataset, lost}}}),
-              AllOf(HasSubstr("<a href=\"./a%20b/report.html\">"), HasSubstr("<td>OursP</td>"),
-                    HasSubstr("Nothing of it can be shown.")));
 }
 
 }  // namespace

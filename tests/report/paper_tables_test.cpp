@@ -162,16 +162,6 @@ TEST(Published, AveragesArePrintedAsWeightedByObjects) {
   }
 }
 
-TEST(Published, FindsTablesByNumberAndQuantity) {
-  const Published published = ReadPublished(kFile);
-  const PublishedTable* const table = published.Find("II", kRotation);
-  ASSERT_NE(table, nullptr);
-  EXPECT_EQ(table->rows.front().dataset, "icl_room2");
-  EXPECT_EQ(table->rows.front().values.at("InitPT"), 13.97);
-  EXPECT_EQ(published.Find("II", kIou), nullptr);
-  EXPECT_EQ(published.times.values.at(3).ms_mean, 295.3);
-}
-
 TEST(Published, RefusesWhatTheSchemaDoesNotAllow) {
   const TemporaryFolder folder;
   nlohmann::json document = ParseJsonFile(kFile);

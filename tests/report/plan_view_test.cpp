@@ -15,7 +15,6 @@ namespace soslam {
 namespace {
 
 using testing::HasSubstr;
-using testing::Not;
 
 constexpr double kPi = std::numbers::pi;
 const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();
@@ -167,15 +166,6 @@ TEST(PlanSvg, HasNamesAsTextAndShortensLongOnes) {
   EXPECT_THAT(PlanSvg(plan, kWidePlan), HasSubstr(">&lt;b&gt;&amp;</text>"));
   plan.objects[0].name = std::string(17, 'x') + "ééé" + std::string(400, 'y');
   EXPECT_THAT(PlanSvg(plan, kWidePlan), HasSubstr(">" + std::string(17, 'x') + "é…</text>"));
-}
-
-TEST(PlanSvg, HasPicturesWhereThereAreSome) {
-  PlanView plan = PlanOf(2);
-  plan.objects[1].picture = "";
-  const std::string svg = PlanSvg(plan, kWidePlan);
-  EXPECT_THAT(svg, HasSubstr("<use href=\"#p0\""));
-  EXPECT_THAT(svg, Not(HasSubstr("href=\"#\"")));
-  EXPECT_THAT(svg, HasSubstr(">object 1</text>"));
 }
 
 }  // namespace

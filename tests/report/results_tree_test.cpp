@@ -42,43 +42,6 @@ TEST(KnownVariants, AreThoseOfThePipelines) {
   }
 }
 
-TEST(ReadResults, FolderThatDoesNotExistHoldsNothing) {
-  const ResultsFolder results;
-  EXPECT_TRUE(ReadResults(results.path() / "none").empty());
-}
-
-TEST(ReadResults, MetricsBelongToEvaluatedVariantsOnly) {
-  const ResultsFolder results;
-  results.WriteMetrics("room", "InitP", {{.id = 1, .iou = 0.25}, {.id = 2, .iou = 0.75}});
-  results.WriteStages("room", "SVD", {"import-12"});
-  const DatasetResult room = ReadResults(results.path()).front();
-  EXPECT_EQ(room.Evaluated("SVD"), nullptr);
-  EXPECT_EQ(room.Evaluated("InitS"), nullptr);
-  const VariantResult* const variant = room.Evaluated("InitP");
-  ASSERT_NE(variant, nullptr);
-  EXPECT_EQ(MetricsNumber(*variant, "/summary/iou_mean"), 0.5);
-  EXPECT_EQ(MetricsNumber(*variant, "/summary/rotation_deg_mean"), std::nullopt);
-  EXPECT_EQ(MetricsNumber(*variant, "/first_observation/iou_mean"), std::nullopt);
-  EXPECT_EQ(MetricsNumber(room.variants.front(), "/summary/iou_mean"), std::nullopt);
-}
-
-TEST(ReadResults, StageRunsWithTheirTimings) {
-  const ResultsFolder results;
-  results.WriteStages("room", "InitP", {"import-12", "initialise-34"});
-  results.WriteTiming("room", "initialise-34", 2.0, 3.0);
-  const DatasetResult room = ReadResults(results.path()).front();
-  const std::vector<StageRun>& stages = room.variants.front().stages;
-  ASSERT_EQ(stages.size(), 2u);
-  EXPECT_EQ(stages[0].stage, "import");
-  EXPECT_FALSE(stages[0].timing);
-  EXPECT_EQ(stages[1].stage, "initialise");
-  ASSERT_TRUE(stages[1].timing);
-  EXPECT_EQ(stages[1].timing->wall_s, 2.0);
-  EXPECT_EQ(stages[1].timing->cpu_s, 3.0);
-  EXPECT_EQ(stages[1].timing->threads, 2);
-  EXPECT_EQ(stages[1].timing->machine->cpu, "A CPU");
-}
-
 TEST(ReadResults, TimingsFromBeforeMachinesWereRecorded) {
   const ResultsFolder results;
   results.WriteStages("room", "InitP", {"import-12"});
@@ -99,19 +62,6 @@ TEST(ReadResults, RefusesBrokenFilesByName) {
   fs::remove(timing);
   WriteBytes(results.VariantFolder("room", "InitP") / "metrics.json", "{");
   ExpectError<InputError>([&] { ReadResults(results.path()); }, {"room/InitP/metrics.json"});
-}
-
-TEST(ObjectValues, LeaveOutObjectsWithoutTheQuantity) {
-  const ResultsFolder results;
-  results.WriteMetrics("room", "InitP",
-                       {{.id = 7, .iou = 0.25, .rotation_deg = 4.0}, {.id = 9, .iou = 0.75}});
-  const DatasetResult room = ReadResults(results.path()).front();
-  const VariantResult& variant = room.variants.front();
-  EXPECT_EQ(ObjectValues(variant, kIou).size(), 2u);
-  const std::vector<ObjectValue> rotations = ObjectValues(variant, kRotation);
-  ASSERT_EQ(rotations.size(), 1u);
-  EXPECT_EQ(rotations[0].object_id, 7);
-  EXPECT_EQ(rotations[0].value, 4.0);
 }
 
 class VariantStateTest : public testing::Test {

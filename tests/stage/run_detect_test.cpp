@@ -99,17 +99,6 @@ TEST_F(RunDetectTest, SameBytesForAnyNumberOfThreads) {
   EXPECT_EQ(FileBytes(folder_ / "one.csv"), FileBytes(folder_ / "many.csv"));
 }
 
-TEST_F(RunDetectTest, CocoLabelsWithoutALabelFile) {
-  std::vector<float> candidate(85, 0.0F);
-  candidate[0] = candidate[1] = 32, candidate[2] = candidate[3] = 10, candidate[4] = 1;
-  candidate[5 + 77] = 0.5F;
-  WriteBytes(folder_ / "net.onnx", MeanNetwork{{1, 1, 85}, candidate, {}}.Onnx());
-  StageFiles files = Files();
-  files.erase("labels");
-  Run(files);
-  EXPECT_EQ(ReadDetectionsCsv(folder_ / "detections.csv").at(0).label, "teddy bear");
-}
-
 TEST_F(RunDetectTest, BadInputIsNamedAndNothingIsWritten) {
   StageFiles files = Files();
   files["network"] = folder_ / "none.onnx";

@@ -132,16 +132,5 @@ TEST_F(RunEdgesTest, AnImageHasTheSizeOfItsFramesCamera) {
   EXPECT_EQ(EdgesReader(folder_ / "edges.h5").Read(15).grey.cols, 60);
 }
 
-TEST_F(RunEdgesTest, CameraBeyondSixteenBitsIsRefused) {
-  sequence_.camera.width = 40'000;
-  ExpectRefused({"sequence.json", "40000", "32767"});
-}
-
-TEST_F(RunEdgesTest, BadSettingsAreRefused) {
-  EdgesOptions options;
-  options.canny_low = 200.0;
-  ExpectError<SettingsError>([&] { RunEdges(options, Files(), 1); }, {"canny_low"});
-}
-
 }  // namespace
 }  // namespace soslam

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "artefact/files.h"
-#include "association/association.h"
 #include "base/error.h"
 #include "dataset/trajectories.h"
 #include "stage/stages.h"
@@ -93,12 +92,6 @@ TEST_F(RunExportTest, WithoutAMapThereAreThePosesOfTheSequence) {
             sequence_.frames[2].world_from_camera.translation);
   ExpectRefused<SettingsError>({}, {{"trajectory", "t.txt"}, {"csv", "l.csv"}},
                                {"no objects", "--map", "truth"});
-}
-
-TEST_F(RunExportTest, TrajectoryNeedsNoPlanes) {
-  WriteSequence(File("sequence.json"), WithoutPlanes(sequence_), {});
-  Run({}, {{"trajectory", "t.txt"}});
-  EXPECT_EQ(ReadTrajectory(File("t.txt")).size(), sequence_.frames.size());
 }
 
 TEST_F(RunExportTest, TruthIsPosesAndObjects) {

@@ -106,15 +106,6 @@ TEST_F(RunImportTest, ArtefactNamesSettingsAndTheFilesThatWereRead) {
                                    "objects.json", "odometry.txt", "planes.json", "rgb.txt"));
 }
 
-TEST_F(RunImportTest, ATrajectoryThatIsNotReadIsNotAnInput) {
-  ImportOptions options;
-  options.trajectory = TrajectorySource::kGroundTruth;
-  Run(options);
-  for (const auto& input : ParseJsonFile(files.at("output")).at("artefact").at("inputs")) {
-    EXPECT_NE(input.at("file"), "odometry.txt");
-  }
-}
-
 constexpr const char* kScene = R"({
   "name": "tiny",
   "camera": {"width": 80, "height": 60, "fx": 60, "fy": 60, "cx": 39.5, "cy": 29.5},

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
-#include <opencv2/imgproc.hpp>
 
 #include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
@@ -19,8 +16,6 @@
 #include "support/printed.h"
 #include "support/scene.h"
 #include "support/temporary_folder.h"
-#include "synthesis/render.h"
-#include "synthesis/scene.h"
 
 namespace soslam {
 namespace {
@@ -109,13 +104,6 @@ TEST_F(RunInitialiseCuboidsTest, NamesWhatHasNoCuboid) {
   }
 }
 
-TEST_F(RunInitialiseCuboidsTest, SaysWhereNothingHasACuboid) {
-  for (Frame& frame : sequence_.frames) frame.image.clear();
-  WriteEdges();
-  ExpectError<NothingUsableError>([&] { Run(); }, {"no landmark", "frame_without_image"});
-  EXPECT_FALSE(std::filesystem::exists(files_.at("output")));
-}
-
 TEST_F(RunInitialiseCuboidsTest, RefusesToRunWithoutEdges) {
   files_.erase("edges");
   ExpectError<SettingsError>([&] { Run(); }, {"method = cuboid_proposals needs --edges FILE"});
@@ -143,126 +131,6 @@ TEST_F(RunInitialiseCuboidsTest, AllStagesRefuseEdgesOfImagesOfAnotherSize) {
   optimise.detection_model = DetectionModel::kTangency;
   optimise.edge_alignment = true;
   ExpectError<InputError>([&] { RunOptimise(optimise, files, 2); }, words);
-}
-
-bool HasInput(const std::filesystem::path& artefact, const std::string& name) {
-  const auto inputs = nlohmann::json::parse(FileBytes(artefact)).at("artefact").at("inputs");
-  return std::ranges::any_of(inputs, [&](const auto& input) { return input.at("file") == name; });
-}
-
-TEST_F(RunInitialiseCuboidsTest, PointsAreEvidenceInSweepAndProfile) {
-  WriteEdges();
-  WritePoints(folder_ / "points.h5", PointsOnObjects(sequence_, 20), {});
-  options_.method = InitialisationMethod::kYawSweep;
-  options_.ratio_prior = RatioPrior::kGroundTruth;
-  OrientationOptions refine;
-  refine.method = RefinementMethod::kProfile;
-  refine.turn.ratio_prior = RatioPrior::kGroundTruth;
-  const auto lowest_cost = [](const LandmarkEstimates& estimates) {
-    return estimates.observations.front().hypotheses.front().cost;
-  };
-  const std::string all_have_points =
-      fmt::format("; points in {0} of {0} observations\n", sequence_.detections.size());
-  const auto run_refine = [&] {
-    StageFiles files = files_;
-    files["initial"] = files_.at("output");
-    files["output"] = folder_ / "refined.json";
-    files["curves"] = folder_ / "symmetry.h5";
-    const std::string printed = PrintedBy([&] { RunRefine(refine, files, 2); }).output;
-    EXPECT_EQ(printed.find(all_have_points) != std::string::npos,
-              refine.profile.points.point_evidence)
-        << printed;
-    return lowest_cost(ReadLandmarks(files.at("output"), sequence_));
-  };
-
-  const double initial_cost = lowest_cost(Run());
-  const double refined_cost = run_refine();
-  EXPECT_FALSE(HasInput(folder_ / "refined.json", "points.h5"));
-
-  files_["points"] = folder_ / "points.h5";
-  refine.profile.points.point_evidence = true;
-  EXPECT_GT(run_refine(), refined_cost + 1.0);
-  EXPECT_TRUE(HasInput(folder_ / "refined.json", "points.h5"));
-  options_.points.point_evidence = true;
-  EXPECT_GT(lowest_cost(Run()), initial_cost + 1.0);
-  EXPECT_TRUE(HasInput(files_.at("output"), "points.h5"));
-
-  for (Frame& frame : sequence_.frames) frame.id += 1000;
-  ExpectError<InputError>([&] { Run(); }, {"points.h5", "another"});
-}
-
-constexpr double kDisturbance = 6.0 * kRadPerDeg;
-
-// The stage on ellipsoids with symmetric textures, rendered, that start from the truth, turned.
-class RunRefineTest : public testing::Test {
- protected:
-  RunRefineTest() {
-    const Scene scene = ReadScene(SOSLAM_SOURCE_DIR "/pipelines/scenes/ellipsoids.json");
-    sequence_ = SyntheticSequence(scene, false);
-    sequence_.frames.resize(kFrames);
-    std::erase_if(sequence_.detections,
-                  [](const Detection& detection) { return detection.frame_index >= kFrames; });
-    EdgesWriter edges(File("edges"), {});
-    for (Frame& frame : sequence_.frames) {
-      frame.image = "rgb/" + std::to_string(frame.id) + ".png";
-      cv::Mat grey;
-      cv::cvtColor(RenderFrame(scene, frame.world_from_camera), grey, cv::COLOR_BGR2GRAY);
-      edges.Write(frame.id, ComputeEdgeMaps(grey, EdgesOptions()));
-    }
-    edges.Commit();
-    LandmarkEstimates disturbed;
-    for (size_t i = 0; i < sequence_.detections.size(); ++i) {
-      const Landmark truth = *TrueLandmarkInCamera(sequence_, sequence_.detections[i]);
-      disturbed.observations.push_back(
-          {static_cast<int>(i), {{RotatedAboutZ(truth, kDisturbance), 0.0}}, ""});
-    }
-    WriteSequence(File("sequence"), sequence_, {});
-    WriteLandmarks(File("initial"), disturbed, sequence_, {});
-    options_.turn.ratio_prior = RatioPrior::kGroundTruth;
-  }
-
-  std::vector<SymmetryRecord> Run(Descriptor descriptor) {
-    options_.turn.symmetry.descriptor = descriptor;
-    StageFiles files = {{"table", SOSLAM_SOURCE_DIR "/pipelines/priors/semantic_table.json"}};
-    for (const char* name : {"sequence", "initial", "edges", "curves", "output"}) {
-      files[name] = File(name);
-    }
-    RunRefine(options_, files, 2);
-    return ReadSymmetry(File("curves"));
-  }
-
-  static constexpr int kFrames = 1;
-  OrientationOptions options_;
-  Sequence sequence_;
-
- private:
-  std::filesystem::path File(const std::string& name) const { return folder_ / name; }
-
-  TemporaryFolder folder_;
-};
-
-TEST_F(RunRefineTest, TurnsLandmarksBackWithTheDescriptorOfTheOption) {
-  for (const Descriptor descriptor : {Descriptor::kFreak, Descriptor::kImprovedDt}) {
-    std::vector<double> errors_deg;
-    const std::vector<SymmetryRecord> records = Run(descriptor);
-    ASSERT_EQ(records.size(), sequence_.detections.size());
-    for (const SymmetryRecord& record : records) {
-      EXPECT_NEAR(std::abs(YawDifferenceModuloPi(record.initial_yaw, *record.true_yaw)),
-                  kDisturbance, 1e-6);
-      errors_deg.push_back(kDegPerRad *
-                           std::abs(YawDifferenceModuloPi(record.refined_yaw, *record.true_yaw)));
-      for (const char* name : kDescriptorNames) {
-        EXPECT_EQ(record.cost.at(name).size(), record.yaw.size()) << name;
-      }
-      const auto is_fraction = [](double cost) {
-        return std::isnan(cost) || (cost >= 0.0 && cost <= 1.0);
-      };
-      EXPECT_TRUE(std::ranges::all_of(record.cost.at("freak"), is_fraction));
-    }
-    std::ranges::sort(errors_deg);
-    EXPECT_LT(errors_deg[errors_deg.size() / 2], 1.5)
-        << kDescriptorNames[static_cast<size_t>(descriptor)];
-  }
 }
 
 TEST(PointEvidenceInFrames, NeedsPointsAndAMethodThatUsesThem) {

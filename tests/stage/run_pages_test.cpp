@@ -12,9 +12,6 @@
 #include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
 #include "base/error.h"
-#include "base/options.h"
-#include "geometry/angles.h"
-#include "ground/options.h"
 #include "report/page_html.h"
 #include "report/page_parts.h"
 #include "stage/stages.h"
@@ -190,84 +187,6 @@ TEST_F(RunPagesTest, ObjectsWithoutALandmarkAreSeenButNotPlaced) {
                           HasSubstr(" boxes"), HasSubstr("its views are too alike")));
 }
 
-TEST_F(RunPagesTest, ThingsInOneImageAreOnlyCounted) {
-  const int last = static_cast<int>(sequence_.objects.size()) - 1;
-  bool is_first = true;
-  std::erase_if(sequence_.detections, [&](const Detection& detection) {
-    return detection.object_index == last && !std::exchange(is_first, false);
-  });
-  WriteOurs("OursS");
-  const std::string html = Markup();
-  EXPECT_THAT(html, HasSubstr("One more thing was detected in one image only."));
-  EXPECT_THAT(html, testing::Not(HasSubstr("id=\"seen-0\"")));
-}
-
-TEST_F(RunPagesTest, TheMapIsShownWithoutImagesToo) {
-  WriteOurs("OursS");
-  fs::remove_all(Dataset());
-  const std::string html = Markup();
-  EXPECT_EQ(CountOf("<image ", html), 0u);
-  EXPECT_EQ(CountOf("<use ", html), 0u);
-  EXPECT_EQ(CountOf("<polygon ", html), 2u * Estimates().size());
-}
-
-TEST_F(RunPagesTest, TheScaleOfItsWorldIsAboveTheMap) {
-  WriteOurs("OursS");
-  GroundEstimate estimate;
-  estimate.tilt_sigma = 0.4 * kRadPerDeg;
-  const auto section = [&] {
-    WriteWorld(Folder("OursS") / "world.json", estimate, sequence_,
-               {OptionsToJson(GroundOptions()), {}});
-    const std::string html = Markup();
-    return html.substr(0, html.find("</section>"));
-  };
-  EXPECT_THAT(section(), AllOf(HasSubstr("lengths have no unit"), HasSubstr("Up ± 0.4°"),
-                               testing::Not(HasSubstr("cm ("))));
-  estimate.scale = ScalePosterior{.log_sigma = 0.05, .low = -0.1, .high = 0.1};
-  estimate.known_scales = {{0.0, 0.1, "camera_height_m"}};
-  EXPECT_THAT(section(),
-              AllOf(HasSubstr("Scale ± 11 % (95 %)"), HasSubstr("cm ("), HasSubstr(" m</text>")));
-}
-
-// Pictures of what is not placed are left out first.
-TEST_F(RunPagesTest, TheMapFromAboveKeepsToItsRoom) {
-  WriteOurs("OursS");
-  cv::Mat noise(sequence_.camera.height, sequence_.camera.width, CV_8UC3);
-  cv::RNG(1).fill(noise, cv::RNG::UNIFORM, 0, 255);
-  const ImageSource images = {[](int) { return true; }, [&](int) { return noise; }};
-  const auto section = [&](size_t max_bytes) {
-    return MapSection("Map", Folder("OursS"), sequence_, images, max_bytes, 1);
-  };
-  const auto expect_fewer_pictures_below = [&](const std::string& whole, size_t pictures) {
-    EXPECT_EQ(CountOf("<image ", whole), 4u);
-    EXPECT_THAT(whole, testing::Not(HasSubstr("For lack of room")));
-    const std::string smaller = section(whole.size() - 1);
-    EXPECT_EQ(CountOf("<image ", smaller), pictures);
-    EXPECT_THAT(smaller, HasSubstr("For lack of room pictures are left out."));
-  };
-  const std::string whole = section(kMaxPageBytes);
-  expect_fewer_pictures_below(whole, 3);
-  for (size_t max_bytes = whole.size() - 1; max_bytes > 0; max_bytes /= 2) {
-    EXPECT_LE(section(max_bytes).size(), max_bytes);
-  }
-  EXPECT_EQ(section(100), "");
-  // Where nothing is placed, all pictures are of what is not.
-  MapEstimate map = Map();
-  for (ObjectEstimate& estimate : map.objects) estimate.landmark_in_world.reset();
-  WriteOurs("OursS", map);
-  expect_fewer_pictures_below(section(kMaxPageBytes), 0);
-}
-
-// Segments may be named by the numbers of recordings, of which a dataset has some.
-TEST_F(RunPagesTest, PartsAreCounted) {
-  for (Frame& frame : sequence_.frames) frame.segment = 13;
-  WriteOurs("OursS");
-  EXPECT_THAT(Markup(), testing::Not(HasSubstr(" Part ")));
-  sequence_.frames.back().segment = 20;
-  WriteOurs("OursS");
-  EXPECT_THAT(Markup(), HasSubstr(" Part 1 of 2."));
-}
-
 TEST_F(RunPagesTest, PhotosWithoutAPoseAreListed) {
   WriteOurs("OursS");
   EXPECT_THAT(Markup(), testing::Not(HasSubstr("Photos without a pose")));
@@ -355,17 +274,6 @@ INSTANTIATE_TEST_SUITE_P(Files, DamagedVariantTest,
                                          Damage{"symmetry.h5", nullptr},
                                          Damage{"metrics.json", "["}));
 
-TEST_F(RunPagesTest, VariantsWithoutResultsAreNamed) {
-  WriteMultiView("MultiView");
-  results_.WriteStages("room", "InitPT", {"import-1", "initialise-7"});
-  results_.WriteStages("room", "OursPT", {"import-1", "optimise-8"});
-  WriteBytes(Folder("shared/optimise-8") / "failed", "exit code 5: no descent\n");
-  Run();
-  EXPECT_EQ(Unfinished(), (std::map<std::string, std::string>{
-                              {"InitPT", "incomplete: initialise has not run"},
-                              {"OursPT", "failed: optimise: exit code 5: no descent"}}));
-}
-
 TEST_F(RunPagesTest, OlderResultsAreShownAsSuch) {
   WriteMultiView("MultiView");
   WriteBytes(Folder("shared/evaluate-3") / "failed", "exit code 70: bug\n");
@@ -438,14 +346,6 @@ TEST_F(RunPagesTest, WithoutImagesFramesHaveOutlinesAllTheSame) {
   EXPECT_FALSE(page["variants"][0]["outlines"][0]["outline"].empty());
 }
 
-TEST_F(RunPagesTest, ObjectsThatWereNeverDetectedAreWhereAllAre) {
-  sequence_.objects.push_back(sequence_.objects.back());
-  sequence_.objects.back().id += 1;
-  WriteMultiView("MultiView");
-  Run();
-  EXPECT_EQ(PageDataIn(Page())["sequences"][0]["objects"].back()["segment"], 0);
-}
-
 // Thousands of objects.
 using SlowRunPagesTest = RunPagesTest;
 
@@ -511,17 +411,6 @@ TEST_F(RunPagesTest, FindingsAreAtTheTopOfPageAndOverview) {
     const std::string html = FileBytes(page);
     EXPECT_LT(html.find("looks &lt;down&gt;"), html.find("<td>MultiView</td>"));
   }
-}
-
-TEST_F(RunPagesTest, ADatasetWithNothingToShowIsNamedBesideOthers) {
-  WriteMultiView("MultiView");
-  results_.WriteStages("desk", "SVD", {"import-12"});
-  Run();
-  const json datasets = PageDataIn(results_.path() / "report.html")["datasets"];
-  ASSERT_EQ(datasets.size(), 2u);
-  EXPECT_TRUE(datasets[0]["variants"].empty());
-  EXPECT_EQ(datasets[0]["unfinished"][0]["state"], "incomplete: import has not run");
-  EXPECT_FALSE(fs::exists(results_.path() / "desk/report.html"));
 }
 
 TEST_F(RunPagesTest, NothingToShowAtAllIsAnError) {

@@ -107,33 +107,8 @@ TEST_F(SlowRunPlanesTest, PosesAreRefinedWithThePlanes) {
   EXPECT_LT(error_in_last_frames(true), 0.7 * error_in_last_frames(false));
 }
 
-TEST_F(RunPlanesTest, ReportSaysHowCamerasAreHeld) {
-  sequence_ = Rolled(sequence_, 1);
-  WriteSequence(File("sequence"), sequence_, {});
-  Run();
-  const json report = ReadArtefact(File("report"), "planes");
-  EXPECT_EQ(report.at("camera_holding").at("held"), "rolled_90");
-  for (const json& plane : report.at("planes")) {
-    EXPECT_LT(plane.at("error").at("angle_deg").get<double>(), 3.0);
-  }
-  EXPECT_EQ(report.at("camera_holding").at("tried").at(0).at("held"), "level");
-}
-
 TEST_F(SlowRunPlanesTest, SameBytesWithAnyNumberOfThreads) {
   ExpectSameBytesForThreads([&](int threads) { Run(threads); }, {File("output"), File("report")});
-}
-
-TEST_F(RunPlanesTest, CameraHeightIsTheGroundOfEveryFrame) {
-  options_.planes = PlaneSource::kCameraHeight;
-  options_.camera_height_m = 1.1;
-  Run();
-  for (const Detection& detection : ReadSequence(File("output")).detections) {
-    EXPECT_EQ(detection.plane_in_camera.normal, Eigen::Vector3d(0, -1, 0));
-    EXPECT_EQ(detection.plane_in_camera.offset, 1.1);
-  }
-  const json report = ReadArtefact(File("report"), "planes");
-  EXPECT_EQ(report.at("planes").size(), sequence_.objects.size());
-  EXPECT_TRUE(report.at("cost").is_null());
 }
 
 TEST_F(RunPlanesTest, WhatIsOnAWallIsLeftOutAndCounted) {

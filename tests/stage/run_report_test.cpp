@@ -15,7 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
-using testing::Not;
 
 class RunReportTest : public testing::Test {
  protected:
@@ -42,15 +41,6 @@ TEST_F(RunReportTest, DanglingLinkCountsAsMissing) {
   EXPECT_THAT(Report(), testing::ContainsRegex("\\| InitP +\\| +- \\|"));
 }
 
-TEST_F(RunReportTest, TablesOfThePaperAndDifferencesComeBeforeThoseOfDatasets) {
-  for (const char* variant : {"OursS", "OursST"}) Write("room", variant);
-  const std::string report = Report();
-  EXPECT_LT(report.find("## Map, IoU (Table III)"),
-            report.find("## Map, Rot (degrees) (Table IV)"));
-  EXPECT_LT(report.find("(Table IV)"), report.find("## room"));
-  EXPECT_THAT(report, Not(HasSubstr("(Table I)")));
-}
-
 TEST_F(RunReportTest, EachTableIsAFileForProgramsAndForLatex) {
   Write("room", "OursS");
   Report();
@@ -67,16 +57,6 @@ TEST_F(RunReportTest, PublishedValuesAreThoseOfTheFile) {
   EXPECT_THAT(FileBytes(File("tables/table_3_map_iou.csv")),
               HasSubstr("fr3_cabinet,measured,f,1,247,-,0.500,-,-,-,-,-,-\n"
                         "fr3_cabinet,published,-,1,-,0.255,0.316,0.317,-,-,-,-,-\n"));
-}
-
-TEST_F(RunReportTest, SettingsOfADatasetShowInTables) {
-  Write("room", "OursP");
-  fs::create_directories(File("settings"));
-  WriteBytes(File("settings/room.json"),
-             R"({"about": {"published": "fr3_cabinet", "boxes": "a network"}})");
-  files_["published"] = SOSLAM_SOURCE_DIR "/pipelines/published.json";
-  files_["datasets"] = File("settings");
-  EXPECT_THAT(Report(), HasSubstr("room (boxes: a network).\n"));
 }
 
 TEST_F(RunReportTest, APageGetsItsTables) {
