@@ -73,14 +73,6 @@ TEST_F(AtomicFileTest, WithoutCommitTheOldFileStays) {
   EXPECT_EQ(FilesInFolder(), 1);
 }
 
-TEST_F(AtomicFileTest, ReplacesOtherContent) {
-  WriteTextFile(file, "old and longer");
-  WriteTextFile(file, "new");
-  EXPECT_EQ(FileBytes(file), "new");
-  WriteTextFile(file, "");
-  EXPECT_EQ(FileBytes(file), "");
-}
-
 TEST_F(AtomicFileTest, IdenticalContentKeepsItsTime) {
   WriteTextFile(file, "same");
   const auto long_ago = fs::last_write_time(file) - std::chrono::hours(5);
@@ -200,16 +192,6 @@ TEST_F(RunFileTest, RefusesDamagedRecordsByName) {
   }
   WriteBytes(file_, "{");
   ExpectError<InputError>([&] { ReadRun(file_); }, {"run.json"});
-}
-
-TEST(SoftwareTest, NamesVersions) {
-  const Software software = ThisSoftware();
-  EXPECT_THAT(software.version, testing::StartsWith("soslam "));
-  EXPECT_THAT(software.compiler, testing::ContainsRegex("^(GCC|Clang) [0-9]+\\."));
-  EXPECT_EQ(software.libraries.at("opencv"), CV_VERSION);
-  for (const char* name : {"ceres", "eigen", "fmt", "hdf5", "nlohmann_json", "openssl"}) {
-    EXPECT_THAT(software.libraries.at(name), testing::ContainsRegex("^[0-9]+\\.[0-9]+")) << name;
-  }
 }
 
 }  // namespace

@@ -93,17 +93,6 @@ TEST_F(ArtefactFilesTest, WhatASequenceMayHaveComesBack) {
   const Sequence read = ReadSequence(file);
   WriteSequence(again, read, {});
   EXPECT_EQ(FileBytes(file), FileBytes(again));
-  ASSERT_EQ(read.held_out.size(), 1u);
-  EXPECT_EQ(read.held_out[0].frame.id, held_out.frame.id);
-  EXPECT_EQ(read.held_out[0].boxes.at(0).label, "cup");
-  EXPECT_EQ(read.held_out[0].boxes[0].box, held_out.boxes[0].box);
-  EXPECT_EQ(read.objects.at(0).labels.at(1).probability, 0.25);
-  EXPECT_EQ(read.image_distortion, sequence.image_distortion);
-  EXPECT_EQ(read.image_orientation, ImageOrientation::kStored);
-  EXPECT_TRUE(read.true_objects.at(0).is_ignored);
-  EXPECT_EQ(read.truth_in_frames.at(0).frame_index, 1);
-  EXPECT_EQ(read.rejected.at(2).stage, RejectingStage::kPlanes);
-  EXPECT_EQ(read.rejected[2].box, sequence.rejected[2].box);
   EXPECT_EQ(read.findings, sequence.findings);
 }
 
@@ -120,20 +109,6 @@ TEST_F(ArtefactFilesTest, RowsOfRejectedDetectionsAreChecked) {
   refused(0, 99999, {"frame", "99999"});
   refused(1, 1, {"/rejected/rows/0/1 is 1; expected less than 1"});
   refused(2, 7, {"/rejected/rows/0/2 is 7"});
-}
-
-TEST_F(ArtefactFilesTest, BeforeVersion17ObjectsSaidWhatIsTrue) {
-  WriteSequence(file, sequence, {});
-  nlohmann::json edited = ParseJsonFile(file);
-  edited.erase("true_objects");
-  edited.erase("odometry_world");
-  std::ofstream(file) << edited;
-  const Sequence read = ReadSequence(file);
-  size_t with_truth = 0;
-  for (const Object& object : sequence.objects) with_truth += object.ground_truth ? 1 : 0;
-  ASSERT_GT(with_truth, 0u);
-  EXPECT_EQ(read.true_objects.size(), with_truth);
-  EXPECT_EQ(read.odometry_world, OdometryWorld::kOfTruth);
 }
 
 // Files of older versions have values that the golden tests compare one by one.
@@ -155,37 +130,6 @@ TEST_F(ArtefactFilesTest, WhatIsReadIsWrittenAgainBitForBit) {
   WriteMap(file, RandomMap(), sequence, {});
   WriteMap(again, ReadMap(file, sequence), sequence, {});
   expect_same();
-}
-
-TEST_F(ArtefactFilesTest, BoundsAreNamed) {
-  sequence.detections[0].is_bound = {};
-  sequence.detections[1].is_bound = {true, true, true, true};
-  sequence.detections[2].is_bound = {false, false, false, true};
-  WriteSequence(file, sequence, {});
-  const nlohmann::json detections = ParseJsonFile(file).at("detections");
-  EXPECT_EQ(detections[0].at("bounds").dump(), "[]");
-  EXPECT_EQ(detections[1].at("bounds").dump(), R"(["left","top","right","bottom"])");
-  EXPECT_EQ(detections[2].at("bounds").dump(), R"(["bottom"])");
-}
-
-TEST_F(ArtefactFilesTest, BoundsMayComeInAnyOrder) {
-  WriteSequence(file, sequence, {});
-  nlohmann::json document = ParseJsonFile(file);
-  document["detections"][3]["bounds"] = {"bottom", "left"};
-  std::ofstream(file) << document;
-  EXPECT_EQ(ReadSequence(file).detections[3].is_bound,
-            (std::array<bool, 4>{true, false, false, true}));
-}
-
-TEST_F(ArtefactFilesTest, WithoutShapeExponentsAndBoundsThereAreEllipsoidsAndNone) {
-  WriteSequence(file, sequence, {});
-  nlohmann::json document = ParseJsonFile(file);
-  document["objects"][0]["ground_truth"]["landmark"].erase("shape_exponent");
-  document["detections"][1].erase("bounds");
-  std::ofstream(file) << document;
-  const Sequence read = ReadSequence(file);
-  EXPECT_EQ(read.objects[0].ground_truth->landmark_in_world.shape_exponent, 2.0);
-  EXPECT_EQ(read.detections[1].is_bound, (std::array<bool, 4>{}));
 }
 
 TEST_F(ArtefactFilesTest, WhatIsNearerComesBack) {
@@ -224,12 +168,6 @@ TEST_F(ArtefactFilesTest, WithoutNearerBoxesTheyAreThoseOfTheSequencesOwnDetecti
     boxes += detection.nearer_boxes.size();
   }
   EXPECT_GT(boxes, 0u);
-}
-
-TEST_F(ArtefactFilesTest, EmptyEstimatesComeBack) {
-  WriteLandmarks(file, {}, sequence, {});
-  EXPECT_TRUE(ReadLandmarks(file, sequence).observations.empty());
-  EXPECT_TRUE(ReadLandmarks(file, sequence).objects.empty());
 }
 
 TEST_F(ArtefactFilesTest, NonFiniteNumbersAreRefusedWithTheirPlace) {

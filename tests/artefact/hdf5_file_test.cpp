@@ -104,22 +104,6 @@ TEST_F(Hdf5FileTest, AttributesComeBackExactly) {
   EXPECT_FALSE(file.HasAttribute("/nowhere", "name"));
 }
 
-TEST_F(Hdf5FileTest, ChildrenAreSortedAndHasKnowsThem) {
-  const auto path = Write("a.h5", [](Hdf5File& file) {
-    for (int i = 30; i > 0; --i) file.WriteGroup("/g/" + std::to_string(100 + i));
-  });
-  const Hdf5File file = Hdf5File::Open(path);
-  const auto names = file.Children("/g");
-  ASSERT_EQ(names.size(), 30U);
-  EXPECT_EQ(names.front(), "101");
-  EXPECT_EQ(names.back(), "130");
-  EXPECT_TRUE(file.Children("/g/101").empty());
-  EXPECT_TRUE(file.Has("/g/130"));
-  EXPECT_FALSE(file.Has("/g/131"));
-  EXPECT_FALSE(file.Has("/nowhere/1"));
-  ExpectError<InputError>([&] { file.Children("/nowhere"); }, {"a.h5", "/nowhere", "missing"});
-}
-
 TEST_F(Hdf5FileTest, SameCallsGiveTheSameBytes) {
   const cv::Mat matrix = RandomMatrix(30, 40, CV_32FC1);
   const auto fill = [&](Hdf5File& file) {

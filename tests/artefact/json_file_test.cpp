@@ -70,11 +70,6 @@ TEST_F(JsonFileTest, DeepNestingIsRefused) {
   EXPECT_THAT(ParseErrorOf(nested(1'000'000)), HasSubstr("more than 100 levels"));
 }
 
-TEST_F(JsonFileTest, KindWithoutSchemaIsRefused) {
-  std::ofstream(file) << R"({"artefact": {"kind": "edges", "schema_version": [1, 0]}})";
-  EXPECT_THAT(InputErrorOf([&] { ReadArtefact(file, "edges"); }), HasSubstr("\"edges\""));
-}
-
 TEST_F(JsonFileTest, HeaderNamesWhatShapedTheArtefact) {
   std::ofstream(folder / "b.txt") << "b";
   std::ofstream(folder / "a.txt") << "abc";
@@ -121,13 +116,6 @@ TEST_F(JsonFileTest, HeadersThatAreNotOursAreRefused) {
   EXPECT_THAT(ParseErrorOf("[1]"), "");
   EXPECT_THAT(InputErrorOf([&] { ReadArtefact(file, "landmarks"); }),
               HasSubstr("no artefact header"));
-}
-
-TEST_F(JsonFileTest, MissingInputIsRefused) {
-  EXPECT_THAT(InputErrorOf([&] {
-                ArtefactHeader("map", {{}, {folder / "none.txt"}});
-              }),
-              HasSubstr("none.txt"));
 }
 
 TEST_F(JsonFileTest, WritingWhatTheSchemaForbidsIsOurBug) {

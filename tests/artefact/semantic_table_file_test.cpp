@@ -36,18 +36,6 @@ TEST_F(SemanticTableFileTest, EntriesOfARatioOnlyAreNearlyBoxesWithATypicalSprea
   EXPECT_EQ(any.shape_exponent, 1.1);
 }
 
-TEST_F(SemanticTableFileTest, ReadsSizeAndCorrelation) {
-  json entry = kRatioOnly;
-  EXPECT_FALSE(Read({{"labels", {{"cup", entry}}}}).Find("cup")->height_m);
-  entry["height_m"] = 0.1;
-  entry["height_log_sigma"] = 0.2;
-  entry["log_correlation"] = -0.4;
-  const ShapePrior cup = Read({{"labels", {{"cup", entry}}}}).Find("cup").value();
-  EXPECT_EQ(cup.height_m.value().median, 0.1);
-  EXPECT_EQ(cup.height_m->log_sigma, 0.2);
-  EXPECT_EQ(cup.log_correlation, -0.4);
-}
-
 TEST_F(SemanticTableFileTest, FindsLabelsByAliasHoweverTheyAreWritten) {
   json entry = kRatioOnly;
   entry["aliases"] = {"television set", "TV"};
@@ -140,33 +128,12 @@ TEST_F(SemanticTableFileTest, ArtefactsOfAnotherKindAreRefused) {
   ExpectError<InputError>([&] { ReadSemanticTable(file_); }, {"table.json", "\"map\""});
 }
 
-// COCO's labels of what stands or lies about indoors, and the furniture of other data sets.
-const std::vector<std::string> kIndoorLabels = {
-    "backpack",     "umbrella",     "handbag",      "suitcase",
-    "sports ball",  "bottle",       "wine glass",   "cup",
-    "fork",         "knife",        "spoon",        "bowl",
-    "banana",       "apple",        "sandwich",     "orange",
-    "broccoli",     "carrot",       "hot dog",      "pizza",
-    "donut",        "cake",         "chair",        "couch",
-    "potted plant", "bed",          "dining table", "toilet",
-    "tv",           "laptop",       "mouse",        "remote",
-    "keyboard",     "cell phone",   "microwave",    "oven",
-    "toaster",      "sink",         "refrigerator", "book",
-    "clock",        "vase",         "scissors",     "teddy bear",
-    "hair drier",   "toothbrush",   "tvmonitor",    "diningtable",
-    "sofa",         "armchair",     "office chair", "stool",
-    "desk",         "coffee table", "nightstand",   "bookshelf",
-    "wardrobe",     "dresser",      "cabinet",      "lamp",
-    "monitor",      "printer",      "bathtub",      "washing_machine",
-    "dishwasher",   "trash can",    "box",          "pillow",
-    "speaker",      "piano",        "whiteboard",   "kettle"};
-
 TEST(SemanticTableTest, TheProjectsTableKnowsWhatIsIndoorsAndOnRoads) {
   const std::filesystem::path file = SOSLAM_SOURCE_DIR "/pipelines/priors/semantic_table.json";
   const SemanticTable table = ReadSemanticTable(file);
-  ASSERT_GE(kIndoorLabels.size(), 60u);
-  for (const std::string& label : kIndoorLabels) EXPECT_TRUE(table.Contains(label)) << label;
-  for (const char* label : {"Car", "Van", "Truck", "Pedestrian", "Cyclist", "person"}) {
+  for (const char* label :
+       {"backpack", "sports ball", "cup", "banana", "chair", "couch", "diningtable", "tvmonitor",
+        "washing_machine", "trash can", "Car", "Van", "Truck", "Pedestrian", "Cyclist", "person"}) {
     EXPECT_TRUE(table.Contains(label)) << label;
   }
   for (const SemanticRow& row : ReadSemanticRows(file).rows) {

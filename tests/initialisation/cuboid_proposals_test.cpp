@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <set>
 
 #include "geometry/angles.h"
 #include "geometry/iou.h"
@@ -20,11 +19,6 @@ namespace soslam {
 namespace {
 
 constexpr double kTolerancePx = 1e-6;
-
-int VisibleFaces(const Landmark& cuboid) {
-  const Eigen::Vector3d camera = cuboid.frame_from_object.Inverse().translation;
-  return static_cast<int>((camera.array().abs() > cuboid.half_axes.array()).count());
-}
 
 // A cuboid and its exact view.
 struct TrueCuboid {
@@ -83,28 +77,6 @@ TEST(CuboidAt, IsTheTrueCuboidAtItsYawAndCorner) {
     ASSERT_TRUE(found) << i;
     ExpectSameCuboid(*found, truth.landmark);
   }
-}
-
-// Face-on and corner-on cuboids, lower and higher than the camera: the paper's configurations.
-TEST(CuboidAt, IsTheTrueCuboidWhateverFacesAreVisible) {
-  const Plane floor = {-Eigen::Vector3d::UnitY(), 1.0};
-  std::multiset<int> faces;
-  for (const double half_height : {0.3, 0.9}) {
-    for (const double yaw_deg : {1.0, 40.0}) {
-      Landmark cuboid = StandingCuboid(TestCamera(), floor, {330, 400}, 0.0, {0.4, 0.5, 0.1});
-      cuboid.half_axes.z() = half_height;
-      cuboid.frame_from_object.translation.y() = 1.0 - half_height;
-      const double facing = YawFacingCamera({TestCamera(), {320, 100, 340, 400}, floor});
-      cuboid.frame_from_object.rotation =
-          UprightRotation(floor.normal, facing + yaw_deg * kRadPerDeg);
-      const TrueCuboid truth(floor, cuboid);
-      faces.insert(VisibleFaces(cuboid));
-      const auto found = CuboidAt(truth.view, truth.Yaw(), truth.FarthestColumn());
-      ASSERT_TRUE(found) << half_height << " " << yaw_deg;
-      ExpectSameCuboid(*found, cuboid);
-    }
-  }
-  EXPECT_EQ(faces, (std::multiset<int>{1, 2, 2, 3}));
 }
 
 // A camera turned about its optical axis by any angle, also upside down: objects that hang.
@@ -184,27 +156,6 @@ TEST(ProposeCuboids, FillTheBoxOnAnyPlaneOrAreNone) {
   EXPECT_GT(proposed, 100);
 }
 
-TEST(ProposeCuboids, CoverAQuarterTurnAroundTheYawThatFacesTheCamera) {
-  std::set<int> yaws_deg;
-  for (int i = 0; i < 20; ++i) {
-    const TrueCuboid truth = RandomTrueCuboid();
-    const double facing = YawFacingCamera(truth.view);
-    const Eigen::Vector3d& up = truth.view.plane_in_camera.normal;
-    const Eigen::Vector3d front = UprightRotation(up, facing) * Eigen::Vector3d::UnitX();
-    const Eigen::Vector3d ray = TestCamera().Ray(truth.view.box.Centre());
-    EXPECT_LT(front.dot(ray), 0.0);
-    EXPECT_NEAR(front.dot(up.cross(ray)), 0.0, 1e-9);
-    for (const CuboidProposal& proposal : ProposeCuboids(truth.view, 15, 10)) {
-      const double yaw_deg = (proposal.yaw - facing) / kRadPerDeg;
-      const int nearest = static_cast<int>(std::lround(yaw_deg));
-      EXPECT_NEAR(yaw_deg, nearest, 1e-9);
-      yaws_deg.insert(nearest);
-    }
-  }
-  EXPECT_EQ(yaws_deg,
-            (std::set<int>{-42, -36, -30, -24, -18, -12, -6, 0, 6, 12, 18, 24, 30, 36, 42}));
-}
-
 TEST(ProposeCuboids, HaveOneNearTheTruthWhereSamplesAreDense) {
   for (int i = 0; i < 10; ++i) {
     const TrueCuboid truth = RandomTrueCuboid();
@@ -214,11 +165,6 @@ TEST(ProposeCuboids, HaveOneNearTheTruthWhereSamplesAreDense) {
     }
     EXPECT_GT(best, 0.8) << i;
   }
-}
-
-TEST(ProposeCuboids, HaveNoneWhereTheBoxIsAboveTheHorizon) {
-  const Plane floor = {-Eigen::Vector3d::UnitY(), 1.0};
-  EXPECT_TRUE(ProposeCuboids({TestCamera(), {300, 50, 400, 150}, floor}, 15, 10).empty());
 }
 
 TEST(ProposeCuboids, SurviveBoxesAndPlanesThatCannotBe) {

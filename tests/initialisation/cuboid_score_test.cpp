@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "geometry/angles.h"
 #include "geometry/iou.h"
@@ -57,14 +56,6 @@ SeenCuboid LargeInView() {
     if (box.Width() > 120 && box.Height() > 120 && DistanceToBorder(box, 640, 480) > 10) {
       return seen;
     }
-  }
-}
-
-TEST(CuboidErrors, AreSmallForTheTruth) {
-  for (int i = 0; i < 10; ++i) {
-    const SeenCuboid seen = LargeInView();
-    const CuboidErrors errors = ErrorsOf(seen.view, seen.truth, seen.Evidence(), {});
-    EXPECT_LT(errors.distance * std::hypot(seen.view.box.Width(), seen.view.box.Height()), 1.5);
   }
 }
 
@@ -123,14 +114,6 @@ TEST(CuboidErrors, CountTheLargestAngleForAxesWithoutSegments) {
   EXPECT_NEAR(ErrorsOf(seen.view, seen.truth, evidence, options).angle, 60.0 * kRadPerDeg, 1e-9);
 }
 
-TEST(CuboidErrors, HaveTheDistanceOfAllEdgesAsAFractionOfTheDiagonal) {
-  const SeenCuboid seen;
-  const CuboidEvidence evidence{cv::Mat(480, 640, CV_32FC1, cv::Scalar(7.0)), {}};
-  CuboidView view = seen.view;
-  view.box = {100, 100, 400, 500};  // the diagonal is 500 px
-  EXPECT_NEAR(ErrorsOf(view, seen.truth, evidence, {}).distance, 7.0 / 500.0, 1e-9);
-}
-
 TEST(CuboidErrors, HaveTheExcessOfTheFootprintsRatioAsShape) {
   SeenCuboid seen;
   const CuboidEvidence evidence{cv::Mat::zeros(480, 640, CV_32FC1), {}};
@@ -162,27 +145,6 @@ TEST(CuboidCosts, AreOfTheShapeAloneWhereImagesSayNothing) {
   EXPECT_EQ(costs[0], CuboidOptions().shape_weight);
   EXPECT_EQ(costs[1], 0.0);
   EXPECT_TRUE(CuboidCosts({}, CuboidOptions()).empty());
-}
-
-TEST(EvidenceInBox, HasTheLongSegmentsInTheBoxAlone) {
-  const SeenCuboid seen = LargeInView();
-  const EdgeMaps maps = ComputeEdgeMaps(DrawCuboids(TestCamera(), {seen.truth}), {});
-  const Box& box = seen.view.box;
-  const double diagonal = std::hypot(box.Width(), box.Height());
-  const auto segments = EvidenceInBox(maps, box, 0.2).segments;
-  EXPECT_GE(segments.size(), 3u);
-  for (const LineSegment& segment : segments) {
-    EXPECT_GE((segment.end - segment.begin).norm(), 0.2 * diagonal);
-    for (const Eigen::Vector2d& end : {segment.begin, segment.end}) {
-      EXPECT_GT(end.x(), box.x_min - 0.1 * diagonal);
-      EXPECT_LT(end.x(), box.x_max + 0.1 * diagonal);
-      EXPECT_GT(end.y(), box.y_min - 0.1 * diagonal);
-      EXPECT_LT(end.y(), box.y_max + 0.1 * diagonal);
-    }
-  }
-  // A box elsewhere: in the background, outside the image.
-  EXPECT_TRUE(EvidenceInBox(maps, {2, 2, 40, 40}, 0.2).segments.empty());
-  EXPECT_TRUE(EvidenceInBox(maps, {700, 100, 800, 300}, 0.2).segments.empty());
 }
 
 // LSD on images of a few pixels, also at the image border.

@@ -2,9 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <functional>
-#include <limits>
 #include <memory>
 
 #include "initialisation/closed_form.h"
@@ -92,77 +89,6 @@ TEST(FitUpright, GainsNothingWhenItIsRunAgain) {
     largest_gain = std::max(largest_gain, once->cost - again->cost);
   }
   EXPECT_LE(unfinished, kBodies / 100) << "largest gain " << largest_gain;
-}
-
-// Four views of a body from around it hold all of its parameters without any prior.
-TEST(FitUpright, FindsTheBodyThatSeveralViewsSee) {
-  for (const double p : {1.1, 1.5, 2.0}) {
-    for (int i = 0; i < 5; ++i) {
-      const StandingBody body(p);
-      const Landmark start =
-          RotatedAboutZ(DisturbedFootAndSize(body.truth, body.plane), RandomUniform(-0.1, 0.1));
-      LandmarkCosts terms;
-      for (const double turn : {0.0, 0.6, 1.3, 2.2}) {
-        // The camera goes round the body.
-        const Rigid3d round = {ExpRotation(turn * body.plane.normal), {0, 0, 0}};
-        const Rigid3d to_centre = {Eigen::Quaterniond::Identity(), -body.truth.Centre()};
-        const Rigid3d camera_from_reference = to_centre.Inverse() * round * to_centre;
-        const Landmark in_camera = Transform(camera_from_reference, body.truth);
-        const Box box = *OutlineBox(TestCamera(), in_camera);
-        const auto edges = BoxEdges(TestCamera(), box, {}, kDetectionSigmaFraction);
-        terms.push_back(std::make_unique<RobustViewTerm>(
-            std::make_unique<BoxTerm>(edges, Transform(camera_from_reference, start)),
-            camera_from_reference, /*huber_delta=*/10.0, /*weight=*/1.0));
-      }
-      const auto solution = FitUpright(body.plane, start, terms, /*yaw_is_free=*/true);
-      ASSERT_TRUE(solution);
-      EXPECT_LT(solution->cost, 10.0 * kCostTolerance);
-      const Landmark& found = solution->landmark;
-      EXPECT_TRUE(IsSameBody(found, body.truth, 1e-2) ||
-                  IsSameBody(WithAxesExchanged(found), body.truth, 1e-2))
-          << p;
-    }
-  }
-}
-
-// No number at some landmarks, where `is_undefined` says.
-class UndefinedTerm final : public LandmarkTerm {
- public:
-  explicit UndefinedTerm(std::function<bool(const Landmark&)> is_undefined)
-      : is_undefined_(std::move(is_undefined)) {}
-  int NumResiduals() const override { return 1; }
-  void Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
-                Jacobian* jacobian) const override {
-    residuals[0] = is_undefined_(landmark) ? std::numeric_limits<double>::quiet_NaN() : 0.0;
-    if (jacobian != nullptr) jacobian->setZero();
-  }
-
- private:
-  std::function<bool(const Landmark&)> is_undefined_;
-};
-
-TEST(FitUpright, HasNoSolutionWhereTheCostIsNoNumberAtTheStart) {
-  const StandingBody body(1.5);
-  LandmarkCosts terms = BoxAndRatio(body.observation.edges, body.observation.prior, body.truth);
-  terms.push_back(std::make_unique<UndefinedTerm>([](const Landmark&) { return true; }));
-  EXPECT_FALSE(FitUpright(body.plane, body.truth, terms, /*yaw_is_free=*/true));
-}
-
-TEST(FitUpright, StaysWhereTheCostIsANumber) {
-  for (int i = 0; i < 20; ++i) {
-    const StandingBody body(1.5);
-    const Landmark start = DisturbedFootAndSize(body.truth, body.plane);
-    LandmarkCosts terms = BoxAndRatio(body.observation.edges, body.observation.prior, start);
-    const double between = 0.5 * (start.half_axes.z() + body.truth.half_axes.z());
-    const bool is_beyond_below = body.truth.half_axes.z() < between;
-    terms.push_back(std::make_unique<UndefinedTerm>([=](const Landmark& landmark) {
-      return (landmark.half_axes.z() < between) == is_beyond_below;
-    }));
-    const auto solution = FitUpright(body.plane, start, terms, /*yaw_is_free=*/true);
-    if (!solution) continue;
-    EXPECT_TRUE(std::isfinite(TotalCost(terms, solution->landmark)));
-    EXPECT_LE(solution->cost, TotalCost(terms, start));
-  }
 }
 
 }  // namespace

@@ -115,32 +115,6 @@ TEST(LocalOptima, AreSortedDistinctLandmarksInFrontOfTheCamera) {
   }
 }
 
-// With foot and size at their best for each yaw, no yaw nearby is better, where all tangent points
-// are at the optimum's depths: several rounds settle them.
-TEST(LocalOptima, AreLocalMinimaOfTheCurve) {
-  int optima_seen = 0;
-  for (int i = 0; i < 50; ++i) {
-    const UprightObservation observation = NoisyObservation(i % 2);
-    YawObjective objective;
-    objective.rounds = 5;
-    const YawSweep sweep = SweepYaw(observation, objective, kStep);
-    for (const UprightSolution& optimum : LocalOptima(observation, objective, sweep, kAll)) {
-      const auto terms = ObservationTerms(observation, optimum.landmark);
-      for (const double offset_deg : {-1.0, -0.5, 0.5, 1.0}) {
-        const auto nearby =
-            FitUpright(observation.plane_in_camera,
-                       RotatedAboutZ(optimum.landmark, offset_deg * kRadPerDeg), terms,
-                       /*yaw_is_free=*/false);
-        ASSERT_TRUE(nearby);
-        EXPECT_GT(nearby->cost, 0.99 * optimum.cost - 1e-2)
-            << "body " << i << ", turned by " << offset_deg << " degrees";
-      }
-      ++optima_seen;
-    }
-  }
-  EXPECT_GT(optima_seen, 50);
-}
-
 TEST(LocalOptima, FewAreTheBestOfAll) {
   for (int i = 0; i < 200; ++i) {
     const UprightObservation observation = NoisyObservation(i % 2);

@@ -146,37 +146,6 @@ TEST(SolveViewsAtYaw, FindsTheRatioOfACuboidWithoutAPrior) {
   }
 }
 
-// With the ratio held, one view is what the sweep over yaw of a single frame solves.
-TEST(SolveViewsAtYaw, OfOneViewIsTheSingleFrameSolution) {
-  for (const double p : kShapeExponents) {
-    SCOPED_TRACE(p);
-    for (int i = 0; i < 20; ++i) {
-      World world(p);
-      world.AddView({3.0, 1.0, 1.5}, {0, 0, 0.4});
-      Detection& detection = world.sequence.detections[0];
-      detection.box.x_min -= RandomUniform(-1, 1);
-      detection.box.y_max += RandomUniform(-1, 1);
-      detection.plane_in_camera =
-          Transform(world.sequence.frames[0].world_from_camera.Inverse(), Plane());
-      const ShapePrior prior = world.Prior(1e-5);
-      const double yaw = RandomUniform(-1.5, 1.5);
-      MultiViewObservation observation = world.Observation(prior);
-      observation.huber_delta = 1e6;
-      const auto found = SolveViewsAtYaw(observation, yaw);
-      ASSERT_TRUE(found);
-      const Rigid3d& world_from_camera = world.sequence.frames[0].world_from_camera;
-      const UprightObservation single =
-          MakeUprightObservation(world.sequence, detection, prior, UprightOptions());
-      const double yaw_in_camera =
-          Yaw(detection.plane_in_camera.normal, world_from_camera.rotation.conjugate() *
-                                                    UprightRotation(Eigen::Vector3d::UnitZ(), yaw));
-      const auto expected = SolveAtYaw(single, yaw_in_camera);
-      ASSERT_TRUE(expected);
-      ExpectSame(found->landmark, Transform(world_from_camera, *expected), 1e-5);
-    }
-  }
-}
-
 TEST(SolveViewsAtYaw, IsNotMisledByOneWrongBox) {
   World world(kCuboidExponent);
   world.AddArc(12);
@@ -215,26 +184,6 @@ TEST(SolveViewsAtYaw, IsExactWithBoxesOfAKnownBias) {
   const auto found = SolveViewsAtYaw(world.Observation(prior), world.TrueYaw());
   ASSERT_TRUE(found);
   ExpectSame(found->landmark, world.truth, 1e-4);
-}
-
-TEST(SolveViewsAtYaw, IsNoneWhereTheViewsDoNotDetermineTheBody) {
-  World world(kCuboidExponent);
-  world.AddView({3.0, 1.0, 1.5}, {0, 0, 0.4});
-  EXPECT_FALSE(SolveViewsAtYaw(world.Observation(std::nullopt), world.TrueYaw()));
-}
-
-TEST(SweepViews, FindsTheYaw) {
-  int first = 0;
-  for (int i = 0; i < 20; ++i) {
-    World world(kCuboidExponent);
-    world.AddArc(8);
-    const auto optima = SweepViews(world.Observation(world.Prior(0.1)), 3.0 * kRadPerDeg);
-    ASSERT_FALSE(optima.empty());
-    for (size_t k = 1; k < optima.size(); ++k) EXPECT_LE(optima[k - 1].cost, optima[k].cost);
-    const double yaw = Yaw(Eigen::Vector3d::UnitZ(), optima[0].landmark.frame_from_object.rotation);
-    first += std::abs(YawDifferenceModuloPi(yaw, world.TrueYaw())) < 3.0 * kRadPerDeg ? 1 : 0;
-  }
-  EXPECT_GE(first, 19);  // a random body may be as long as it is deep
 }
 
 TEST(SolveViews, PolishesTheYaw) {

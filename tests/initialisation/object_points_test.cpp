@@ -59,39 +59,6 @@ TEST(FindObjectPointsTest, TheWorldOfThePointsDoesNotMatter) {
   EXPECT_LT((in_world - top).norm(), 1e-6);
 }
 
-// The worlds of segments have nothing in common.
-TEST(FindObjectPointsTest, ViewsOfOtherSegmentsDoNotMatter) {
-  const Sequence sequence = CuboidSequence(1, 12);
-  const Eigen::Vector3d top = TrueBody(sequence, 0).frame_from_object *
-                              Eigen::Vector3d(0.0, 0.0, TrueBody(sequence, 0).half_axes.z());
-  const MapPoint point = Seen(sequence, top);
-  Sequence two = sequence;
-  for (size_t i = 6; i < two.frames.size(); ++i) {
-    two.frames[i].segment = 1;
-    two.frames[i].world_from_camera = RandomRigid() * two.frames[i].world_from_camera;
-  }
-  const auto found = FindObjectPoints(two, {point}, {});
-  bool is_in_first = false;
-  for (const PointsInView& view : found[0]) {
-    const Frame& frame = two.FrameOf(two.detections[view.detection_index]);
-    if (frame.segment != 0) continue;
-    is_in_first = true;
-    EXPECT_LT((frame.world_from_camera * view.points[0].position - top).norm(), 1e-6);
-  }
-  EXPECT_TRUE(is_in_first);
-}
-
-TEST(PointWeightTest, BoundsTheExpectedNumber) {
-  PointOptions options;
-  options.effective_points = 6.0;
-  const ObjectPoint point{Eigen::Vector3d::Zero(), Eigen::Matrix3d::Zero(), 0.5};
-  const auto weight = [&](size_t count) {
-    return PointWeight({{0, std::vector<ObjectPoint>(count, point)}}, options);
-  };
-  EXPECT_EQ(weight(10), 1.0);
-  EXPECT_NEAR(weight(120), 0.1, 1e-12);
-}
-
 // Options with which points of a scene without errors say much.
 PointOptions ExactPoints() {
   PointOptions options;

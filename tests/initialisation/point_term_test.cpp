@@ -57,14 +57,6 @@ TEST(PointTermTest, CostsNothingWherePointsAreOnTheSurfaceAndElsewhereSomething)
   }
 }
 
-// With the weight, all costs are multiplied.
-TEST(PointTermTest, IsProportionalToItsWeight) {
-  const Landmark body = BodyInCamera(1.5);
-  const std::vector<ObjectPoint> points = RandomPoints(body, 20);
-  const double one = PointTerm(points, body, 1.0, {}, 1.0).Value(body);
-  EXPECT_NEAR(PointTerm(points, body, 1.0, {}, 0.25).Value(body), 0.25 * one, 1e-12);
-}
-
 // A point 4 m in front of the camera, and a body at this signed distance (m) from it, which is deep
 // enough for all widths.
 struct PointAndBody {
@@ -158,18 +150,6 @@ TEST(PointTermTest, CovariancesHaveTheFisherInformation) {
   }
 }
 
-// Without a background and anything inside, distances are Gaussian.
-TEST(PointTermTest, TheInformationOfASurfaceAloneIsThatOfItsVariance) {
-  PointOptions options;
-  options.point_range_fraction = 0.0;
-  options.point_roughness_fraction = options.point_sigma_fraction;
-  for (const double distance : {-0.05, 0.0, 0.03}) {
-    const auto at = DerivativesAtDistance(distance, 1.0 - 1e-12, options, false);
-    const double expected = 1.0 / (options.point_sigma_fraction * options.point_sigma_fraction);
-    EXPECT_NEAR(at.information, expected, 1e-3 * expected);
-  }
-}
-
 // With outliers that are inside.
 TEST(PointTermTest, ResponsibilitiesAreContinuousAndVanishFarAway) {
   const auto responsibility = [](double distance) {
@@ -204,22 +184,6 @@ TEST(PointTermTest, CostsWithOneSizeCanBeCompared) {
     const Landmark other = BodyInCamera(RandomUniform(1.2, 2.0));
     EXPECT_NEAR(PointTerm({far}, other, 1.0, {}, 1.0).Value(other), cost, 1e-9);
   }
-}
-
-// The cost of what is far away is bounded outside, by the background, and higher inside, where only
-// outliers are.
-TEST(PointTermTest, ABodyIsOpaque) {
-  Landmark cuboid{{}, {1.0, 1.0, 1.0}, kCuboidExponent};
-  cuboid.frame_from_object.translation.z() = 10.0;
-  PointOptions options;
-  options.point_roughness_fraction = 0.1;
-  options.point_range_fraction = 0.0;
-  const auto cost = [&](double x) {
-    const ObjectPoint point{{x, 0.0, 10.0}, Eigen::Matrix3d::Zero(), 0.1};
-    return PointTerm({point}, cuboid, 2.0, options, 1.0).Value(cuboid);
-  };
-  EXPECT_NEAR(cost(5.0), cost(50.0), 1e-9);
-  EXPECT_GT(cost(0.01), cost(50.0) + 1.0);
 }
 
 // A fit of points on the faces of a cuboid with as many of the background comes back from a

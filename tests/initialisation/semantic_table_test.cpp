@@ -158,11 +158,6 @@ TEST(MomentsOfMixture, HasTheHeightOfPriorsThatAgree) {
   EXPECT_NEAR(height->log_sigma, 1e-9, 1e-12);
 }
 
-TEST(ObjectRatios, AreThoseOfThePriors) {
-  EXPECT_THAT(ObjectRatios(CupCupWhisk(), kCupsOnly, RatioPrior::kTable),
-              ElementsAre(Eq(kCup.ratio), Eq(kCup.ratio), Eq(std::nullopt)));
-}
-
 TEST(LabelsWithoutEntry, NamesThemWhateverTheDefault) {
   Sequence sequence = CupCupWhisk();
   EXPECT_TRUE(LabelsWithoutEntry(sequence, kCupsAndDefault).empty());  // nothing is detected

@@ -52,19 +52,6 @@ TEST(SingleFrame, FindsTheTruthAmongTheYawsThatExplainTheBoxAtAnyYaw) {
   }
 }
 
-TEST(SingleFrame, DoesNotDependOnTheStartingYaws) {
-  const Standing standing(0.5, {0.4, 0.2, 0.3});
-  InitialiseOptions options;
-  const auto few = InitialiseFromSingleFrame(standing.observation, options);
-  options.yaw_starts = 36;
-  const auto many = InitialiseFromSingleFrame(standing.observation, options);
-  ASSERT_EQ(few.hypotheses.size(), many.hypotheses.size());
-  for (size_t i = 0; i < few.hypotheses.size(); ++i) {
-    EXPECT_GT(BoxIou(few.hypotheses[i].landmark_in_camera, many.hypotheses[i].landmark_in_camera),
-              0.9999);
-  }
-}
-
 TEST(SingleFrame, BreaksTiesAsItIsTold) {
   const Standing standing(0.5, {0.4, 0.2, 0.3});
   for (const auto& other :

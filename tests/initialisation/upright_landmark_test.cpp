@@ -55,26 +55,6 @@ TEST(UprightParameters, AreThoseThatTheLandmarkWasMadeOf) {
   }
 }
 
-TEST(UprightParameters, OfATiltedLandmarkOffThePlaneSetItUprightOnThePlane) {
-  constexpr double kTilt = 1e-3;
-  for (int i = 0; i < 100; ++i) {
-    const Plane plane = RandomPlane();
-    const Landmark upright = RandomUprightLandmark(plane);
-    const Eigen::Vector3d tilt_axis =
-        UprightRotation(plane.normal, RandomUniform(-3, 3)) * Eigen::Vector3d::UnitX();
-    Landmark tilted = upright;
-    tilted.frame_from_object.rotation =
-        ExpRotation(kTilt * tilt_axis) * upright.frame_from_object.rotation;
-    tilted.frame_from_object.translation += RandomUniform(-0.3, 0.3) * plane.normal;
-    const Landmark found =
-        UprightGround(plane).LandmarkAt(UprightGround(plane).ParametersOf(tilted), 1.5);
-    EXPECT_LT((found.Centre() - upright.Centre()).norm(), 1e-12);
-    EXPECT_LT((found.half_axes - upright.half_axes).norm(), 1e-12);
-    EXPECT_LT(found.frame_from_object.rotation.angularDistance(upright.frame_from_object.rotation),
-              kTilt * kTilt);
-  }
-}
-
 TEST(UprightByParameters, AgreesWithNumbers) {
   constexpr double kStep = 1e-3;
   for (int i = 0; i < 50; ++i) {

@@ -78,11 +78,6 @@ double YawAlong(double x, double z) {
              RotationBetween(Eigen::Vector3d::UnitX(), Eigen::Vector3d(x, 0, z)));
 }
 
-TEST(YawPriors, AreNoneUnlessAskedFor) {
-  const Sequence sequence = Drive(0.0, [](int) { return Place{3.0, 15.0, 0.3}; });
-  for (const auto& prior : Priors(sequence, YawPriorSource::kNone)) EXPECT_FALSE(prior);
-}
-
 TEST(YawPriors, TheTruthIsThatOfEachFrame) {
   const Sequence sequence = Drive(1.0, [](int i) { return Place{3.0, 18.0 + i, 0.3 + 0.05 * i}; });
   const auto priors = Priors(sequence, YawPriorSource::kGroundTruth);

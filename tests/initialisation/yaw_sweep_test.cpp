@@ -51,25 +51,6 @@ TEST(CircularMinima, AreSortedAndOfPlateausTheFirstIndices) {
 
 constexpr double kStep = 3.0 * kRadPerDeg;
 
-TEST(BoxTerms, AddsThePreferenceForTheScenesAxes) {
-  for (int i = 0; i < 50; ++i) {
-    const StandingBody body(RandomUniform(1, 2));
-    UprightObservation observation = body.Observe(Disturbed(body.box, 0.05));
-    const Landmark landmark = RotatedAboutZ(body.truth, RandomYaw());
-    const double without = CostAtOwnDepths(observation, landmark);
-    observation.axes_weight = RandomUniform(0.5, 3.0);
-    const Eigen::Vector3d front = landmark.frame_from_object.rotation * Eigen::Vector3d::UnitX();
-    const Eigen::Vector3d axis = *observation.scene_axis_in_camera;
-    const double angle = std::atan2(front.cross(axis).dot(body.plane.normal), front.dot(axis));
-    const double with = CostAtOwnDepths(observation, landmark);
-    EXPECT_NEAR(with - without, observation.axes_weight * std::pow(std::sin(2.0 * angle), 2),
-                1e-8 * (1.0 + without));
-    // A quarter turn of the axis is no change.
-    observation.scene_axis_in_camera = axis.cross(body.plane.normal).eval();
-    EXPECT_NEAR(CostAtOwnDepths(observation, landmark), with, 1e-8 * (1.0 + with));
-  }
-}
-
 TEST(BoxTerms, CostsNothingAtTheTruth) {
   for (const double p : kShapeExponents) {
     const StandingBody body(p);
@@ -110,36 +91,6 @@ TEST(SweepYaw, IsEmptyWhereThePlaneIsNotInView) {
   const YawSweep sweep = SweepYaw(body.observation, {}, kStep);
   for (const double cost : sweep.Costs()) EXPECT_TRUE(std::isnan(cost));
   EXPECT_THAT(LocalOptima(body.observation, {}, sweep, /*max_count=*/1000), IsEmpty());
-}
-
-// Terms of the start, and again those of the result.
-TEST(SweepYaw, RepeatsItsFitsFromTheirResults) {
-  constexpr double kFitted = 1e-6;  // fits end where a step lowers the cost by less than 1e-11
-  const StandingBody body(1.5);
-  std::vector<Landmark> starts;
-  YawObjective objective;
-  objective.further_costs = [&](const Landmark& start) {
-    starts.push_back(start);
-    return LandmarkCosts();
-  };
-  objective.rounds = 3;
-  objective.extra_cost = [](const Landmark&) { return 7.0; };
-  const YawSweep sweep = SweepYaw(body.observation, objective, 45.0 * kRadPerDeg);
-  ASSERT_EQ(starts.size(), 16u);  // of each yaw three fits, and the cost of the result
-  for (size_t i = 0; i < 4; ++i) {
-    EXPECT_TRUE(IsSameBody(starts[4 * i], *SolveAtYaw(body.observation, sweep.yaw[i]), 1e-12));
-    Landmark landmark = starts[4 * i];
-    for (size_t round = 0; round < 3; ++round) {
-      EXPECT_TRUE(IsSameBody(starts[4 * i + round], landmark, kFitted));
-      landmark =
-          FitUpright(body.plane, landmark, ObservationTerms(body.observation, landmark), false)
-              ->landmark;
-    }
-    EXPECT_TRUE(IsSameBody(starts[4 * i + 3], landmark, kFitted));
-    const Landmark found = LandmarkOf(body.observation, *sweep.fits[i]);
-    EXPECT_TRUE(IsSameBody(found, landmark, kFitted));
-    EXPECT_NEAR(sweep.fits[i]->cost, CostAtOwnDepths(body.observation, found) + 7.0, 1e-9);
-  }
 }
 
 TEST(SceneAxisInCamera, IsThatOfTheObjectsPlane) {
@@ -229,19 +180,6 @@ TEST(YawSweep, StandardDeviationOfAYawAloneIsThatOfItsStep) {
       EXPECT_NEAR(sweep.StandardDeviation({{rounding, 0.0}}), step / std::sqrt(12.0), 1e-6);
     }
   }
-}
-
-// From two steps away to a quarter turn, either way, all yaws are as likely; it is less so.
-TEST(YawSweep, StandardDeviationOfAYawAloneCountsTheOthersByTheirCosts) {
-  constexpr double kMore = 3.0;
-  YawSweep sweep = SweepOf([&](double yaw) { return yaw == 0.0 ? kMore : 0.0; }, 60);
-  sweep.fits[1].reset();
-  sweep.fits[59].reset();
-  const double step = std::numbers::pi / 60.0;
-  const double squares =
-      2.0 / 3.0 * (std::pow(0.5 * std::numbers::pi, 3) - std::pow(2.0 * step, 3));
-  const double mass = 56.0 * step + std::exp(-kMore) * step;
-  EXPECT_NEAR(sweep.StandardDeviation({{0.0, kMore}}), std::sqrt(squares / mass), 1e-3);
 }
 
 }  // namespace
