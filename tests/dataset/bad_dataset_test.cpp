@@ -112,20 +112,6 @@ TEST_P(BadDatasetTest, IsRefusedByName) {
 
 INSTANTIATE_TEST_SUITE_P(All, BadDatasetTest, testing::ValuesIn(kBadCases));
 
-TEST(BadDatasetFolderTest, NoTrajectoryAtAll) {
-  DatasetFixture dataset;
-  dataset.files.erase("odometry.txt");
-  dataset.files.erase("groundtruth.txt");
-  const TemporaryFolder temporary;
-  const std::filesystem::path& folder = temporary.path();
-  dataset.Write(folder);
-  EXPECT_THROW(ImportDataset(folder, {}), InputError);
-}
-
-TEST(BadDatasetFolderTest, NoFolder) {
-  EXPECT_THROW(ImportDataset(TemporaryFolder() / "absent", {}), InputError);
-}
-
 TEST(BadDatasetFolderTest, SeveralPlanesNeedASupportPlane) {
   DatasetFixture dataset;
   dataset.files["planes.json"] =
@@ -141,28 +127,6 @@ TEST(BadDatasetFolderTest, SeveralPlanesNeedASupportPlane) {
   const Sequence sequence = ImportDataset(folder, {});
   EXPECT_EQ(sequence.objects[0].plane_index, 1);
   EXPECT_EQ(sequence.objects[1].plane_index, 0);
-}
-
-// Boxes without ids may be of things on any plane.
-TEST(BadDatasetFolderTest, BoxesWithoutIdsNeedNoSupportPlane) {
-  DatasetFixture dataset;
-  dataset.files["planes.json"] =
-      R"([{"id": 0, "normal": [0, 0, 1], "d": 0}, {"id": 1, "normal": [0, 0, 1], "d": -0.7}])";
-  dataset.files.erase("objects.json");
-  std::string& rows = dataset.files["detections.csv"];
-  std::string without_ids = "frame,label,score,x1,y1,x2,y2\n";
-  std::istringstream lines(rows.substr(rows.find('\n') + 1));
-  for (std::string line; std::getline(lines, line);) {
-    const size_t id = line.find(',');
-    without_ids += line.substr(0, id) + line.substr(line.find(',', id + 1)) + "\n";
-  }
-  rows = without_ids;
-  const TemporaryFolder temporary;
-  const std::filesystem::path& folder = temporary.path();
-  dataset.Write(folder);
-  const Sequence sequence = ImportDataset(folder, {});
-  EXPECT_EQ(sequence.planes.size(), 2U);
-  EXPECT_FALSE(sequence.HasSupports());
 }
 
 }  // namespace

@@ -301,12 +301,6 @@ TEST(YamlFieldsTest, MapsAndListsOfBothStyles) {
                   Pair("names", ElementsAre("a: b", "c # d")), Pair("width", ElementsAre("640"))));
 }
 
-TEST(YamlFieldsTest, NestedMapsEndWithTheirIndentation) {
-  EXPECT_THAT(Parse("a:\n  b:\n    c: 1\n  d: 2\ne: 3\n"),
-              ElementsAre(Pair("a.b.c", ElementsAre("1")), Pair("a.d", ElementsAre("2")),
-                          Pair("e", ElementsAre("3"))));
-}
-
 TEST(YamlFieldsTest, FurtherDocumentsAreLeftOut) {
   EXPECT_THAT(Parse("names: [a]\nlist: []\n---\nnames: [b]\n"),
               ElementsAre(Pair("list", IsEmpty()), Pair("names", ElementsAre("a"))));

@@ -86,18 +86,6 @@ TEST_F(FolderFormatsTest, TumRgbdWithoutPlanesAndIds) {
   EXPECT_EQ(sequence.rejected_detections.at("frame_without_pose"), 1);
 }
 
-TEST_F(FolderFormatsTest, SaysHowManyImagesHaveAPose) {
-  testing::internal::CaptureStdout();
-  Import();
-  EXPECT_THAT(testing::internal::GetCapturedStdout(),
-              testing::AllOf(testing::HasSubstr("3 of 4 images have a pose, at most 4.0 ms away"),
-                             testing::HasSubstr("1 have none within 20 ms"),
-                             testing::HasSubstr("3 of 4 image files are not there")));
-  options_.max_time_difference_s = 0.003;
-  ExpectError<InputError>([&] { Import(); },
-                          {"0 of 4 images have a pose of", "max_time_difference_s"});
-}
-
 TEST_F(FolderFormatsTest, FirstFrameAndStrideThinTheList) {
   options_.first_frame = 1;
   options_.frame_stride = 2;
@@ -274,15 +262,6 @@ TEST_F(FolderFormatsTest, SettingsThatCannotBeAreRefused) {
   ExpectError<SettingsError>([&] { Import(); }, {"distortion", "k1 k2 p1 p2 k3"});
 }
 
-TEST_F(FolderFormatsTest, BadListsAreRefused) {
-  Write("pairs.txt", "1.0 rgb/1.0.png 1.1\n");
-  ExpectError<InputError>([&] { Import(); }, {"pairs.txt:1", "3 words"});
-  Write("pairs.txt", "1.0 ../1.0.png\n");
-  ExpectError<InputError>([&] { Import(); }, {"../1.0.png", "inside the dataset folder"});
-  options_.folder.images = "";
-  ExpectError<InputError>([&] { Import(); }, {"detections.csv:2", "row 0", "a list of images"});
-}
-
 TEST_F(FolderFormatsTest, AllThatIsMissingIsNamedAtOnce) {
   const fs::path empty = folder_ / "empty";
   fs::create_directories(empty);
@@ -333,17 +312,6 @@ TEST_F(FolderFormatsTest, YoloInPixelsFromAnArchiveAndWithoutAList) {
   const Detection detection = ImportOne(DetectionsFormat::kYoloPixels, "txts.tar.gz");
   ExpectBox(detection.box, {99.5, 109.5, 119.5, 139.5});
   EXPECT_EQ(Import().frames.at(0).world_from_camera.translation.x(), 0.1);
-}
-
-TEST_F(FolderFormatsTest, ClassNamesOfAnArchiveAreThoseThatAreKnown) {
-  Write("txts/2.0.txt", "0 100 110 20 30 0.6\n");
-  Write("txts/classes.txt", "mug\n");
-  PackTxts();
-  options_.folder.detections_format = DetectionsFormat::kYoloPixels;
-  options_.detections = "txts.tar.gz";
-  const DatasetContent content = ReadSoslamFolder(folder_, options_);
-  EXPECT_THAT(content.class_names, testing::ElementsAre("mug"));
-  EXPECT_FALSE(content.class_names_file);
 }
 
 TEST_F(FolderFormatsTest, CocoResults) {

@@ -55,12 +55,6 @@ TEST_F(ImportTest, ReadsEverything) {
   EXPECT_TRUE(sequence.rejected_detections.empty());
 }
 
-TEST_F(ImportTest, ImagesAreUprightUnlessASettingSaysOtherwise) {
-  EXPECT_EQ(Import().image_orientation, ImageOrientation::kUpright);
-  options.image_orientation = ImageOrientation::kStored;
-  EXPECT_EQ(Import().image_orientation, ImageOrientation::kStored);
-}
-
 TEST_F(ImportTest, EveryOtherFrameIsHeldOut) {
   options.held_out = HeldOutFrames::kOdd;
   options.min_observations = 1;
@@ -77,12 +71,6 @@ TEST_F(ImportTest, EveryOtherFrameIsHeldOut) {
   EXPECT_EQ(sequence.held_out[0].boxes[1].box.x_min, 301.0);
   EXPECT_EQ(sequence.held_out[1].frame.id, 3);
   EXPECT_EQ(sequence.held_out[1].boxes.size(), 1u);
-}
-
-TEST_F(ImportTest, NormalisesPlanesWithTheirOffset) {
-  const Plane plane = Import().planes.at(0).plane_in_world;  // 2 z - 1 = 0
-  EXPECT_EQ(plane.normal, Eigen::Vector3d(0, 0, 1));
-  EXPECT_EQ(plane.offset, -0.5);
 }
 
 // The camera's z axis is the world's: at height 1 it has the plane z = 0.5 half a metre behind it.
@@ -123,20 +111,6 @@ TEST_F(ImportTest, LineEndsByteOrderMarkAndCommentsOfAllTextFilesAreRead) {
     EXPECT_EQ(sequence.frames.size(), plain.frames.size());
     EXPECT_EQ(sequence.detections.size(), plain.detections.size());
   }
-}
-
-TEST_F(ImportTest, AbsoluteImagePathsIntoTheFolderAreTaken) {
-  dataset.Replace("rgb.txt", "rgb/0.jpg", (folder / "rgb/0.jpg").string());
-  EXPECT_EQ(Import().frames.at(0).image, "rgb/0.jpg");
-}
-
-TEST_F(ImportTest, BoxesOfNoTrackAreNoObject) {
-  for (const char* row : {"0,2,box", "1,2,box", "2,2,box"}) {
-    dataset.Replace("detections.csv", row, std::string(row).replace(2, 1, "-1"));
-  }
-  const Sequence sequence = Import();
-  EXPECT_EQ(sequence.objects.size(), 1u);
-  EXPECT_THAT(sequence.rejected_detections, ElementsAre(Pair("without_object_id", 3)));
 }
 
 TEST_F(ImportTest, LabelsThatFlickerAreThoseOfMostBoxes) {
@@ -196,17 +170,6 @@ TEST_F(ImportTest, FrameWithoutTruePoseHasNoTruePlane) {
   EXPECT_EQ(sequence.frames.size(), 4u);
   EXPECT_FALSE(sequence.frames[0].true_world_from_camera.has_value());
   EXPECT_THAT(sequence.rejected_detections, ElementsAre(Pair("frame_without_pose", 2)));
-}
-
-TEST_F(ImportTest, StrideKeepsFrameIds) {
-  options.frame_stride = 3;
-  options.min_observations = 2;
-  const Sequence sequence = Import();
-  ASSERT_EQ(sequence.frames.size(), 2u);
-  EXPECT_EQ(sequence.frames[1].id, 3);
-  EXPECT_EQ(sequence.detections.back().frame_index, 1);
-  EXPECT_THAT(sequence.rejected_detections,
-              ElementsAre(Pair("frame_not_used", 4), Pair("too_few_observations", 1)));
 }
 
 // A row that is put in place of object 1's in frame 0, and what becomes of it.
@@ -367,11 +330,6 @@ TEST_F(ImportTest, NothingUsableSaysWhy) {
       [&] { Import(); }, {"no usable detection left; 7 detections rejected: near_border 7"});
 }
 
-TEST_F(ImportTest, DetectionsWithOnlyAHeaderAreNothingUsable) {
-  dataset.files["detections.csv"] = "frame,object_id,label,score,x1,y1,x2,y2\n";
-  EXPECT_THROW(Import(), NothingUsableError);
-}
-
 TEST(FolderEntriesTest, WhatCannotBeListedIsNamed) {
   const TemporaryFolder folder;
   WriteBytes(folder / "file", "");
@@ -414,8 +372,6 @@ Bounds BoundsOfFirst(const std::vector<Box>& boxes, double hidden_edge_fraction 
 
 const Box kBox = {200, 150, 300, 300};
 
-TEST(BoundEdgesTest, ABoxAloneInsideTheImageHasNone) { EXPECT_EQ(BoundsOfFirst({kBox}), kNone); }
-
 // The image covers [-0.5, 639.5] x [-0.5, 479.5].
 TEST(BoundEdgesTest, EdgesAtTheImageBorderAreBounds) {
   EXPECT_EQ(BoundsOfFirst({{4.29, 150, 300, 300}}), (Bounds{true, false, false, false}));
@@ -434,12 +390,6 @@ TEST(BoundEdgesTest, ALowerEdgeHiddenByExactlyTheFractionIsABound) {
   EXPECT_EQ(BoundsOfFirst({kBox, {180, 200, 269.99, 400}}), kNone);
   EXPECT_EQ(BoundsOfFirst({kBox, {180, 200, 269.99, 400}}, 0.699), kBottom);
   EXPECT_EQ(BoundsOfFirst({{0.1 + 99.9, 150, 100.3, 300}, {50, 200, 100.21, 400}}), kBottom);
-}
-
-TEST(BoundEdgesTest, TheLimitsOfTheFraction) {
-  EXPECT_EQ(BoundsOfFirst({kBox, {200, 200, 300, 400}}, 1.0), kBottom);
-  EXPECT_EQ(BoundsOfFirst({kBox, {200, 200, 299.9, 400}}, 1.0), kNone);
-  EXPECT_EQ(BoundsOfFirst({kBox}, 0.0), kBottom);
 }
 
 TEST(BoundEdgesTest, SeveralBoxesHideTogetherAndOverlapsCountOnce) {
@@ -467,16 +417,6 @@ TEST(BoundEdgesTest, ObjectsThatAreNotNearerHideNothing) {
 TEST(BoundEdgesTest, SidesAndTopInsideNearerBoxesStayMeasured) {
   EXPECT_EQ(BoundsOfFirst({kBox, {280, 100, 400, 400}}), kNone);    // all of the right side
   EXPECT_EQ(BoundsOfFirst({kBox, {150, 100, 400, 400}}), kBottom);  // the whole box
-}
-
-TEST(BoundEdgesTest, TheNearerObjectsOwnEdgesStayMeasured) {
-  EXPECT_EQ(BoundsOfAll(LevelSequence({kBox, {180, 200, 320, 400}}))[1], kNone);
-}
-
-TEST(BoundEdgesTest, WhatWasMarkedBeforeIsDecidedAgain) {
-  Sequence sequence = LevelSequence({kBox});
-  sequence.detections[0].is_bound = {true, true, true, true};
-  EXPECT_EQ(BoundsOfAll(sequence)[0], kNone);
 }
 
 }  // namespace

@@ -132,26 +132,6 @@ TEST_F(KittiLabelTest, ARowStandsOnItsOwnBottomFace) {
               0.5 * box.height, 1e-12);
 }
 
-TEST_F(KittiLabelTest, ABoxIsCutToTheImage) {
-  Camera camera = ReadCalibration().camera;
-  camera.width = 1224;
-  camera.height = 370;
-  const KittiLabel label = Read(KittiBox().Columns());
-  const DetectionRow row = RowOfLabel(label, {-3.0, 100.0, 1241.0, 374.0}, 1.0, {}, camera);
-  EXPECT_EQ(row.box.x_min, -0.5);
-  EXPECT_EQ(row.box.y_min, 100.0);
-  EXPECT_EQ(row.box.x_max, 1223.5);
-  EXPECT_EQ(row.box.y_max, 369.5);
-}
-
-TEST_F(KittiLabelTest, RegionsWithoutLabelsAreLeftOut) {
-  WriteBytes(folder_ / "1.txt", kKittiDontCare + KittiBox().Columns("Van"));
-  const auto labels = ReadKittiObjectLabels(folder_ / "1.txt");
-  ASSERT_EQ(labels.size(), 1u);
-  EXPECT_EQ(labels[0].type, "Van");
-  EXPECT_EQ(labels[0].track, 0);
-}
-
 TEST_F(KittiLabelTest, BadLabelsAreRefused) {
   ExpectRefused("Car 0 0\n", {"000000.txt:1", "3 values", "rotation_y"});
   ExpectRefused("Car 0 0.5 0 1 2 3 4 1 1 1 1 1 1 0\n", {"occluded", "0.5", "integer"});

@@ -298,16 +298,6 @@ TEST_F(KittiObjectTest, AFrameWithoutLabelsIsAFrame) {
   EXPECT_EQ(Import().frames.size(), 3u);
 }
 
-TEST_F(KittiObjectTest, BadInputIsRefused) {
-  Write("label_2/000011.txt", "Car\n");
-  ExpectError<InputError>([&] { Import(); }, {"label_2/000011.txt:1", "1 values"});
-  Write("label_2/000011.txt", KittiBox().Columns());
-  std::filesystem::remove(folder / "calib/000011.txt");
-  ExpectError<InputError>([&] { Import(); }, {"calib/000011.txt", "missing"});
-  std::filesystem::remove_all(folder / "label_2");
-  ExpectError<InputError>([&] { Import(); }, {"label_2", "no files"});
-}
-
 TEST(KittiBoxesTest, BadLinesAreNamed) {
   const TemporaryFolder folder;
   const BadTexts cases = {{"1,2,3,4,5", {"has 5 fields", "frame,x1,y1,x2,y2,score"}},

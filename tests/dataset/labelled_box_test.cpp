@@ -34,15 +34,6 @@ TEST_F(DetectionsCsvTest, WithAndWithoutObjectIds) {
   }
 }
 
-TEST_F(DetectionsCsvTest, ObjectIds) {
-  const auto boxes = ReadDetectionsCsv(
-      Write("frame,object_id,label,score,x1,y1,x2,y2\n3,7,cup,0.5,1,2,3,4\n3,,cup,0.5,1,2,3,4\n"
-            "3,8.0,cup,0.5,1,2,3,4\n"));
-  EXPECT_EQ(boxes.at(0).object_id, 7);
-  EXPECT_FALSE(boxes.at(1).object_id);
-  EXPECT_EQ(boxes.at(2).object_id, 8);
-}
-
 TEST_F(DetectionsCsvTest, AsSpreadsheetsAndOtherProgramsWriteIt) {
   for (const char* text :
        {"\"frame\",\"label\",\"score\",\"x1\",\"y1\",\"x2\",\"y2\"\n3,\"milk "
@@ -55,7 +46,7 @@ TEST_F(DetectionsCsvTest, AsSpreadsheetsAndOtherProgramsWriteIt) {
     ExpectLabelledBox(boxes[0], 3, "milk carton", 0.5, {1, 2, 3.25, 4});
   }
   const auto boxes =
-      ReadDetectionsCsv(Write("frame,Object ID,label,score,x1,y1,x2,y2\n3,7,cup,0.5,1,2,3,4\n"));
+      ReadDetectionsCsv(Write("frame,Object ID,label,score,x1,y1,x2,y2\n3,7.0,cup,0.5,1,2,3,4\n"));
   EXPECT_EQ(boxes.at(0).object_id, 7);
 }
 
@@ -193,16 +184,6 @@ TEST_F(CocoResultsTest, BadDatasetsAreNamed) {
       {R"({"images": [], "categories": [{"id": 1, "name": "cup"}, {"id": 1, "name": "box"}]})",
        {"dataset.json#/categories/1", "id is 1"}}};
   ExpectBadTexts(cases, ".json", [&](const std::string& text) { ReadWith(text, result); });
-}
-
-TEST_F(CocoResultsTest, LongValuesAreCutInMessages) {
-  const std::string dataset = R"({"images": {"a": ")" + std::string(5000, 'x') + R"("}})";
-  try {
-    ReadWith(dataset, "[]");
-    FAIL() << "read";
-  } catch (const InputError& error) {
-    EXPECT_LT(std::string(error.what()).size(), 500u);
-  }
 }
 
 TEST(OaSlamBoxesTest, BadFilesAreNamed) {

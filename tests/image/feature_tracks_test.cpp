@@ -47,14 +47,6 @@ TEST(FeatureTrackerTest, FollowsThePicture) {
   EXPECT_LT(wrong, 0.05 * static_cast<double>(tracks.size()));
 }
 
-TEST(FeatureTrackerTest, ImagesOfATrackFollowEachOther) {
-  for (const FeatureTrack& track : TracksThrough({0, 20, 40, 60})) {
-    for (size_t i = 1; i < track.places.size(); ++i) {
-      EXPECT_EQ(track.places[i].image, track.places[i - 1].image + 1);
-    }
-  }
-}
-
 // The picture moves on by its own width, in steps: what is new is followed, too.
 TEST(FeatureTrackerTest, LooksForNewFeatures) {
   std::vector<int> shifts;

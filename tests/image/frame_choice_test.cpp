@@ -44,16 +44,6 @@ TEST(MotionTrackerTest, FindsNothingOfAnotherView) {
   EXPECT_FALSE(MotionTracker(nothing).MedianDisplacement(nothing));
 }
 
-TEST(ViewOfTest, BlurLowersTheSharpness) {
-  const cv::Mat image = GreyOf(DrawnView(0));
-  EXPECT_LT(ViewOf(Blurred(image)).sharpness, 0.1 * ViewOf(image).sharpness);
-}
-
-TEST(FrameSelectorTest, TakesAllThatDiffer) {
-  EXPECT_THAT(ChosenOf(ReasonsFor({DrawnView(0), DrawnView(20), DrawnView(900)})),
-              testing::ElementsAre(0, 1, 2));
-}
-
 TEST(FrameSelectorTest, LeavesOutWhatShowsTheSame) {
   const Reasons reasons =
       ReasonsFor({DrawnView(0), DrawnView(0), DrawnView(1), DrawnView(20), DrawnView(20)});

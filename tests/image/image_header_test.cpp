@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "image/image_format.h"
 #include "image/tiff_file.h"
 #include "support/drawn_photos.h"
@@ -152,14 +150,6 @@ TEST(ExifFocalLengthTest, IsNotKnown) {
   const std::string of_other_shape = ExifWith({{0xA002, 4000}, {0xA003, 3000}, {kInFilm, 26}});
   EXPECT_TRUE(ExifFocalOverDiagonal(of_other_shape, kPhoto));
   EXPECT_FALSE(ExifFocalOverDiagonal(of_other_shape, {3000, 3000})) << "cropped";
-}
-
-TEST(ExifFocalLengthTest, EveryTruncationIsTaken) {
-  const std::string exif = ExifOfCamera(6, 26);
-  for (size_t size = 0; size < exif.size(); ++size) {
-    const auto focal = ExifFocalOverDiagonal(std::string_view(exif).substr(0, size), kPhoto);
-    EXPECT_TRUE(!focal || std::abs(*focal - 26.0 / kFilmDiagonalMm) < 1e-12) << size;
-  }
 }
 
 TEST(ExifFocalLengthTest, IsInTheHeaderOfAPhoto) {

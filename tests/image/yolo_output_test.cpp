@@ -138,12 +138,6 @@ TEST(YoloOutputTest, BoxesInPixelsAreNotTakenForCells) {
                 {"net.onnx", "30.00; expected logarithms", "output_layout = v5"});
 }
 
-TEST(YoloOutputTest, ScoreAtTheThresholdIsKept) {
-  const cv::Mat output = Output({1, 1, 7}, {5, 5, 2, 2, 0.5F, 0.5F, 0.0F});
-  EXPECT_EQ(Read(output, YoloLayout::kV5, 0.25).size(), 1u);
-  EXPECT_EQ(Read(output, YoloLayout::kV5, 0.2501).size(), 0u);
-}
-
 TEST(YoloOutputTest, OtherShapesAreRefused) {
   const std::vector<float> zeros(600, 0.0F);
   const std::vector<std::vector<int>> wrong_for_v5 = {{1, 6, 30}, {1, 30, 6}, {1, 30, 8},

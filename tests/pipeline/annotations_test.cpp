@@ -6,7 +6,6 @@
 
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
-#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -20,10 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::Contains;
-using testing::MatchesRegex;
 
 const fs::path kAnnotations = SOSLAM_SOURCE_DIR "/data/annotations";
-const fs::path kNetworks = SOSLAM_SOURCE_DIR "/pipelines/networks";
 
 std::vector<std::string> Lines(const fs::path& path) {
   std::vector<std::string> lines;
@@ -32,50 +29,6 @@ std::vector<std::string> Lines(const fs::path& path) {
     if (!line.empty() && line[0] != '#') lines.push_back(line);
   }
   return lines;
-}
-
-std::vector<std::string> Fields(const std::string& line) {
-  std::vector<std::string> fields;
-  std::istringstream text(line);
-  for (std::string field; std::getline(text, field, '\t');) fields.push_back(field);
-  return fields;
-}
-
-TEST(DownloadsTest, RowsAreWhole) {
-  std::set<std::string> names;
-  for (const std::string& line : Lines(SOSLAM_SOURCE_DIR "/pipelines/downloads.tsv")) {
-    SCOPED_TRACE(line);
-    const auto fields = Fields(line);
-    ASSERT_EQ(fields.size(), 7u);
-    names.insert(fields[0]);
-    EXPECT_THAT(fields[1], MatchesRegex("https://[^ ]+"));
-    EXPECT_THAT(fields[2], MatchesRegex("-|[0-9]+"));
-    EXPECT_THAT(fields[3], MatchesRegex("-|[0-9a-f]{64}"));
-    EXPECT_EQ(fields[2] == "-", fields[3] == "-");
-    EXPECT_THAT(fields[4], MatchesRegex("-|.+/"));
-    EXPECT_FALSE(fields[6].empty());
-  }
-  std::set<std::string> known;
-  for (const fs::path& folder : {kAnnotations, kNetworks}) {
-    for (const auto& entry : fs::directory_iterator(folder)) known.insert(entry.path().filename());
-  }
-  EXPECT_EQ(names, known);
-}
-
-TEST(AnnotationsTest, HaveAReadmeAndASumForEachListedImage) {
-  for (const auto& entry : fs::directory_iterator(kAnnotations)) {
-    SCOPED_TRACE(entry.path());
-    EXPECT_TRUE(fs::exists(entry.path() / "README.md"));
-    std::set<std::string> summed;
-    for (const std::string& line : Lines(entry.path() / "SHA256SUMS")) {
-      EXPECT_THAT(line, MatchesRegex("[0-9a-f]{64}  [^ ]+"));
-      summed.insert(line.substr(66));
-    }
-    if (!fs::exists(entry.path() / "rgb.txt")) continue;
-    for (const std::string& line : Lines(entry.path() / "rgb.txt")) {
-      EXPECT_EQ(summed.count(line.substr(line.find(' ') + 1)), 1u) << line;
-    }
-  }
 }
 
 // Files that two datasets share are listed with their present bytes.

@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "support/background_command.h"
+#include "support/run_command.h"
 #include "support/small_pipeline.h"
 
 namespace soslam {

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 #include <sys/mount.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -114,11 +113,6 @@ TEST_F(FetchTest, FromAServer) {
   EXPECT_THAT(server_.Requests(), ElementsAre("/desk.tgz", "/poses.csv"));
 }
 
-TEST_F(FetchTest, FromFiles) {
-  WriteBytes(folder_ / "poses.csv", "0,1,2\n");
-  ExpectWhole(Fetch("MIRROR=file://" + folder_.path().string()));
-}
-
 TEST_F(FetchTest, FilesThatTheArchiveHasReadOnlyAreTheUsers) {
   fs::permissions(folder_ / "published/top/rgb/1.png", fs::perms::owner_read);
   RunCommand({"tar", "-C", (folder_ / "published").string(), "-czf",
@@ -180,18 +174,6 @@ TEST_F(FetchTest, AnnotationThatTheUserChangedIsKeptBesideOurs) {
   EXPECT_EQ(FileBytes(Target() / "objects.json~"), "mine");
 }
 
-TEST_F(FetchTest, FilesThatAreTheSameKeepTheirTime) {
-  Fetch();
-  const auto long_ago = fs::file_time_type::clock::now() - std::chrono::hours(1);
-  for (const char* name : {"objects.json", "SHA256SUMS"}) {
-    fs::last_write_time(Target() / name, long_ago);
-  }
-  Fetch();
-  for (const char* name : {"objects.json", "SHA256SUMS"}) {
-    EXPECT_EQ(fs::last_write_time(Target() / name), long_ago) << name;
-  }
-}
-
 TEST_F(FetchTest, TwoAtOnceAreOneAfterTheOther) {
   CommandResult other;
   std::thread at_once([&] { other = Fetch(); });
@@ -219,14 +201,6 @@ TEST_F(FetchTest, HalfAFileIsGoneOnWith) {
     EXPECT_EQ(server_.Requests()[1], "/desk.tgz from 6000");
     fs::remove_all(Target());
   }
-}
-
-TEST_F(FetchTest, AServerThatGivesNoPartsGivesTheWholeAgain) {
-  server_.EndAfter(6000);
-  Fetch();
-  server_.EndAfter(std::string::npos);
-  server_.WholeFilesOnly();
-  ExpectWhole(Fetch());
 }
 
 // Killed when all bytes were there and their name was not.
@@ -296,12 +270,6 @@ TEST_F(FetchTest, AFolderOfSomebodyElseStaysAsItIs) {
   EXPECT_THAT(fetched.errors, HasSubstr("was not made by this command"));
   EXPECT_EQ(FileBytes(Target() / "objects.json"), "mine");
   EXPECT_THAT(server_.Requests(), IsEmpty());
-}
-
-// Killed between making it and the first file.
-TEST_F(FetchTest, AnEmptyFolderIsNobodys) {
-  fs::create_directory(Target());
-  ExpectWhole(Fetch());
 }
 
 TEST_F(FetchTest, AFolderThatCannotBeWrittenTo) {

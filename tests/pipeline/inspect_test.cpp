@@ -31,14 +31,6 @@ class InspectProgramTest : public testing::Test {
   std::string two_ = (folder_ / "two.json").string();
 };
 
-TEST_F(InspectProgramTest, ShowsAnArtefactWithoutColoursOutsideATerminal) {
-  const CommandResult result = Run({one_});
-  EXPECT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_THAT(result.output, HasSubstr("one.json: map"));
-  EXPECT_THAT(result.output, testing::Not(HasSubstr("\x1b")));
-  EXPECT_EQ(result.errors, "");
-}
-
 TEST_F(InspectProgramTest, DiffTellsByItsExitCode) {
   EXPECT_EQ(Run({"diff", one_, one_}).exit_code, 0);
   const CommandResult different = Run({"diff", one_, two_});
@@ -65,16 +57,6 @@ TEST_F(InspectProgramTest, ErrorsHaveTheirExitCodesAndOneLine) {
     EXPECT_EQ(std::ranges::count(result.errors, '\n'), 1);
     EXPECT_EQ(result.output, "");
   }
-}
-
-TEST_F(InspectProgramTest, HelpNamesFilesOptionsAndExitCodes) {
-  const CommandResult help = Run({"--help"});
-  EXPECT_EQ(help.exit_code, 0);
-  for (const char* word :
-       {"FILE", "--csv", "--image", "--layer", "diff", "Examples:", "70 a bug"}) {
-    EXPECT_THAT(help.output, HasSubstr(word));
-  }
-  EXPECT_THAT(Run({"diff", "--help"}).output, HasSubstr("--tolerance"));
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "dataset/trajectories.h"
-#include "support/background_command.h"
+#include "support/run_command.h"
 #include "support/small_pipeline.h"
 
 namespace soslam {
@@ -110,9 +110,6 @@ class MapTest : public testing::Test {
   std::vector<std::string> WordsForPhotos() const {
     return Words({"IMAGES=" + photos_.string(), "DETECTIONS=" + detections_.string()});
   }
-  CommandResult Run(const std::vector<std::string>& words) const {
-    return BackgroundCommand(words).Wait();
-  }
   // What the steps made, without lists of files, which have their times.
   std::map<std::string, std::string> Made() const {
     auto made = SmallPipeline::Artefacts(maps_);
@@ -131,7 +128,7 @@ class MapTest : public testing::Test {
 class SlowMapTest : public MapTest {};
 
 TEST_F(SlowMapTest, EndsWithOneLineAndGoesOnWhereSomethingChanged) {
-  const CommandResult first = Run(WordsForPhotos());
+  const CommandResult first = RunCommand(WordsForPhotos());
   ASSERT_EQ(first.exit_code, 0) << first.output << first.errors;
   const fs::path map = maps_ / "it_s_my_room_1";
   EXPECT_THAT(first.output, ContainsRegex("\n3 objects, scale [+]- [0-9]+ %, page: "));
@@ -139,7 +136,7 @@ TEST_F(SlowMapTest, EndsWithOneLineAndGoesOnWhereSomethingChanged) {
   EXPECT_TRUE(fs::exists(map / "results/it_s_my_room_1/report.html"));
   const auto made = Made();
 
-  const CommandResult again = Run(WordsForPhotos());
+  const CommandResult again = RunCommand(WordsForPhotos());
   EXPECT_EQ(again.exit_code, 0) << again.errors;
   EXPECT_THAT(again.output, testing::Not(HasSubstr("[it_s_my_room_1]"))) << "nothing to do";
   EXPECT_EQ(Made(), made);
@@ -148,22 +145,23 @@ TEST_F(SlowMapTest, EndsWithOneLineAndGoesOnWhereSomethingChanged) {
   const fs::path elsewhere = pipeline_.Folder() / "elsewhere";
   fs::create_directory(elsewhere);
   fs::rename(photos_, elsewhere / photos_.filename());
-  const CommandResult moved = Run(Words({"IMAGES=" + (elsewhere / photos_.filename()).string(),
-                                         "DETECTIONS=" + detections_.string()}));
+  const CommandResult moved =
+      RunCommand(Words({"IMAGES=" + (elsewhere / photos_.filename()).string(),
+                        "DETECTIONS=" + detections_.string()}));
   EXPECT_EQ(moved.exit_code, 0) << moved.errors;
   EXPECT_EQ(Made(), made);
   fs::rename(elsewhere / photos_.filename(), photos_);
-  EXPECT_EQ(Run(WordsForPhotos()).exit_code, 0);
+  EXPECT_EQ(RunCommand(WordsForPhotos()).exit_code, 0);
 
   // Other boxes: images and poses stay.
   const std::string boxes = FileBytes(detections_);
   WriteBytes(detections_, boxes.substr(0, boxes.rfind("\n7,")) + "\n");
-  const CommandResult changed = Run(WordsForPhotos());
+  const CommandResult changed = RunCommand(WordsForPhotos());
   EXPECT_EQ(changed.exit_code, 0) << changed.errors;
   EXPECT_THAT(changed.output, HasSubstr("[it_s_my_room_1] associate"));
   EXPECT_NE(Made(), made);
   WriteBytes(detections_, boxes);
-  EXPECT_EQ(Run(WordsForPhotos()).exit_code, 0);
+  EXPECT_EQ(RunCommand(WordsForPhotos()).exit_code, 0);
   EXPECT_EQ(Made(), made);
 }
 
@@ -171,22 +169,22 @@ TEST_F(SlowMapTest, TakesAFinishedModel) {
   fs::remove(programs_ / "colmap");
   std::vector<std::string> words = WordsForPhotos();
   words.insert(words.end(), {"MODEL=" + (programs_ / "model").string(), "NAME=room", "SCALE=1"});
-  const CommandResult run = Run(words);
+  const CommandResult run = RunCommand(words);
   ASSERT_EQ(run.exit_code, 0) << run.output << run.errors;
   EXPECT_THAT(run.output, HasSubstr("3 objects, scale +- 4 %"));
-  EXPECT_THAT(Run(Words({"IMAGES=" + programs_.string(), "DETECTIONS=" + detections_.string(),
-                         "NAME=room"}))
+  EXPECT_THAT(RunCommand(Words({"IMAGES=" + programs_.string(),
+                                "DETECTIONS=" + detections_.string(), "NAME=room"}))
                   .errors,
               HasSubstr("is of other images"));
 }
 
 TEST_F(SlowMapTest, OtherTargetsKnowAMapByItsName) {
-  ASSERT_EQ(Run(WordsForPhotos()).exit_code, 0);
+  ASSERT_EQ(RunCommand(WordsForPhotos()).exit_code, 0);
   const auto made = Made();
   const auto make = [&](const std::vector<std::string>& settings) {
     std::vector<std::string> words = Words(settings);
     std::erase(words, "map");
-    return Run(words);
+    return RunCommand(words);
   };
   const CommandResult doctor = make({"doctor", "NAME=it_s_my_room_1"});
   EXPECT_EQ(doctor.exit_code, 0) << doctor.errors;
@@ -206,7 +204,7 @@ TEST_F(SlowMapTest, OtherTargetsKnowAMapByItsName) {
 TEST_F(MapTest, RefusesWhatIsMissing) {
   const auto expect_refused = [&](const std::vector<std::string>& settings,
                                   const std::string& words) {
-    const CommandResult run = Run(Words(settings));
+    const CommandResult run = RunCommand(Words(settings));
     EXPECT_EQ(run.exit_code, 2);
     EXPECT_THAT(run.errors, HasSubstr(words));
     EXPECT_FALSE(fs::exists(maps_));
@@ -238,16 +236,16 @@ TEST_F(MapTest, GoesIntoTheFolderOfMapsByDefault) {
   std::vector<std::string> words =
       Words({"IMAGES=" + photos_.string(), "NETWORK=x", "VARIANT=OursS OursSTE", "-n"});
   std::erase(words, "MAPS=" + maps_.string());
-  const CommandResult run = Run(words);
+  const CommandResult run = RunCommand(words);
   EXPECT_EQ(run.exit_code, 0) << run.errors;
   EXPECT_THAT(run.output, AllOf(HasSubstr("MAP_ROOT=maps/"), HasSubstr("'OursS OursSTE'")));
   std::erase(words, "VARIANT=OursS OursSTE");
-  EXPECT_THAT(Run(words).output, HasSubstr("MAP_VARIANT='OursSP'"));
+  EXPECT_THAT(RunCommand(words).output, HasSubstr("MAP_VARIANT='OursSP'"));
 }
 
 TEST_F(SlowMapTest, KilledAnywhereItGoesOn) {
   const auto begin = std::chrono::steady_clock::now();
-  const CommandResult undisturbed = Run(WordsForPhotos());
+  const CommandResult undisturbed = RunCommand(WordsForPhotos());
   const std::chrono::duration<double> duration = std::chrono::steady_clock::now() - begin;
   ASSERT_EQ(undisturbed.exit_code, 0) << undisturbed.output << undisturbed.errors;
   const auto made = Made();
@@ -265,7 +263,7 @@ TEST_F(SlowMapTest, KilledAnywhereItGoesOn) {
         run.KillFirst();
       }
     }
-    const CommandResult last = Run(WordsForPhotos());
+    const CommandResult last = RunCommand(WordsForPhotos());
     EXPECT_EQ(last.exit_code, 0) << last.output << last.errors;
     for (BackgroundCommand& run : killed) run.WaitForAll();
     EXPECT_EQ(Made(), made);

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "support/background_command.h"
+#include "support/run_command.h"
 #include "support/small_pipeline.h"
 
 namespace soslam {
@@ -24,7 +24,7 @@ class NamesTest : public testing::Test {
  protected:
   CommandResult Make(const std::string& goal, std::vector<std::string> settings) const {
     settings.push_back(goal);
-    return BackgroundCommand(pipeline_.WordsOfProject(settings)).Wait();
+    return RunCommand(pipeline_.WordsOfProject(settings));
   }
   void ExpectRefused(const std::string& goal, const std::string& setting,
                      const std::string& expected) const {
@@ -98,11 +98,10 @@ TEST_F(NamesTest, OfImagesMayBeAnything) {
   EXPECT_EQ(made.exit_code, 0) << made.output << made.errors;
   EXPECT_TRUE(fs::exists(pipeline_.Results() / "OursPT/metrics.json"));
   EXPECT_FALSE(fs::exists(SOSLAM_SOURCE_DIR "/marker"));
-  EXPECT_EQ(BackgroundCommand(
-                {StageProgram("pages"), "--results", pipeline_.Results().parent_path().string()})
-                .Wait()
-                .exit_code,
-            0);
+  EXPECT_EQ(
+      RunCommand({StageProgram("pages"), "--results", pipeline_.Results().parent_path().string()})
+          .exit_code,
+      0);
 }
 
 // Folders in results that came from others.
@@ -137,15 +136,13 @@ class ForeignBuildTest : public testing::Test {
     WriteBytes(folder_ / "source", "1");
   }
   CommandResult Build() const {
-    return BackgroundCommand({"unshare", "--mount", "sh", "-c",
-                              "mount --bind -o ro \"$1\" \"$1\" && exec \"$0\" \"$1\" target",
-                              SOSLAM_SOURCE_DIR "/pipelines/build.sh", folder_.path().string()})
-        .Wait();
+    return RunCommand({"unshare", "--mount", "sh", "-c",
+                       "mount --bind -o ro \"$1\" \"$1\" && exec \"$0\" \"$1\" target",
+                       SOSLAM_SOURCE_DIR "/pipelines/build.sh", folder_.path().string()});
   }
   bool CanMount() const {
-    return BackgroundCommand({"unshare", "--mount", "mount", "--bind", folder_.path().string(),
-                              folder_.path().string()})
-               .Wait()
+    return RunCommand({"unshare", "--mount", "mount", "--bind", folder_.path().string(),
+                       folder_.path().string()})
                .exit_code == 0;
   }
 

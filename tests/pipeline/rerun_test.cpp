@@ -92,14 +92,6 @@ TEST_F(RerunTest, ChangedSettingRerunsWhatDependsOnIt) {
   EXPECT_EQ(FileBytes(pipeline_.Results() / "InitPT/refined.json"), before);
 }
 
-TEST_F(RerunTest, ChangedSemanticTableRerunsItsReadersAndWhatDependsOnThem) {
-  nlohmann::json table = nlohmann::json::parse(FileBytes(pipeline_.SemanticTable()));
-  table["description"] = "another";
-  WriteBytes(pipeline_.SemanticTable(), table.dump());
-  EXPECT_THAT(RunStages(),
-              ElementsAre("evaluate", "evaluate", "evaluate", "initialise", "optimise", "refine"));
-}
-
 TEST_F(RerunTest, FailingStageLeavesEarlierResults) {
   const auto before = Artefacts();
   const fs::path image = pipeline_.Dataset() / "rgb/000002.png";

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <regex>
 
-#include "support/background_command.h"
 #include "support/eventually.h"
 #include "support/finished_run.h"
+#include "support/run_command.h"
 
 namespace soslam {
 namespace {
@@ -16,7 +16,6 @@ namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::ContainsRegex;
 using testing::HasSubstr;
-using testing::Not;
 
 class StatusTest : public FinishedRunTest {
  protected:
@@ -49,19 +48,6 @@ TEST_F(StatusTest, AfterARunEverythingIsDone) {
   EXPECT_THAT(Explain("refine", "InitPT"),
               AllOf(ContainsRegex("small: refine-[0-9a-f]+ .*InitPT.* is done"),
                     HasSubstr("nothing that it is made from has changed")));
-}
-
-TEST_F(StatusTest, ChangedSettingIsNamedWithBothValues) {
-  nlohmann::json settings = SmallPipeline::TrueRatios();
-  settings["refine"]["yaw_step_deg"] = 5.0;
-  pipeline_.WriteSettings(settings);
-  EXPECT_THAT(Status({"--variants", "InitPT"}),
-              ContainsRegex("InitPT +done +done +done +missing +missing"));
-  EXPECT_THAT(Explain("evaluate", "InitPT"),
-              AllOf(ContainsRegex("evaluate-[0-9a-f]+ .* is missing"),
-                    ContainsRegex("refined.json: refine-[0-9a-f]+ -> refine-[0-9a-f]+"),
-                    HasSubstr("since the last complete run of InitPT: yaw_step_deg: 2.0 -> 5.0"),
-                    Not(HasSubstr("yaw_range_deg"))));
 }
 
 TEST_F(StatusTest, FailureIsShownWithItsErrorUntilTheStageRuns) {
@@ -110,11 +96,6 @@ TEST_F(StatusTest, UnknownStageIsRefused) {
   const CommandResult result = StatusResult({"--explain", "paint"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.errors, AllOf(HasSubstr("'paint'"), HasSubstr("initialise")));
-}
-
-TEST_F(StatusTest, NothingRanYet) {
-  fs::remove_all(pipeline_.Results());
-  EXPECT_THAT(Status(), HasSubstr("nothing ran yet"));
 }
 
 class DoctorTest : public FinishedRunTest {
