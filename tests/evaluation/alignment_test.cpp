@@ -50,14 +50,6 @@ TEST(AlignTest, UndoesAnyMotionAndScale) {
   }
 }
 
-TEST(AlignTest, NoneLeavesAllAsItIs) {
-  const auto pairs = Moved(RandomCentres(5), {Eigen::Quaterniond::Identity(), {3, 4, 0}}, 1.0);
-  const Alignment alignment = Align(pairs, AlignmentKind::kNone);
-  EXPECT_EQ(alignment.Apply(pairs[2].estimated).translation, pairs[2].estimated.translation);
-  EXPECT_NEAR(alignment.rmse_m.value(), 5.0, 1e-12);
-  EXPECT_EQ(alignment.frames, 5);
-}
-
 // The rotation about the line is that of the cameras; the scale is that of the centres.
 TEST(AlignTest, CentresOnALineTakeTheRotationOfTheCameras) {
   const Eigen::Vector3d direction = RandomVector(-1.0, 1.0);

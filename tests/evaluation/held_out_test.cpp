@@ -79,20 +79,6 @@ TEST_F(HeldOutTest, LabelsMustBeEqual) {
   EXPECT_EQ(*metrics.iou_mean_of_detections, 0.0);
 }
 
-// The map is the odometry, moved as a whole.
-TEST_F(HeldOutTest, PosesFollowTheMap) {
-  const Rigid3d motion{Eigen::Quaterniond(0.8, 0.0, 0.6, 0.0), {1.0, 2.0, 3.0}};
-  std::vector<Rigid3d> map;
-  for (const Frame& frame : sequence_.frames) map.push_back(motion * frame.world_from_camera);
-  const std::vector<Rigid3d> poses = HeldOutPoses(sequence_, map);
-  ASSERT_EQ(poses.size(), sequence_.held_out.size());
-  for (size_t i = 0; i < poses.size(); ++i) {
-    const Rigid3d expected = motion * sequence_.held_out[i].frame.world_from_camera;
-    EXPECT_LT((poses[i].translation - expected.translation).norm(), 1e-12);
-    EXPECT_LT(poses[i].rotation.angularDistance(expected.rotation), 1e-7);
-  }
-}
-
 // What the map says of one frame moves the held-out frame after it, and no other.
 TEST_F(HeldOutTest, PosesAreThoseOfTheFrameBeforeAndTheOdometry) {
   std::vector<Rigid3d> map;
@@ -116,11 +102,6 @@ TEST_F(HeldOutTest, LandmarksAreComparedInTheirOwnSegment) {
   EXPECT_EQ(metrics.in_sight, 0);
   EXPECT_EQ(metrics.detections_matched, 0);
   EXPECT_EQ(metrics.detections, detections_);
-}
-
-TEST(HeldOutMetricsTest, WithoutHeldOutFramesThereAreNone) {
-  const Sequence sequence = SyntheticSequence(RandomScene(7, 2, 6), false);
-  EXPECT_FALSE(EvaluateHeldOut(sequence, {ObjectEstimate()}, {}));
 }
 
 }  // namespace

@@ -31,15 +31,6 @@ TEST_F(MapQualityTest, DriftCountsInTheWorldAndNotInFrames) {
   EXPECT_EQ(quality.landmarks[0].in_frames->observations, kFrames);
 }
 
-TEST_F(MapQualityTest, WhatDriftHasCarriedAwayIsComparedInFrames) {
-  AddFound();
-  Drift({Eigen::Quaterniond::Identity(), {0.3, 0, 0}});
-  const MapQuality quality = Evaluate(AlignmentChoice::kNone);
-  EXPECT_EQ(quality.scores[0].found, 0);
-  EXPECT_NEAR(quality.in_frames.iou_mean.value(), 1.0, 1e-9);
-  EXPECT_NEAR(quality.in_frames.iou_mean_in_world.value(), 1.0 / 7.0, 1e-9);
-}
-
 // Without true poses, with the truth of each frame, as KITTI has it.
 TEST_F(MapQualityTest, TheTruthOfAFrameGoesBeforeThatOfTheWorld) {
   const int truth = AddFound();
@@ -203,18 +194,6 @@ TEST_F(MapQualityTest, ALandmarkBeyondAllNumbersIsWrong) {
   const MapQuality quality = Evaluate();
   EXPECT_EQ(quality.scores[0].found, 0);
   EXPECT_TRUE(std::isfinite(quality.in_frames.iou_mean.value_or(0.0)));
-}
-
-// A thing inside another: each box of it overlaps that other more.
-TEST_F(MapQualityTest, BoxesThatAreTakenForThoseOfAnotherAreJoined) {
-  const int outer = AddFound();
-  const int inner = AddTruth();
-  Landmark& truth = sequence_.true_objects[inner].truth.landmark_in_world;
-  truth = Truth(outer);
-  truth.half_axes *= 0.85;
-  const MapQuality quality = Evaluate();
-  EXPECT_TRUE(RowOf(quality, inner).is_detectable);
-  EXPECT_EQ(RowOf(quality, inner).miss->reason, MapReason::kJoined);
 }
 
 TEST_F(MapQualityTest, AMapWithoutLandmarksMissesAll) {

@@ -40,17 +40,6 @@ TEST(BackEnd, CostsNothingAtTheTruth) {
   EXPECT_EQ(map.solver.residuals.at("detection"), static_cast<int>(sequence.detections.size()));
 }
 
-TEST(BackEnd, RecoversEllipsoidsFromTheirSingleFrameLandmarks) {
-  const Sequence sequence = SyntheticSequence(RandomScene(5, 5, 20), false);
-  BackEndInput input = EllipsoidInput(sequence);
-  const auto ratios = ObjectRatios(sequence, SemanticTable(), RatioPrior::kGroundTruth);
-  input.initial_landmarks = ChooseInitialLandmarks(
-      sequence, InitialiseSingleFrame(sequence, ratios, InitialiseOptions(), 1));
-  const Metrics metrics = EvaluateMap(sequence, OptimiseMap(input, OptimiseOptions()));
-  for (const ObjectMetrics& object : metrics.objects) EXPECT_GT(object.iou, 0.99);
-  EXPECT_LT(metrics.trajectory->ate_rmse_m, 1e-6);
-}
-
 TEST(BackEnd, ComesBackFromADisturbedStart) {
   const Sequence sequence = SyntheticSequence(RandomScene(5, 5, 20), false);
   BackEndInput input = EllipsoidInput(sequence);
@@ -123,35 +112,6 @@ TEST(BackEnd, RefusesAnInitialLandmarkWhoseCostIsNotDefined) {
   BackEndInput input = EllipsoidInput(sequence);
   input.initial_landmarks[0]->half_axes.x() = std::numeric_limits<double>::infinity();
   EXPECT_THROW(OptimiseMap(input, OptimiseOptions()), NumericalError);
-}
-
-TEST(BackEnd, OneFrameIsEnough) {
-  Sequence sequence = SyntheticSequence(RandomScene(5, 3, 10), false);
-  sequence.frames.resize(1);
-  std::erase_if(sequence.detections, [](const auto& d) { return d.frame_index > 0; });
-  const MapEstimate map = OptimiseMap(EllipsoidInput(sequence), OptimiseOptions());
-  EXPECT_EQ(map.world_from_camera.size(), 1u);
-}
-
-// With one landmark and fixed, sigma-free geometry the covariance is the inverse of J^T J; scaling
-// all variances by k scales it by k.
-TEST(BackEnd, CovariancesScaleWithTheVariances) {
-  const Sequence sequence = SyntheticSequence(RandomScene(5, 3, 15), false);
-  OptimiseOptions options;
-  const MapEstimate one = OptimiseMap(EllipsoidInput(sequence), options);
-  options.variances.detection_dm4 *= 4;
-  options.variances.support_angle_deg2 *= 4;
-  options.variances.support_tangency_dm4 *= 4;
-  options.variances.ratio *= 4;
-  options.odometry_rotation_sigma_deg *= 2;
-  options.odometry_translation_sigma_m *= 2;
-  const MapEstimate four = OptimiseMap(EllipsoidInput(sequence), options);
-  for (size_t i = 0; i < one.objects.size(); ++i) {
-    ASSERT_TRUE(one.objects[i].covariance);
-    EXPECT_TRUE(four.objects[i].covariance->isApprox(4.0 * *one.objects[i].covariance, 1e-3));
-    const Eigen::SelfAdjointEigenSolver<Covariance9> eigen(*one.objects[i].covariance);
-    EXPECT_GT(eigen.eigenvalues().minCoeff(), 0.0);
-  }
 }
 
 // Other views tell apart what explains one box equally well.

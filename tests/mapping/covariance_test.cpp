@@ -156,10 +156,5 @@ TEST(MarginalCovariances, AreNoneOfBlocksWithoutResiduals) {
   EXPECT_FALSE(covariances.Has(&numbers[2]));
 }
 
-TEST(MarginalCovariances, AreNoneOfAProblemWithoutVariables) {
-  ceres::Problem problem;
-  EXPECT_FALSE(MarginalCovariances(&problem).AreDetermined());
-}
-
 }  // namespace
 }  // namespace soslam

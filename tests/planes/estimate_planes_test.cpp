@@ -265,17 +265,6 @@ TEST(EstimatePlanes, AnObjectWithoutBoxesStandsWhereMostDo) {
   EXPECT_EQ(estimate.objects[1].plane_index, 0);
 }
 
-TEST(EstimatePlanes, DoesNotLookAtTheGivenPlanes) {
-  Sequence sequence = SyntheticSequence(CuboidScene(4, 3), false);
-  const PlanesEstimate with = Estimate(sequence);
-  sequence.planes[0].plane_in_world = RandomPlane();
-  for (Detection& detection : sequence.detections) detection.plane_in_camera = RandomPlane();
-  const PlanesEstimate without = Estimate(sequence);
-  ASSERT_EQ(with.planes.size(), without.planes.size());
-  EXPECT_EQ(with.planes[0].plane_in_world.normal, without.planes[0].plane_in_world.normal);
-  EXPECT_EQ(with.planes[0].plane_in_world.offset, without.planes[0].plane_in_world.offset);
-}
-
 // What moves takes part in nothing.
 TEST(EstimatePlanes, AMovingObjectDoesNotDecide) {
   const Sequence sequence = SyntheticSequence(CuboidScene(3, 4), false);

@@ -9,8 +9,6 @@
 #include "base/error.h"
 #include "geometry/angles.h"
 #include "planes/camera_holding.h"
-#include "planes/estimate_planes.h"
-#include "planes/poses.h"
 #include "support/expect_error.h"
 #include "support/scene.h"
 
@@ -60,25 +58,6 @@ TEST(SlowEstimatePlanesAndHolding, FindsUpForEachRoll) {
       EXPECT_LT(std::abs(error->offset), 0.05);
     }
   }
-}
-
-// To the last digit.
-TEST(EstimatePlanesAndHolding, LevelCamerasHaveThePlanesOfTheirAttitude) {
-  const Sequence sequence = NoisySequence(4, 4);
-  const PlanesOptions options = HoldingOptions();
-  const UpPrior attitude = UpPriorFromCameras(
-      PosesOf(sequence), options.camera_roll_sigma_deg * kRadPerDeg,
-      options.camera_pitch_sigma_deg * kRadPerDeg, options.view_correlation_deg * kRadPerDeg);
-  const PlanesEstimate expected =
-      FindPlanes(sequence, TrueCuboidPriors(sequence, kRatioLogSigma), attitude, options, 2)
-          .value();
-  const PlanesEstimate found = EstimateHeld(sequence).estimate;
-  EXPECT_EQ(found.holding, CameraHolding::kLevel);
-  ASSERT_EQ(found.planes.size(), expected.planes.size());
-  EXPECT_EQ(found.planes[0].plane_in_world.normal, expected.planes[0].plane_in_world.normal);
-  EXPECT_EQ(found.planes[0].plane_in_world.offset, expected.planes[0].plane_in_world.offset);
-  EXPECT_EQ(*found.planes[0].covariance, *expected.planes[0].covariance);
-  EXPECT_EQ(found.cost, expected.cost);
 }
 
 // What lies on its side costs too much for planes to be looked for.
@@ -214,15 +193,6 @@ TEST(ChooseHolding, NoObjectAloneDecides) {
   const auto without_body = Evidence(CameraHolding::kLevel, kUp, {std::nullopt, 0.0, 0.0});
   EXPECT_EQ(ChooseHolding({without_body, rolled}, 1e3).costs,
             ChooseHolding({level, rolled}, 1e3).costs);
-}
-
-// Ten times the cost that noise would make: differences count a tenth.
-TEST(ChooseHolding, WhereBodiesFitBadlyBoxesSayLess) {
-  const auto level = Evidence(CameraHolding::kLevel, kUp, {50.0, 50.0});
-  const auto rolled = Evidence(CameraHolding::kRolled90, kSide, {60.0, 60.0});
-  EXPECT_NEAR(ChooseHolding({level, rolled}, 10.0).costs[1], std::log(100.0) + 2.0, 1e-9);
-  EXPECT_NEAR(ChooseHolding({level, rolled}, 1e3).costs[1], std::log(100.0) + 2.0 * std::log(1e4),
-              1e-9);
 }
 
 TEST(ChooseHolding, ThingsAreSeldomSeenFromBelowTheirPlane) {

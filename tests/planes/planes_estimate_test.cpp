@@ -66,13 +66,6 @@ TEST(CompareWithGiven, MeasuresAgainstThePlaneOfMost) {
   EXPECT_NEAR(error->offset, 0.1, 1e-12);
 }
 
-TEST(CompareWithGiven, IsNoneForAPlaneOfNoObject) {
-  const Sequence sequence = ShelfSequence();
-  PlanesEstimate estimate = AnyEstimate(sequence);
-  for (ObjectSupport& support : estimate.objects) support.plane_index = 0;
-  EXPECT_FALSE(CompareWithGiven(sequence, estimate, 1));
-}
-
 // A camera that drives level 1.65 m over z = 0, and an object beside the way.
 TEST(PlanesBelowCameras, IsTheGroundUnderALevelDrive) {
   Sequence sequence;
@@ -130,17 +123,6 @@ TEST(ClusterPlaneHeights, GroupsHeightsByTheirUncertainty) {
   EXPECT_NEAR(sure.heights[1], 0.505, 1e-9);
   EXPECT_THAT(levels_of(0.5).level_of, ElementsAre(0, 0, 0, 0));
   EXPECT_THAT(levels_of(0.0001).level_of, ElementsAre(3, 0, 2, 1));
-}
-
-// One level for two objects costs 0.5 * (0.2 / (sqrt(2) sigma))^2 more than two levels.
-TEST(ClusterPlaneHeights, OpensALevelWhereItIsWorthItsCost) {
-  const double sigma = 0.2 / (std::sqrt(2.0) * std::sqrt(2.0 * kNewLevel));
-  const auto count = [&](double factor) {
-    const std::vector<PlaneEvidence> evidence(2, FootAt(0, 0, factor * sigma));
-    return ClusterPlaneHeights(evidence, {0.0, 0.2}, {}, kMaxTilt, kNewLevel).heights.size();
-  };
-  EXPECT_EQ(count(1.01), 1u);
-  EXPECT_EQ(count(0.99), 2u);
 }
 
 // Heights at the pivot of objects far apart differ as the tilt is wrong: with the right one they
@@ -248,14 +230,6 @@ TEST(Moved, KeepsBodiesOnTheirPlanes) {
   }
 }
 
-TEST(Moved, TurnsAboutTheLevelAxes) {
-  const Plane floor;
-  const Eigen::Vector3d x = UprightRotation(floor.normal, 0.0) * Eigen::Vector3d::UnitX();
-  const Plane moved = Moved(floor, Eigen::Vector3d::Zero(), {0.1, 0.0, 0.0});
-  EXPECT_NEAR(moved.normal.dot(x), 0.0, 1e-12);
-  EXPECT_NEAR(moved.normal.dot(floor.normal), std::cos(0.1), 1e-12);
-}
-
 // Gradient and curvature of the cost of the best body against differences of that cost. The
 // information leaves out second derivatives of the residuals, which count by their size: it is
 // exact where boxes are. A motion of 1e-3 rad or m changes noisy costs by about 1, and the gradient
@@ -298,12 +272,6 @@ TEST(FitBodyAtFreeHeight, FindsHeightAndBodyFromExactBoxes) {
     EXPECT_NEAR(body->observation.plane_in_world.offset, 0.0, 0.005);
     EXPECT_LT(EvidenceOf(*body, body->landmark.Centre()).cost, 0.01);
   }
-}
-
-TEST(FitBodyAtFreeHeight, IsNoneForOneView) {
-  MultiViewObservation observation = RandomObservation(1);
-  observation.views.resize(1);
-  EXPECT_FALSE(FitBodyAtFreeHeight(observation, Eigen::Vector3d::UnitZ(), kStep));
 }
 
 }  // namespace

@@ -13,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "support/background_command.h"
 #include "support/eventually.h"
 #include "support/run_command.h"
 #include "support/small_pipeline.h"
