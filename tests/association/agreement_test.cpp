@@ -129,13 +129,5 @@ TEST(AssociatedSequenceTest, MovingObjectsAreNotCountedAndGiveNoGroundTruth) {
   EXPECT_TRUE(associated.objects[1].is_static);
 }
 
-TEST(AssociatedSequenceTest, AnObjectWithoutCounterpartHasNoGroundTruth) {
-  const Sequence given = GivenSequence({0, 0, 0, 0, 0});
-  const Association found = Found({0, 0, 0, 1, 1});
-  const Sequence associated = AssociatedSequence(given, found, CompareWithGiven(given, found, 2));
-  EXPECT_TRUE(associated.objects[0].ground_truth);
-  EXPECT_FALSE(associated.objects[1].ground_truth);
-}
-
 }  // namespace
 }  // namespace soslam

@@ -221,14 +221,6 @@ TEST(AssociateTest, OfTwoBoxesAtOnePlaceTheBetterIsUsed) {
   EXPECT_EQ(kept.score, 1.0);
 }
 
-TEST(AssociateTest, WithoutDetectionsThereAreNoObjects) {
-  Sequence sequence = SyntheticSequence(LabelledScene(5, 1, 5, {"thing"}), false);
-  sequence.detections.clear();
-  const Association association = AssociateAll(sequence);
-  EXPECT_TRUE(association.objects.empty());
-  EXPECT_TRUE(association.tracks.empty());
-}
-
 // The same frames once more, as another recording, in a world of its own that looks the same.
 TEST(AssociateTest, EachSegmentHasItsOwnObjects) {
   const Sequence once = SyntheticSequence(LabelledScene(6, 2, 20, {"thing"}), false);

@@ -82,11 +82,6 @@ TEST_F(BoxLikelihoodTest, ABoxFarOffIsNotExplainedAtAll) {
   EXPECT_FALSE(Match(Shifted(20.0)));
 }
 
-TEST_F(BoxLikelihoodTest, ABoxBesideIsMoreLikelyOfAnyObject) {
-  const auto beside = Match(Shifted(1.0));
-  EXPECT_FALSE(beside && beside->cost < BoxLikelihood(sequence_, options_).CostOfAnyBox(expected_));
-}
-
 // What the density gains in width it loses in height.
 TEST_F(BoxLikelihoodTest, TheLongerUnseenTheWider) {
   const Box far = Shifted(0.4);

@@ -66,22 +66,6 @@ TEST(SupportsTest, AreFoundFromBoxes) {
   EXPECT_GE(right, 0.9 * all) << right << " of " << all;
 }
 
-// The plane of each detection in its camera is that of its object.
-TEST(SupportsTest, DetectionsHaveThePlanesOfTheirObjects) {
-  const auto [given, seen] = OnFloorAndShelf(1, 1.0);
-  const Sequence unknown = WithUnknownSupports(seen);
-  const Sequence associated =
-      Associated(unknown, Associate(unknown, UnknowingTable(), EstimatedAssociation(), 2));
-  ASSERT_FALSE(associated.detections.empty());
-  for (const Detection& detection : associated.detections) {
-    const auto plane = static_cast<size_t>(associated.ObjectOf(detection).plane_index);
-    const Plane expected = Transform(associated.FrameOf(detection).world_from_camera.Inverse(),
-                                     associated.planes[plane].plane_in_world);
-    EXPECT_NEAR((detection.plane_in_camera.normal - expected.normal).norm(), 0.0, 1e-12);
-    EXPECT_NEAR(detection.plane_in_camera.offset, expected.offset, 1e-12);
-  }
-}
-
 // Objects on a shelf that is not among the planes have no place in the map where their boxes tell;
 // none on the floor is mistaken for one of them.
 TEST(SupportsTest, WhatStandsOnNoPlaneIsNoObject) {
@@ -113,13 +97,6 @@ TEST(MovingLabelsTest, ThingsThatMoveAreNoObjects) {
   for (const int object : association.objects) {
     EXPECT_EQ(LabelOf(association.tracks[object]), "cup");
   }
-}
-
-TEST(MovingLabelsTest, SpellingDoesNotCount) {
-  const Sequence given = SyntheticSequence(LabelledScene(3, 4, 30, {"Guide_Dog", "cup"}), false);
-  AssociateOptions options = EstimatedAssociation();
-  options.moving_labels = "guide dog";
-  EXPECT_EQ(Associate(WithoutIds(given), UnknowingTable(), options, 2).objects.size(), 2U);
 }
 
 // Objects of two labels that the detector calls by one name are told apart by their boxes.
@@ -175,15 +152,6 @@ TEST(UpEstimateTest, OneCameraIsAsUncertainAsItIsHeld) {
   const Eigen::Vector3d variances = Eigen::Vector3d(4.0, 20.0, 0.0).array().square();
   const Eigen::Matrix3d expected = (kRadPerDeg * kRadPerDeg * variances).asDiagonal();
   EXPECT_LT((up.covariance - expected).norm(), 1e-9);
-}
-
-TEST(UpEstimateTest, EachSegmentHasItsOwn) {
-  const Eigen::Quaterniond turn = RandomRotation();
-  Sequence sequence = SequenceOf({LevelCamera(), turn * LevelCamera()});
-  sequence.frames[1].segment = 1;
-  const auto up = UpOfSegments(sequence, SemanticTable(), AssociateOptions());
-  ASSERT_EQ(up.size(), 2u);
-  EXPECT_LT((up.at(1).up_in_world - turn * up.at(0).up_in_world).norm(), 1e-9);
 }
 
 // Cameras all around that look down by half a right angle and are rolled by the given sigma.

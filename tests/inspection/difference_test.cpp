@@ -64,15 +64,6 @@ TEST_F(DifferenceTest, ArraysNameTheirLargestDifference) {
                          "3"));
 }
 
-TEST_F(DifferenceTest, MatricesAreOnePlace) {
-  (*map_.objects[0].covariance)(3, 4) += 1.0;
-  WriteMap(Two(), map_, sequence_, {});
-  const Differences differences = Compare();
-  ASSERT_EQ(differences.content.size(), 1u);
-  EXPECT_EQ(differences.content[0].place, "/objects/0/covariance");
-  EXPECT_EQ(differences.content[0].of, 81u);
-}
-
 TEST_F(DifferenceTest, WhatOnlyOneHasIsListed) {
   map_.objects.pop_back();
   map_.objects[0].covariance.reset();

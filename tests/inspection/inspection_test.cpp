@@ -66,16 +66,6 @@ TEST_F(InspectionTest, SequencesHaveARowPerObject) {
   EXPECT_EQ(At(inspection, 1, "static"), true);
 }
 
-TEST_F(InspectionTest, SequencesWithoutPlanesAndDetectionsAreRead) {
-  sequence_.planes.clear();
-  sequence_.detections.clear();
-  for (Object& object : sequence_.objects) object.plane_index = kNoPlane;
-  WriteSequence(File(), sequence_, {});
-  const Inspection inspection = Read();
-  EXPECT_TRUE(At(inspection, 0, "plane").is_null());
-  EXPECT_TRUE(At(inspection, 0, "mean_score").is_null());
-}
-
 TEST_F(InspectionTest, LandmarksHaveARowPerObservationAndObject) {
   const LandmarkEstimates estimates = RandomLandmarkEstimates();
   WriteLandmarks(File(), estimates, sequence_, {OptionsToJson(InitialiseOptions()), {}});
@@ -223,16 +213,6 @@ TEST_F(InspectionTest, AssociationsHaveARowPerObject) {
   EXPECT_EQ(At(inspection, 0, "label_votes"), "3 cup, 1 mug");
 }
 
-TEST_F(InspectionTest, SemanticTablesHaveARowPerLabel) {
-  SemanticRow cup{"cup", {"mug", "beaker"}, {}, 5, "a test"};
-  cup.prior.height_m = LogNormal{0.1, 0.2};
-  WriteSemanticRows(File(), {"sizes", std::nullopt, {cup}}, {});
-  const Inspection inspection = Read();
-  EXPECT_EQ(Said(inspection, "what"), "sizes");
-  EXPECT_EQ(At(inspection, 0, "aliases"), "mug, beaker");
-  EXPECT_EQ(At(inspection, 0, "height"), 0.1);
-}
-
 TEST_F(InspectionTest, PointsHaveARowPerFrame) {
   WritePoints(File(),
               {{{0.0, 1.0, 2.0}, 0.5, {{3, {1.0, 1.0}}, {5, {2.0, 2.0}}}},
@@ -298,25 +278,6 @@ TEST_F(InspectionTest, SymmetryHasARowPerObservation) {
   EXPECT_TRUE(At(inspection, 0, "initial_yaw").is_null());
 }
 
-TEST_F(InspectionTest, ManyInputsOfAKindAreCounted) {
-  ArtefactInfo info;
-  for (int i = 0; i < 9; ++i) {
-    info.inputs.push_back(File(fmt::format("{}.jpg", i)));
-    WriteBytes(info.inputs.back(), "image");
-  }
-  info.inputs.push_back(File("camera.json"));
-  WriteBytes(info.inputs.back(), "camera");
-  WriteSequence(File(), sequence_, info);
-  EXPECT_EQ(Said(Read(), "from"), "9 .jpg files, camera.json");
-}
-
-TEST_F(InspectionTest, LongFactsAreWrapped) {
-  const Inspection inspection{
-      "title", {{"name", std::string(60, 'a') + " " + std::string(60, 'b')}}, {}};
-  EXPECT_EQ(FormatInspection(inspection, false),
-            "title\n  name  " + std::string(60, 'a') + "\n        " + std::string(60, 'b') + "\n");
-}
-
 TEST_F(InspectionTest, WhatIsNoArtefactIsRefused) {
   const auto refuses = [&](const std::string& bytes, const std::vector<std::string>& words) {
     WriteBytes(File(), bytes);
@@ -355,15 +316,6 @@ TEST(ValueTableTest, ColumnsLineUpAndEmptyOnesAreLeftOut) {
             "c      -10.00      3  no\n");
 }
 
-TEST(ValueTableTest, OnlyTheHeadIsColoured) {
-  const std::string plain = FormatTable(SmallTable(), false);
-  const std::string coloured = FormatTable(SmallTable(), true);
-  EXPECT_THAT(plain, testing::Not(testing::HasSubstr("\x1b")));
-  const size_t rows = plain.find("b\xc3\xa4r");
-  EXPECT_THAT(coloured, testing::StartsWith("\x1b["));
-  EXPECT_THAT(coloured, testing::EndsWith(plain.substr(rows)));
-}
-
 TEST(ValueTableTest, CsvHasAllColumnsAndAllDigits) {
   EXPECT_EQ(FormatCsv(SmallTable()),
             "label,x_m,share_percent,count,flag\n"
@@ -395,13 +347,6 @@ TEST(DoubtsInWords, AreOfPlaceSizesAndSightings) {
   EXPECT_EQ(
       DoubtsInWords(Sphere(0.26, 0.1), Sightings{1, 3}, kUp),
       "detected in only 1 of the 3 images that should show it; it may stand beside its outline");
-}
-
-TEST(DoubtsInWords, WithoutCovarianceAreOfSightingsOnly) {
-  ObjectEstimate estimate = Sphere(9.0, 9.0);
-  estimate.covariance.reset();
-  EXPECT_EQ(DoubtsInWords(estimate, {}, kUp), "");
-  EXPECT_THAT(DoubtsInWords(estimate, Sightings{1, 9}, kUp), HasSubstr("only 1 of the 9"));
 }
 
 // Along the thin axis of a board 0.3 m are more than it reaches, along the others they are not;

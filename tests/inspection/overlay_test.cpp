@@ -126,34 +126,6 @@ TEST_F(OverlayOfSceneTest, TheTruthFillsExactDetections) {
   EXPECT_EQ(boxes, static_cast<int>(sequence_.detections.size()));
 }
 
-TEST_F(OverlayOfSceneTest, TheBestHypothesisOfEachObservationIsShown) {
-  LandmarkEstimates estimates;
-  for (int i = 0; i < static_cast<int>(sequence_.detections.size()); ++i) {
-    const auto truth = TrueLandmarkInCamera(sequence_, sequence_.detections[i]);
-    estimates.observations.push_back({i, {{*truth, 0.0}, {LandmarkInView(1.0), 1.0}}, ""});
-  }
-  const int frame_index = sequence_.detections.front().frame_index;
-  const OverlayInput input = OverlayOfLandmarks(sequence_, estimates, frame_index);
-  ASSERT_EQ(input.landmarks.size(), input.detections.size());
-  EXPECT_EQ(input.landmarks[0].landmark_in_camera.Centre(), input.truths_in_camera[0].Centre());
-}
-
-TEST_F(OverlayOfSceneTest, ObjectsThatAreNotDetectedHaveCaptions) {
-  const MapEstimate map = TrueMap(sequence_);
-  const Detection missed = sequence_.detections.front();
-  sequence_.detections.erase(sequence_.detections.begin());
-  const OverlayInput input = OverlayOfMap(sequence_, map, missed.frame_index);
-  const Object& object = sequence_.ObjectOf(missed);
-  int captions = 0;
-  for (const auto& body : input.landmarks) {
-    if (body.caption.empty()) continue;
-    ++captions;
-    EXPECT_EQ(body.caption, std::to_string(object.id) + " " + object.label);
-    EXPECT_LT(OutlineEdgeRms(input.camera, body.landmark_in_camera, missed.box), 1e-6);
-  }
-  EXPECT_EQ(captions, 1);
-}
-
 // Lines of the grid are on the plane: feet that are 10 m apart have cells of 1 m between them.
 TEST(OverlayTest, GridsOfPlanesReachAroundTheFeet) {
   const Plane floor{-Eigen::Vector3d::UnitY(), 1.0};
@@ -211,20 +183,6 @@ TEST(PicturesTest, EveryLayerShowsItsMap) {
   EXPECT_GT(nearest.rows, kSize) << "there is a caption";
 }
 
-TEST(PicturesTest, AllLayersAreSideBySide) {
-  const cv::Mat all = EdgesPicture(MapsOfAnEdge(), EdgeLayer::kAll, "frame 1");
-  EXPECT_EQ(all.cols, 2 * kSize);
-  EXPECT_EQ(At(all, kSize + kSize / 2, 10), cv::Vec3b(255, 255, 255));
-}
-
-TEST(PicturesTest, AnImageWithoutEdgesIsDark) {
-  const EdgeMaps maps = ComputeEdgeMaps(cv::Mat(kSize, kSize, CV_8UC1, cv::Scalar(50)), {});
-  const cv::Mat nearest = EdgesPicture(maps, EdgeLayer::kNearest, "");
-  EXPECT_EQ(At(nearest, 10, 10), cv::Vec3b(0, 0, 0));
-  const cv::Mat distance = EdgesPicture(maps, EdgeLayer::kDistance, "");
-  EXPECT_EQ(At(distance, 10, 10), At(distance, kSize - 10, kSize - 10));
-}
-
 TEST(PicturesTest, PairsAreJoinedOnThePartAroundThem) {
   SymmetryRecord record;
   record.samples = {{300.0F, 400.0F}};
@@ -238,13 +196,6 @@ TEST(PicturesTest, PairsAreJoinedOnThePartAroundThem) {
   EXPECT_EQ(At(picture, static_cast<int>(24.5 * factor), y), cv::Vec3b(66, 228, 240));
   EXPECT_EQ(At(picture, static_cast<int>(84.5 * factor), y), cv::Vec3b(233, 180, 86));
   EXPECT_GT(Brightness(At(picture, static_cast<int>(54.5 * factor), y)), 60) << "the line";
-}
-
-TEST(PicturesTest, WithoutPairsTheWholeImageIsShown) {
-  const cv::Mat image(kSize, kSize, CV_8UC3, cv::Scalar(1, 2, 3));
-  const cv::Mat picture = SymmetryPicture({}, image, "");
-  EXPECT_EQ(picture.cols, kSize);
-  EXPECT_EQ(At(picture, kSize - 1, kSize - 1), cv::Vec3b(1, 2, 3));
 }
 
 // Shoelace formula.

@@ -106,21 +106,6 @@ TEST(EdgeTerm, IsBounded) {
   EXPECT_NEAR(of_none.Support(behind), 0.0, 1e-12);
 }
 
-TEST(SupportedEdgeTerm, IsScaledByItsWeightAndTheSquaredSupport) {
-  const Landmark truth = Cuboid(0.3);
-  const auto image = ImageOf(truth);
-  const Landmark start = RotatedAboutZ(truth, 0.1);
-  const EdgeTerm term(image, TestCamera(), start, EdgeOptions());
-  EXPECT_GT(term.Support(start), 0.1);
-  EXPECT_LT(term.Support(start), 0.9);
-  const EdgeTerm supported = SupportedEdgeTerm(image, TestCamera(), start, EdgeOptions(), 0.25);
-  const double factor = 0.25 * std::pow(term.Support(start), 2);
-  const Landmark elsewhere = RotatedAboutZ(truth, 0.12);
-  EXPECT_NEAR(supported.Value(elsewhere), factor * term.Value(elsewhere), 1e-9);
-  EXPECT_NEAR(supported.ConstantCost(), factor * term.ConstantCost(), 1e-9);
-  EXPECT_NEAR(supported.Support(elsewhere), term.Support(elsewhere), 1e-9);
-}
-
 EdgeOptions AnyDirection() {
   EdgeOptions options;
   options.edge_direction_tolerance_deg = 90.0;

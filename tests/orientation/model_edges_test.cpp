@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <map>
 #include <set>
 
 #include "support/random.h"
@@ -32,20 +31,6 @@ std::array<int, 3> EdgeOf(const ModelPoint& point) {
   return edge;
 }
 
-double CuboidEdgeLength(const Camera& camera, const Landmark& landmark,
-                        const std::array<int, 3>& edge) {
-  std::array<Eigen::Vector2d, 2> ends;
-  for (size_t end = 0; end < 2; ++end) {
-    Eigen::Vector3d point;
-    for (int i = 0; i < 3; ++i) {
-      const int sign = edge[i];
-      point[i] = landmark.half_axes[i] * (sign != 0 ? sign : end == 0 ? -1 : 1);
-    }
-    ends[end] = *camera.Project(landmark.frame_from_object * point);
-  }
-  return (ends[1] - ends[0]).norm();
-}
-
 TEST(VisibleModelPoints, CuboidsShowTheEdgesOfTheFacesThatTheCameraSees) {
   const Eigen::Vector3d half_axes(0.5, 0.4, 0.3);
   const std::vector<std::pair<Eigen::Vector3d, size_t>> views = {
@@ -65,31 +50,6 @@ TEST(VisibleModelPoints, CuboidsShowTheEdgesOfTheFacesThatTheCameraSees) {
         visible |= edge[i] * camera_in_object[axis] > half_axes[axis];
       }
       EXPECT_TRUE(visible);
-    }
-  }
-}
-
-TEST(VisibleModelPoints, LieInTheOutlineBoxAsFarApartAsAsked) {
-  const Camera camera = TestCamera();
-  for (int i = 0; i < 50; ++i) {
-    Landmark landmark = RandomLandmarkInCamera();
-    landmark.shape_exponent = kCuboidExponent;
-    const auto box = OutlineBox(camera, landmark);
-    if (!box) continue;
-    std::map<std::array<int, 3>, int> points_on;
-    const auto points = VisibleModelPoints(camera, landmark, kSpacing);
-    for (const ModelPoint& point : points) {
-      const auto pixel = camera.Project(landmark.frame_from_object *
-                                        landmark.half_axes.cwiseProduct(point.in_unit_body));
-      ASSERT_TRUE(pixel);
-      const Box wider{box->x_min - 1, box->y_min - 1, box->x_max + 1, box->y_max + 1};
-      EXPECT_TRUE(wider.Contains(*pixel)) << pixel->transpose();
-      EXPECT_NEAR(point.along.norm(), 1.0, 1e-12);
-      ++points_on[EdgeOf(point)];
-    }
-    // A remainder goes on to the next edge, so that no edge is more than one point off.
-    for (const auto& [edge, count] : points_on) {
-      EXPECT_NEAR(count, CuboidEdgeLength(camera, landmark, edge) / kSpacing, 1.0);
     }
   }
 }

@@ -176,38 +176,6 @@ TEST_F(RefineBoxes, AreDrawnToTheScenesAxesAsMuchAsTheirPreferenceWeighs) {
   }
 }
 
-TEST_F(RefineBoxes, RecordsTheCurvesOfAllParts) {
-  const ProfileOptions options;
-  const RefinedObservation refined = Refine(0, options);
-  const SymmetryRecord& record = refined.record;
-  EXPECT_EQ(record.frame_id, sequence_->frames[0].id);
-  EXPECT_EQ(record.object_id, sequence_->objects[0].id);
-  EXPECT_EQ(record.yaw.size(), 60u);  // half a turn in steps of 3 degrees
-  ASSERT_EQ(record.cost.size(), 3u);
-  for (const char* part : {"total", "edge_alignment", "texture_symmetry"}) {
-    ASSERT_EQ(record.cost.count(part), 1u) << part;
-    EXPECT_EQ(record.cost.at(part).size(), record.yaw.size()) << part;
-  }
-  for (size_t i = 0; i < record.yaw.size(); ++i) {
-    const double total = record.cost.at("total")[i];
-    if (std::isnan(total)) continue;
-    EXPECT_LE(record.cost.at("texture_symmetry")[i], options.texture.asymmetry_cost);
-    EXPECT_GE(record.cost.at("texture_symmetry")[i], 0.0);
-    EXPECT_GT(record.cost.at("edge_alignment")[i], 0.0);
-    EXPECT_GE(total,
-              record.cost.at("texture_symmetry")[i] + record.cost.at("edge_alignment")[i] - 1e-9);
-  }
-  ASSERT_TRUE(record.yaw_sigma);
-  EXPECT_TRUE(std::isfinite(*record.yaw_sigma));
-  EXPECT_FALSE(record.samples.empty());
-  EXPECT_EQ(record.samples.size(), record.mirrored.size());
-  double last = 0.0;
-  for (const Hypothesis& hypothesis : refined.estimate.hypotheses) {
-    EXPECT_GE(hypothesis.cost, last);
-    last = hypothesis.cost;
-  }
-}
-
 // The renderer's textures are symmetric in the xz plane alone.
 TEST_F(RefineBoxes, RecognisesTheMirrorPlaneOfTheTexture) {
   int recognised = 0;
@@ -217,16 +185,6 @@ TEST_F(RefineBoxes, RecognisesTheMirrorPlaneOfTheTexture) {
     recognised += planes ? 1 : 0;
   }
   EXPECT_GE(recognised, 3);  // from the others, a quarter turn hides one of each pair
-}
-
-TEST_F(RefineBoxes, LeavesOutPartsThatAreSwitchedOff) {
-  ProfileOptions options;
-  options.edge_alignment = false;
-  options.texture_symmetry = false;
-  const RefinedObservation refined = Refine(0, options);
-  EXPECT_EQ(refined.estimate.failure, "");
-  EXPECT_EQ(refined.record.cost.size(), 1u);
-  EXPECT_EQ(refined.record.cost.count("total"), 1u);
 }
 
 TEST_F(RefineBoxes, NeedsAPrior) {

@@ -67,34 +67,6 @@ TEST(TextureAsymmetry, GrowsToAllOfItWithTheDifference) {
   }
 }
 
-// A ramp from side to side: descriptors are the same everywhere, and differ from the mirrored ones
-// in all bits that compare pixels of two columns.
-TEST(TextureAsymmetry, OfBinaryDescriptorsCountsTheFractionOfBits) {
-  SymmetryImage image = SparseImage();
-  for (int x = 0; x < 640; ++x) {
-    image.maps.grey.col(x) = cv::Scalar(std::clamp(3 * (x - 277), 0, 255));
-  }
-  image.box = {305, 225, 335, 255};
-  Camera camera = TestCamera();
-  camera.cx = 319.5;
-  SymmetryOptions options = EverywhereInTheImage();
-  const Landmark landmark = FacingCube(kEllipsoidExponent);
-  for (const Descriptor descriptor : {Descriptor::kBrief, Descriptor::kFreak}) {
-    options.descriptor = descriptor;
-    const auto asymmetry = [&](double scale) {
-      return TextureAsymmetry(image, camera, Texture(1.0, scale), options).Cost(landmark);
-    };
-    const auto pair = SymmetryDescriptor(descriptor, image, camera, landmark)
-                          .Evaluate({319.5, 240.0}, std::nullopt, false);
-    ASSERT_TRUE(pair);
-    const double fraction = pair->residual;
-    EXPECT_GT(fraction, 0.6);
-    EXPECT_LE(fraction, 1.0);
-    EXPECT_NEAR(asymmetry(fraction), 0.5, 0.02);
-    EXPECT_NEAR(asymmetry(0.3), 1.0 / (1.0 + std::pow(0.3 / fraction, 2)), 0.02);
-  }
-}
-
 // Grey values that are symmetric about a column beside the body's centre.
 TEST(TextureAsymmetry, FindsTheMirrorPlaneBesideTheCentre) {
   SymmetryImage image = SparseImage();

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
+#include <set>
 
-#include "artefact/hdf5_file.h"
-#include "support/refused_input.h"
 #include "support/small_pipeline.h"
 #include "support/stage_chain.h"
 
@@ -16,6 +16,64 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::HasSubstr;
+
+// Makes an input of the next stage bad.
+using Spoil = std::function<void(const StageChain&)>;
+using SpoilFile = std::function<void(const fs::path&)>;
+
+Spoil InDataset(const std::string& file, const SpoilFile& spoil) {
+  return [=](const StageChain& chain) { spoil(chain.Dataset(file)); };
+}
+Spoil InArtefact(const std::string& file, const SpoilFile& spoil) {
+  return [=](const StageChain& chain) { spoil(chain.Artefact(file)); };
+}
+
+// Replaces the first `from`, which has to be there.
+SpoilFile Text(const std::string& from, const std::string& to) {
+  return [=](const fs::path& file) {
+    std::string bytes = FileBytes(file);
+    const size_t found = bytes.find(from);
+    ASSERT_NE(found, std::string::npos) << file << " has no " << from;
+    WriteBytes(file, bytes.replace(found, from.size(), to));
+  };
+}
+
+// Replaces a line, counted from 1.
+SpoilFile Line(int number, const std::string& line) {
+  return [=](const fs::path& file) {
+    std::string text = FileBytes(file);
+    size_t begin = 0;
+    for (int i = 1; i < number; ++i) begin = text.find('\n', begin) + 1;
+    const size_t end = text.find('\n', begin);
+    ASSERT_NE(end, std::string::npos) << file << " has no line " << number;
+    WriteBytes(file, text.replace(begin, end - begin, line));
+  };
+}
+
+SpoilFile Content(const std::string& content) {
+  return [=](const fs::path& file) { WriteBytes(file, content); };
+}
+
+void Truncate(const fs::path& file) { fs::resize_file(file, fs::file_size(file) / 2); }
+
+void LinkToItself(const fs::path& file) {
+  fs::remove_all(file);
+  fs::create_symlink(file.filename(), file);
+}
+
+void PutFolderInPlaceOf(const fs::path& file) {
+  fs::remove(file);
+  fs::create_directory(file);
+}
+
+// Replaces a file of the dataset by a symbolic link to a file with the same content elsewhere.
+Spoil MovedOut(const std::string& file) {
+  return [=](const StageChain& chain) {
+    const fs::path elsewhere = chain.pipeline().Folder() / "elsewhere";
+    fs::rename(chain.Dataset(file), elsewhere);
+    fs::create_symlink(elsewhere, chain.Dataset(file));
+  };
+}
 
 // A semantic table that knows these labels only and has no default.
 Spoil TableOf(const std::vector<std::string>& labels) {
@@ -39,70 +97,161 @@ void PutObject2OnACeiling(const StageChain& chain) {
   WriteBytes(chain.Dataset("objects.json"), objects.dump());
 }
 
-class RefusedInputTest : public testing::TestWithParam<RefusedInput> {};
-
-TEST_P(RefusedInputTest, EndsWithItsExitCodeAndOneLineThatNamesIt) { ExpectRefused(GetParam()); }
-
-INSTANTIATE_TEST_SUITE_P(
-    Dataset, RefusedInputTest,
-    testing::Values(Refused("ImageTruncated", "edges", ToDataset("rgb/000002.png", Truncate),
-                            {"rgb/000002.png"}),
-                    Refused("DetectionsMalformed", "import",
-                            Line("detections.csv", 3, "0,2,stool,1.0,wide,100,200,200"),
-                            {"detections.csv:3", "x1", "'wide'"}),
-                    Refused("NoDetectionLeft", "import",
-                            Content("detections.csv", "frame,object_id,label,score,x1,y1,x2,y2\n"),
-                            {"no usable detection"}, 4)),
-    CaseName<RefusedInput>);
-
-INSTANTIATE_TEST_SUITE_P(
-    Artefact, RefusedInputTest,
-    testing::Values(Refused("EdgesTruncated", "refine", ToArtefact("edges.h5", Truncate),
-                            {"edges.h5"}),
-                    Refused("SequenceNewer", "initialise",
-                            ArtefactText("sequence.json", "\"schema_version\": [\n   1,",
-                                         "\"schema_version\": [\n   2,"),
-                            {"sequence.json", "schema version [2, 7]", "[1, 7]"}),
-                    Refused("ArtefactOfAnotherKind", "optimise",
-                            [](const StageChain& chain) {
-                              fs::copy_file(chain.Artefact("sequence.json"),
-                                            chain.Artefact("refined.json"),
-                                            fs::copy_options::overwrite_existing);
-                            },
-                            {"refined.json", "kind", "landmarks"})),
-    CaseName<RefusedInput>);
-
-struct GatedInput {
-  std::string name;
-  std::string stage;
-  Spoil spoil;          // of the dataset, before any stage
-  std::string counter;  // JSON pointer into what the stage writes
-  int count;
-};
-
-void PrintTo(const GatedInput& input, std::ostream* stream) { *stream << input.name; }
-
-class GatedInputTest : public testing::TestWithParam<GatedInput> {};
-
-TEST_P(GatedInputTest, IsCountedWithItsReason) {
-  const GatedInput& bad = GetParam();
-  const StageChain& chain = StageChain::Finished();
-  ASSERT_NO_FATAL_FAILURE(bad.spoil(chain));
-  ASSERT_NO_FATAL_FAILURE(chain.RunUpTo(bad.stage));
-  const CommandResult result = chain.Run(bad.stage);
-  ASSERT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_LE(std::ranges::count(result.errors, '\n'), 1) << result.errors;
-  const json artefact = json::parse(FileBytes(chain.Artefact(StageChain::OutputOf(bad.stage))));
-  EXPECT_EQ(artefact.value(json::json_pointer(bad.counter), 0), bad.count);
+std::set<fs::path> NamesIn(const fs::path& folder) {
+  std::set<fs::path> names;
+  for (const auto& entry : fs::directory_iterator(folder)) names.insert(entry.path().filename());
+  return names;
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Dataset, GatedInputTest,
-    testing::Values(GatedInput{"LabelNotInTheTable", "initialise", TableOf({"chest", "armchair"}),
-                               "/failures/no_ratio_for_label", SmallPipeline::kFrames},
-                    GatedInput{"PlaneBehindTheCamera", "initialise", PutObject2OnACeiling,
-                               "/failures/support_plane_not_in_view", SmallPipeline::kFrames}),
-    CaseName<GatedInput>);
+// One line that a terminal takes for text, and a person can read.
+void ExpectOneLine(const std::string& errors) {
+  constexpr size_t kMaxLength = 2500;
+  EXPECT_LE(errors.size(), kMaxLength);
+  ASSERT_FALSE(errors.empty());
+  EXPECT_EQ(errors.back(), '\n');
+  EXPECT_TRUE(std::all_of(errors.begin(), errors.end() - 1, [](unsigned char character) {
+    return character >= 0x20 && character != 0x7F;
+  })) << errors;
+}
+
+struct RefusedInput {
+  std::string name;
+  std::string stage;  // that meets it, after all stages ran on the sound dataset
+  Spoil spoil;
+  std::vector<std::string> words;  // of the error: the file, what was found
+  int exit_code = 3;
+};
+
+void PrintTo(const RefusedInput& input, std::ostream* stream) { *stream << input.name; }
+
+class RefusedInputTest : public testing::TestWithParam<RefusedInput> {};
+
+// What was written before stays as it was, and nothing but the record of the failure is left beside
+// it.
+TEST_P(RefusedInputTest, EndsWithItsExitCodeAndOneLineThatNamesIt) {
+  const RefusedInput& bad = GetParam();
+  const StageChain& chain = StageChain::Finished();
+  ASSERT_NO_FATAL_FAILURE(bad.spoil(chain));
+  const fs::path output = chain.Artefact(StageChain::OutputOf(bad.stage));
+  WriteBytes(output, "from before");
+  std::set<fs::path> names = NamesIn(output.parent_path());
+  names.insert("run.json");
+
+  const CommandResult result = chain.Run(bad.stage);
+  EXPECT_EQ(result.exit_code, bad.exit_code);
+  EXPECT_THAT(result.errors, testing::StartsWith("soslam-" + bad.stage + ": error: "));
+  ExpectOneLine(result.errors);
+  for (const std::string& word : bad.words) EXPECT_THAT(result.errors, HasSubstr(word));
+  EXPECT_EQ(FileBytes(output), "from before");
+  EXPECT_EQ(NamesIn(output.parent_path()), names);
+}
+
+constexpr const char* kDetectionsHeader = "frame,object_id,label,score,x1,y1,x2,y2\n";
+
+const RefusedInput kRefusedInputs[] = {
+    {"ImageTruncated", "edges", InDataset("rgb/000002.png", Truncate), {"rgb/000002.png"}},
+    {"DetectionsMalformed",
+     "import",
+     InDataset("detections.csv", Line(3, "0,2,stool,1.0,wide,100,200,200")),
+     {"detections.csv:3", "x1", "'wide'"}},
+    {"NoDetectionLeft",
+     "import",
+     InDataset("detections.csv", Content(kDetectionsHeader)),
+     {"no usable detection"},
+     4},
+    {"EdgesTruncated", "refine", InArtefact("edges.h5", Truncate), {"edges.h5"}},
+    {"SequenceNewer",
+     "initialise",
+     InArtefact("sequence.json",
+                Text("\"schema_version\": [\n   1,", "\"schema_version\": [\n   2,")),
+     {"sequence.json", "schema version [2, 7]", "[1, 7]"}},
+    {"ArtefactOfAnotherKind",
+     "optimise",
+     [](const StageChain& chain) {
+       fs::copy_file(chain.Artefact("sequence.json"), chain.Artefact("refined.json"),
+                     fs::copy_options::overwrite_existing);
+     },
+     {"refined.json", "kind", "landmarks"}},
+    // Somebody made these to harm.
+    {"ZeroByte",
+     "import",
+     InDataset("detections.csv", Line(3, std::string("0,2,sto\0ol,1,1,1,2,2", 20))),
+     {"detections.csv:3", "UTF-8"}},
+    {"EscapeSequence",
+     "import",
+     InDataset("detections.csv", Line(3, "\x1b[2J,2,stool,1,1,1,2,2")),
+     {"detections.csv:3", "frame is '\\x1b[2J'"}},
+    {"AMillionDigits",
+     "import",
+     InDataset("odometry.txt", Line(3, std::string(1000000, '1') + "e 0 0 1 0 0 0 1")),
+     {"odometry.txt:3", "timestamp is '11", " ... ", "expected a finite number"}},
+    {"FolderForFile",
+     "import",
+     InDataset("detections.csv", PutFolderInPlaceOf),
+     {"detections.csv", "cannot be read"}},
+    {"LinkToItself", "import", InDataset("camera.json", LinkToItself), {"camera.json is missing"}},
+    {"NestedArtefact",
+     "initialise",
+     InArtefact("sequence.json", Content(std::string(1000000, '['))),
+     {"sequence.json", "more than 100"}},
+    {"ZeroByteInLabel",
+     "import",
+     InDataset("objects.json", Text("\"stool\"", "\"sto\\u0000ol\"")),
+     {"objects.json", "zero byte"}},
+    {"ImageBeyondMemory",
+     "import",
+     InDataset("camera.json", Text("\"width\":", "\"width\": 2000000000, \"source\":")),
+     {"camera.json", "pixels in all"}},
+    {"CameraBeyondMemory",
+     "edges",
+     InArtefact("sequence.json", Text("\"width\": 480", "\"width\": 2000000000")),
+     {"sequence.json", "2000000000 x 360"}},
+    {"NameLeadsOut",
+     "import",
+     InDataset("rgb.txt", Text("rgb/000001.png", "../small/rgb/../../secret.png")),
+     {"rgb.txt", "secret.png", "outside"}},
+    {"LinkLeadsOut",
+     "import",
+     MovedOut("rgb/000001.png"),
+     {"rgb.txt", "rgb/000001.png", "--allow_outside_paths"}},
+    {"FolderLeadsOut",
+     "edges",
+     MovedOut("rgb"),
+     {"sequence.json", "rgb/000000.png", "--allow_outside_paths"}},
+    {"NameInSequenceLeadsOut",
+     "edges",
+     InArtefact("sequence.json", Text("rgb/000001.png", "../secret.png")),
+     {"sequence.json", "../secret.png", "outside"}}};
+
+INSTANTIATE_TEST_SUITE_P(Stages, RefusedInputTest, testing::ValuesIn(kRefusedInputs),
+                         [](const auto& info) { return info.param.name; });
+
+TEST(UnusualInputTest, ImagesElsewhereAreReadWhenTheUserSaysSo) {
+  const StageChain chain;
+  ASSERT_NO_FATAL_FAILURE(chain.RunUpTo("edges"));
+  MovedOut("rgb")(chain);
+  const CommandResult result = RunCommand(
+      {StageProgram("edges"), "--quiet", "--allow_outside_paths", "--dataset",
+       chain.pipeline().Dataset().string(), "--sequence", chain.Artefact("sequence.json").string(),
+       "--output", chain.Artefact("edges.h5").string()});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+}
+
+TEST(UnusualInputTest, WhatCannotBeInitialisedIsCountedWithItsReason) {
+  for (const auto& [spoil, reason] :
+       {std::pair(TableOf({"chest", "armchair"}), "no_ratio_for_label"),
+        std::pair(Spoil(PutObject2OnACeiling), "support_plane_not_in_view")}) {
+    SCOPED_TRACE(reason);
+    const StageChain& chain = StageChain::Finished();
+    spoil(chain);
+    ASSERT_NO_FATAL_FAILURE(chain.RunUpTo("initialise"));
+    const CommandResult result = chain.Run("initialise");
+    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_LE(std::ranges::count(result.errors, '\n'), 1) << result.errors;
+    const json landmarks = json::parse(FileBytes(chain.Artefact("initial.json")));
+    EXPECT_EQ(landmarks.at("failures").value(reason, 0), SmallPipeline::kFrames);
+  }
+}
 
 TEST(UnusableInputTest, NoLabelInTheTable) {
   const StageChain& chain = StageChain::Finished();

@@ -131,29 +131,5 @@ TEST_P(BodyTest, NormalSupportsTheBodyAtItsPoint) {
   }
 }
 
-TEST_P(BodyTest, TransformMovesRaysAlong) {
-  const Body body = {GetParam(), RandomLandmarkInCamera()};
-  const Rigid3d motion = RandomRigid();
-  const Eigen::Vector3d direction = body.landmark.Centre();
-  const double depth = NearestIntersection(body, Eigen::Vector3d::Zero(), direction).value();
-  EXPECT_NEAR(
-      NearestIntersection(Transform(motion, body), motion.translation, motion.rotation * direction)
-          .value(),
-      depth, 1e-12);
-}
-
-TEST(BodyTest, AxisParallelRaysAtFaces) {
-  const Landmark landmark = {Rigid3d{}, {1.0, 2.0, 3.0}};
-  const Eigen::Vector3d down = -Eigen::Vector3d::UnitZ();
-  for (const Shape shape : {Shape::kBox, Shape::kCylinder}) {
-    EXPECT_DOUBLE_EQ(NearestIntersection(Body{shape, landmark}, {0.5, 0.0, 5.0}, down).value(),
-                     2.0);
-    EXPECT_FALSE(NearestIntersection(Body{shape, landmark}, {1.5, 0.0, 5.0}, down));
-  }
-  // The corner region is in the box and outside the cylinder.
-  EXPECT_TRUE(NearestIntersection(Body{Shape::kBox, landmark}, {0.9, 1.9, 5.0}, down));
-  EXPECT_FALSE(NearestIntersection(Body{Shape::kCylinder, landmark}, {0.9, 1.9, 5.0}, down));
-}
-
 }  // namespace
 }  // namespace soslam

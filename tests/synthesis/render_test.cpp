@@ -39,21 +39,6 @@ cv::Mat Silhouette(Scene scene) {
   return cv::max(channels[0], cv::max(channels[1], channels[2])) > 58;
 }
 
-// The pixels whose centre shows the first object's body.
-cv::Mat BodyMask(const Scene& scene) {
-  const Rigid3d world_from_camera = TruePoses(scene).front();
-  const Body body = ObjectBody(scene, scene.objects.front());
-  cv::Mat mask(scene.camera.height, scene.camera.width, CV_8U);
-  for (int v = 0; v < mask.rows; ++v) {
-    for (int u = 0; u < mask.cols; ++u) {
-      const Eigen::Vector3d ray = world_from_camera.rotation * scene.camera.Ray({u, v});
-      mask.at<uchar>(v, u) =
-          NearestIntersection(body, world_from_camera.translation, ray) ? 255 : 0;
-    }
-  }
-  return mask;
-}
-
 TEST(SurfaceTexture, IsMirrorSymmetricInXzPlaneOnly) {
   for (const Shape shape : kAllShapes) {
     for (int seed = 0; seed < 5; ++seed) {
@@ -77,20 +62,6 @@ TEST(SurfaceTexture, IsMirrorSymmetricInXzPlaneOnly) {
       EXPECT_LT(patches, 1500);
     }
   }
-}
-
-TEST(SurfaceTexture, DependsOnSeed) {
-  SceneObject object;
-  const SurfaceTexture first(object), again(object);
-  object.texture_seed = 1;
-  const SurfaceTexture other(object);
-  int differs = 0;
-  for (int i = 0; i < 1000; ++i) {
-    const Eigen::Vector3d point = RandomVector(-1.0, 1.0).normalized();
-    EXPECT_EQ(first.Colour(point), again.Colour(point));
-    differs += first.Colour(point) != other.Colour(point);
-  }
-  EXPECT_GT(differs, 300);
 }
 
 TEST(RenderFrame, SilhouetteFillsTheExactBox) {
@@ -140,25 +111,6 @@ TEST(RenderFrame, ShowsTheSurfaceColourUnderTheLight) {
     }
   }
   EXPECT_GT(compared, 100);
-}
-
-TEST(RenderFrame, EverySideCarriesTextureEdges) {
-  for (const Shape shape : kAllShapes) {
-    for (const double yaw : {0.0, 1.57, 3.14, 4.71}) {
-      const Scene scene = OneObject(shape, yaw);
-      cv::Mat grey, edges, inside;
-      cv::cvtColor(Render(scene), grey, cv::COLOR_BGR2GRAY);
-      cv::Canny(grey, edges, 50, 150);
-      cv::erode(BodyMask(scene), inside, cv::Mat::ones(9, 9, CV_8U));
-      edges &= inside;
-      const cv::Rect box = cv::boundingRect(inside);
-      for (int quarter = 0; quarter < 4; ++quarter) {
-        const cv::Rect part(box.x + (quarter % 2) * box.width / 2,
-                            box.y + (quarter / 2) * box.height / 2, box.width / 2, box.height / 2);
-        EXPECT_GT(cv::countNonZero(edges(part)), 10) << "quarter " << quarter << ", yaw " << yaw;
-      }
-    }
-  }
 }
 
 TEST(RenderFrame, NearObjectHidesFarOne) {

@@ -114,10 +114,6 @@ INSTANTIATE_TEST_SUITE_P(
             "frame 0 looks straight up or down, or at its own position")),
     [](const auto& info) { return info.param.name; });
 
-TEST(ReadScene, MissingFileIsAnInputError) {
-  EXPECT_THROW(ReadScene("/nowhere/scene.json"), InputError);
-}
-
 TEST(Scene, ObjectsStandUprightOnTheirPlane) {
   json document = ValidScene();
   const double s = std::sqrt(0.5);
@@ -166,14 +162,6 @@ TEST(Scene, LaidAndLeaningObjectsTouchTheirPlane) {
       EXPECT_LT((world_from_own.translation - landmark.Centre()).norm(), 1e-12);
     }
   }
-}
-
-TEST(Scene, LevelPlaneHasTheWorldsCoordinates) {
-  const Scene scene = ParseScene(ValidScene(), "scene.json");
-  EXPECT_NEAR(
-      (ObjectBody(scene, scene.objects[1]).landmark.Centre() - Eigen::Vector3d(3.0, 0.1, 0.5 + 0.2))
-          .norm(),
-      0.0, 1e-12);
 }
 
 TEST(TruePoses, PassThroughWaypointsLookingAhead) {

@@ -38,17 +38,6 @@ TEST(ObjectGroundTruth, TellsSymmetries) {
   EXPECT_TRUE(truth(2).rotationally_symmetric);
 }
 
-TEST(Simulate, WithoutNoiseMeasurementsAreTheTruth) {
-  Scene scene = Row();
-  scene.noise = AllNoise();
-  const Simulation simulation = Simulate(scene, false);
-  ASSERT_EQ(simulation.detections.size(), simulation.exact_boxes.size());
-  for (size_t i = 0; i < simulation.detections.size(); ++i) {
-    EXPECT_EQ(simulation.detections[i].box.x_min, simulation.exact_boxes[i].box.x_min);
-    EXPECT_EQ(simulation.detections[i].box.y_max, simulation.exact_boxes[i].box.y_max);
-  }
-}
-
 TEST(Simulate, ObjectBehindAnotherIsNotInSight) {
   Scene scene = Row(1);
   const Eigen::Vector2d ahead(3.5, 0.1);  // of object b, seen from the first pose
@@ -57,14 +46,6 @@ TEST(Simulate, ObjectBehindAnotherIsNotInSight) {
   std::vector<int> seen;
   for (const SimulatedBox& row : simulation.exact_boxes) seen.push_back(row.object_index);
   EXPECT_EQ(seen, (std::vector<int>{0, 2, 3}));
-}
-
-TEST(Simulate, ObjectBehindATableTopIsNotInSight) {
-  Scene scene = Row(1);
-  scene.planes.push_back({9, "table", Plane{Eigen::Vector3d::UnitZ(), -0.45}, TableTop{}});
-  scene.planes[1].table->position_on_plane = {1.8, 0.0};
-  scene.planes[1].table->half_size = {0.6, 2.0};
-  EXPECT_TRUE(Simulate(scene, false).exact_boxes.empty());
 }
 
 TEST(Simulate, TruncatedAndPassedObjectsAreNotInSight) {

@@ -83,11 +83,6 @@ class PlanStateTest : public testing::Test {
   Plan plan_;
 };
 
-TEST_F(PlanStateTest, DoneWhenNothingIsNewer) {
-  EXPECT_THAT(States(), ElementsAre("done", "done", "done"));
-  EXPECT_THAT(Reasons("evaluate"), IsEmpty());
-}
-
 TEST_F(PlanStateTest, RunAgainWithTheSameResultConcernsNobodyElse) {
   Write(ResultOf("import", "done"), "");
   EXPECT_THAT(States(), ElementsAre("done", "done", "done"));

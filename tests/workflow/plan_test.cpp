@@ -154,30 +154,6 @@ TEST_F(PlanTest, StagesReadTheLatestOfWhatTheyNeed) {
                  {"Full", "initialise", "sequence", "planes/sequence.json"}});
 }
 
-TEST_F(PlanTest, StagesThatASettingAsksForChangeNoKeyButOfTheirReaders) {
-  const std::string import = Id("Full", "import"), edges = Id("Full", "edges");
-  const std::string initialise = Id("Full", "initialise");
-  for (const auto& [stage, settings] :
-       {std::pair("associate", R"({"associate": {"association": "estimated"}})"),
-        {"planes", R"({"planes": {"planes": "estimated"}})"}}) {
-    Write("pipelines/datasets/room.json", settings);
-    EXPECT_FALSE(Make({"Full"}).Instance(Id("Full", stage)).semantic_table.empty());
-    EXPECT_EQ(Id("Full", "import"), import);
-    EXPECT_EQ(Id("Full", "edges"), edges);
-    EXPECT_NE(Id("Full", "initialise"), initialise);
-  }
-}
-
-TEST_F(PlanTest, InputsComeBeforeWhatReadsThem) {
-  std::set<std::string> seen;
-  for (const StageInstance& instance : Make({"Full", "Plain"}).instances) {
-    for (const auto& [argument, source] : instance.inputs) {
-      EXPECT_EQ(seen.count(source.instance), 1u) << instance.Id() << " " << argument;
-    }
-    seen.insert(instance.Id());
-  }
-}
-
 TEST_F(PlanTest, AKeyChangesWithItsSettingsAndWithThoseUpstreamOnly) {
   const std::string import = Id("Mapped", "import");
   const std::string initialise = Id("Mapped", "initialise");
