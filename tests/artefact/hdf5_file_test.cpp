@@ -4,10 +4,8 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include <cmath>
 #include <csignal>
 #include <cstdlib>
-#include <limits>
 #include <opencv2/core.hpp>
 
 #include "base/error.h"
@@ -63,26 +61,6 @@ TEST_F(Hdf5FileTest, AnyReaderOfHdf5ReadsTheNumbers) {
     EXPECT_EQ(numbers.values,
               std::vector<double>(expected.begin<double>(), expected.end<double>()));
   }
-}
-
-TEST_F(Hdf5FileTest, VectorsComeBackExactly) {
-  const double infinity = std::numeric_limits<double>::infinity();
-  const std::vector<double> doubles = {1.0 / 3.0, -infinity, 5e-324, -0.0};
-  const std::vector<float> floats = {1.0F / 3.0F};
-  const std::vector<int> ints = {std::numeric_limits<int>::min(), -1, 7};
-  const auto path = Write("a.h5", [&](Hdf5File& file) {
-    file.WriteVector("/doubles", doubles);
-    file.WriteVector("/floats", floats);
-    file.WriteVector("/ints", ints);
-    file.WriteVector("/empty", std::vector<double>());
-    file.WriteVector("/nan", std::vector<double>{std::nan("")});
-  });
-  const Hdf5File file = Hdf5File::Open(path);
-  EXPECT_EQ(file.ReadVector<double>("/doubles", 4), doubles);
-  EXPECT_EQ(file.ReadVector<float>("/floats"), floats);
-  EXPECT_EQ(file.ReadVector<int>("/ints"), ints);
-  EXPECT_TRUE(file.ReadVector<double>("/empty").empty());
-  EXPECT_TRUE(std::isnan(file.ReadVector<double>("/nan").at(0)));
 }
 
 TEST_F(Hdf5FileTest, AttributesComeBackExactly) {

@@ -106,14 +106,6 @@ TEST(CuboidErrors, HaveNoAngleForTheirOwnEdges) {
   }
 }
 
-TEST(CuboidErrors, CountTheLargestAngleForAxesWithoutSegments) {
-  const SeenCuboid seen;
-  const CuboidEvidence evidence{cv::Mat::zeros(480, 640, CV_32FC1), {}};
-  CuboidOptions options;
-  options.segment_angle_deg = 10.0;
-  EXPECT_NEAR(ErrorsOf(seen.view, seen.truth, evidence, options).angle, 60.0 * kRadPerDeg, 1e-9);
-}
-
 TEST(CuboidErrors, HaveTheExcessOfTheFootprintsRatioAsShape) {
   SeenCuboid seen;
   const CuboidEvidence evidence{cv::Mat::zeros(480, 640, CV_32FC1), {}};
@@ -138,13 +130,6 @@ TEST(CuboidCosts, AreWeightedSumsOfScaledErrors) {
   EXPECT_NEAR(costs[0], 0.5, 1e-12);
   EXPECT_NEAR(costs[1], 1.0, 1e-12);
   EXPECT_NEAR(costs[2], 0.5 + 0.25 + 3.0, 1e-12);
-}
-
-TEST(CuboidCosts, AreOfTheShapeAloneWhereImagesSayNothing) {
-  const auto costs = CuboidCosts({{0.1, 2.0, 1.0}, {0.1, 2.0, 0.0}}, CuboidOptions());
-  EXPECT_EQ(costs[0], CuboidOptions().shape_weight);
-  EXPECT_EQ(costs[1], 0.0);
-  EXPECT_TRUE(CuboidCosts({}, CuboidOptions()).empty());
 }
 
 // LSD on images of a few pixels, also at the image border.

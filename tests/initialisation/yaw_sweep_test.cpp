@@ -12,7 +12,6 @@
 #include "geometry/angles.h"
 #include "initialisation/closed_form.h"
 #include "initialisation/upright_observation.h"
-#include "support/landmark_terms.h"
 #include "support/level_sequence.h"
 #include "support/shape_exponents.h"
 #include "support/upright_bodies.h"
@@ -50,13 +49,6 @@ TEST(CircularMinima, AreSortedAndOfPlateausTheFirstIndices) {
 }
 
 constexpr double kStep = 3.0 * kRadPerDeg;
-
-TEST(BoxTerms, CostsNothingAtTheTruth) {
-  for (const double p : kShapeExponents) {
-    const StandingBody body(p);
-    EXPECT_LT(CostAtOwnDepths(body.observation, body.truth), 1e-15);
-  }
-}
 
 Landmark LandmarkOf(const UprightObservation& observation, const UprightFit& fit) {
   return UprightGround(observation.plane_in_camera)

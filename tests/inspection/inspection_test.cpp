@@ -295,14 +295,6 @@ TEST_F(InspectionTest, WhatIsNoArtefactIsRefused) {
   ExpectError<InputError>([&] { Inspect(File("missing"), std::nullopt); }, {"missing"});
 }
 
-TEST_F(InspectionTest, ADamagedHeaderIsRefused) {
-  Hdf5File file = Hdf5File::Create(File());
-  file.WriteText("/", "artefact",
-                 R"({"kind": "edges", "schema_version": [1, 0], "inputs": [3], "settings": {}})");
-  file.Close();
-  ExpectError<InputError>([&] { Read(); }, {File().string(), "header"});
-}
-
 ValueTable SmallTable() {
   return {{{"label", ""}, {"x", "m", 2}, {"share", "%", 1}, {"count", ""}, {"flag", ""}},
           {{"b\xc3\xa4r", 1.0 / 3.0, nullptr, 12, true}, {"c", -10.0, nullptr, 3, false}}};

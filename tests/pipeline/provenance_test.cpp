@@ -81,6 +81,7 @@ TEST_F(ProvenanceTest, AFailedRunIsRecordedAndFound) {
   WriteBytes(image, FileBytes(image).substr(0, 1000));
   EXPECT_NE(pipeline_.Run(kVariants).exit_code, 0);
   EXPECT_TRUE(SmallPipeline::Artefacts(pipeline_.Results()) == before);
+  EXPECT_NE(pipeline_.Run(kVariants).exit_code, 0) << "a failure is not forgotten";
   const RunRecord record = ReadRun(RunOf("edges") / "run.json");
   EXPECT_EQ(record.exit_code, 3);
   EXPECT_THAT(record.error, HasSubstr("000002.png"));

@@ -92,22 +92,6 @@ TEST_F(RerunTest, ChangedSettingRerunsWhatDependsOnIt) {
   EXPECT_EQ(FileBytes(pipeline_.Results() / "InitPT/refined.json"), before);
 }
 
-TEST_F(RerunTest, FailingStageLeavesEarlierResults) {
-  const auto before = Artefacts();
-  const fs::path image = pipeline_.Dataset() / "rgb/000002.png";
-  const std::string whole_image = FileBytes(image);
-  WriteBytes(image, whole_image.substr(0, whole_image.size() / 2));
-  const CommandResult failed = pipeline_.Run(kRerunVariants);
-  EXPECT_NE(failed.exit_code, 0);
-  EXPECT_THAT(failed.output + failed.errors, HasSubstr("000002.png"));
-  EXPECT_TRUE(Artefacts() == before);
-
-  EXPECT_NE(pipeline_.Run(kRerunVariants).exit_code, 0) << "a failure is not forgotten";
-  WriteBytes(image, whole_image);
-  EXPECT_THAT(RunStages(), ElementsAre("edges", "import"));
-  EXPECT_TRUE(Artefacts() == before);
-}
-
 // A command that notes how it was called and starts the rest, unless that is an `edges`.
 class LaunchTest : public testing::Test {
  protected:

@@ -34,9 +34,6 @@ class StatusTest : public FinishedRunTest {
   std::string Explain(const std::string& stage, const std::string& variant) const {
     return Status({"--explain", stage, "--variants", variant});
   }
-  static void Touch(const fs::path& path) {
-    fs::last_write_time(path, fs::file_time_type::clock::now());
-  }
 };
 
 TEST_F(StatusTest, AfterARunEverythingIsDone) {

@@ -167,10 +167,10 @@ struct MeanNetwork {
   std::string Onnx() const { return Graph().Onnx(metadata, opset); }
 };
 
-// The head of YOLOv8's graph as Ultralytics exports it, with two classes, for an input of 64 x 64:
-// distances to the four sides as the mean of 16 bins, boxes in cells [1, 4, 84] by the pixels of a
-// cell [1, 84], beside the scores' Sigmoid and, if there are masks, their three coefficients. What
-// it finds does not depend on the image.
+// The head of YOLOv8's graph as Ultralytics exports it with masks and two classes, for an input of
+// 64 x 64: distances to the four sides as the mean of 16 bins, boxes in cells [1, 4, 84] by the
+// pixels of a cell [1, 84], beside the scores' Sigmoid and three coefficients of masks. What it
+// finds does not depend on the image.
 struct V8Network {
   struct Found {
     int stride;
@@ -179,33 +179,25 @@ struct V8Network {
     float score;
   };
   std::vector<Found> found;
-  bool has_masks = false;
-  std::map<std::string, std::string> metadata = {};
 
   std::string Onnx() const {
     OnnxGraph graph;
-    graph.Input("images", {1, 3, 64, 64}).Output("output0", {1, has_masks ? 9 : 6, kCells});
+    graph.Input("images", {1, 3, 64, 64}).Output("output0", {1, 9, kCells});
     AddMeans("numbers", Numbers(), {}, "numbers_weights", &graph);
     const auto axis = OnnxGraph::Integer("axis", 1);
     graph.Int64s("shape", {1, kFields, kCells}).Node("Reshape", {"numbers", "shape"}, "fields");
-    graph.Node("Split", {"fields"}, std::vector<std::string>{"bins", "logits"},
-               {axis, OnnxGraph::Integers("split", {4 * kBins, 2})});
+    graph.Node("Split", {"fields"}, std::vector<std::string>{"bins", "logits", "coefficients"},
+               {axis, OnnxGraph::Integers("split", {4 * kBins, 2, 3})});
     AddBoxes(axis, &graph);
-    graph.Node("Sigmoid", {"logits"}, "scores");
-    graph.Node("Concat", {"in_pixels", "scores"}, has_masks ? "detections" : "output0", {axis});
-    if (!has_masks) return graph.Onnx(metadata);
-    AddMeans("coefficients", std::vector<float>(3 * kCells, 7.0F), {}, "coefficients_weights",
-             &graph);
-    graph.Int64s("shape_of_coefficients", {1, 3, kCells})
-        .Node("Reshape", {"coefficients", "shape_of_coefficients"}, "reshaped_coefficients")
-        .Node("Concat", {"detections", "reshaped_coefficients"}, "output0", {axis})
+    graph.Node("Sigmoid", {"logits"}, "scores")
+        .Node("Concat", {"in_pixels", "scores", "coefficients"}, "output0", {axis})
         .Node("GlobalAveragePool", {"images"}, "output1")
         .Output("output1", {1, 3, 1, 1});
-    return graph.Onnx(metadata);
+    return graph.Onnx();
   }
 
  private:
-  static constexpr int kCells = 84, kBins = 16, kFields = 4 * kBins + 2;
+  static constexpr int kCells = 84, kBins = 16, kFields = 4 * kBins + 5;
 
   // The logits of bins and classes, all candidates of one after the other.
   std::vector<float> Numbers() const {

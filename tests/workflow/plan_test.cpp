@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <set>
 
 #include "base/error.h"
 #include "dataset/import_options.h"
