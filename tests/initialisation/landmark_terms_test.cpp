@@ -14,6 +14,7 @@
 #include "support/jacobians.h"
 #include "support/landmark_costs.h"
 #include "support/shape_exponents.h"
+#include "support/standing_landmarks.h"
 #include "support/upright_bodies.h"
 
 namespace soslam {
@@ -154,7 +155,7 @@ Eigen::Vector3d AxisAt(const Plane& plane, const Landmark& landmark, double angl
 TEST(AxisTerm, JacobianAgreesWithNumbersForUprightLandmarks) {
   for (int i = 0; i < 50; ++i) {
     const Plane plane = RandomPlane();
-    const Landmark landmark = RandomUprightLandmark(plane);
+    const Landmark landmark = RandomStanding(plane);
     const AxisTerm term(plane, AxisAt(plane, landmark, RandomUniform(-3.1, 3.1)),
                         RandomUniform(0.1, 10.0));
     ExpectCorrectTermJacobian(term, landmark);
@@ -164,7 +165,7 @@ TEST(AxisTerm, JacobianAgreesWithNumbersForUprightLandmarks) {
 TEST(AxisTerm, CostsNothingAlongAndAcrossTheAxisAndItsWeightHalfWayBetween) {
   for (int i = 0; i < 50; ++i) {
     const Plane plane = RandomPlane();
-    const Landmark landmark = RandomUprightLandmark(plane);
+    const Landmark landmark = RandomStanding(plane);
     const double weight = RandomUniform(0.1, 10.0);
     for (int eighth = 0; eighth < 8; ++eighth) {
       const AxisTerm term(plane, AxisAt(plane, landmark, eighth * std::numbers::pi / 4.0), weight);

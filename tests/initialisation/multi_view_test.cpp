@@ -8,7 +8,8 @@
 #include "initialisation/closed_form.h"
 #include "initialisation/initialise.h"
 #include "initialisation/yaw_sweep.h"
-#include "support/looking_at.h"
+#include "support/cuboid_map.h"
+#include "support/one_body.h"
 #include "support/shape_exponents.h"
 
 namespace soslam {
@@ -16,37 +17,23 @@ namespace {
 
 constexpr double kSigmaFraction = 0.02;
 
+Landmark RandomBodyOnFloor(double shape_exponent) {
+  Landmark body;
+  body.shape_exponent = shape_exponent;
+  body.half_axes = RandomVector(0.2, 0.6);
+  body.frame_from_object = {
+      UprightRotation(Eigen::Vector3d::UnitZ(), RandomUniform(-3, 3)),
+      {RandomUniform(-0.3, 0.3), RandomUniform(-0.3, 0.3), body.half_axes.z()}};
+  return body;
+}
+
+std::vector<Rigid3d> Arc(int views) { return CamerasOnArc(views, 1.5); }
+
 // An upright body on the floor, seen with exact boxes, and what is known of it.
 struct World {
-  explicit World(double shape_exponent) {
-    truth.shape_exponent = shape_exponent;
-    truth.half_axes = RandomVector(0.2, 0.6);
-    truth.frame_from_object = {
-        UprightRotation(Eigen::Vector3d::UnitZ(), RandomUniform(-3, 3)),
-        {RandomUniform(-0.3, 0.3), RandomUniform(-0.3, 0.3), truth.half_axes.z()}};
-    sequence.camera = TestCamera();
-    sequence.planes = {{0, Plane()}};
-    sequence.objects.resize(1);
-  }
-  void AddView(const Eigen::Vector3d& position, const Eigen::Vector3d& target) {
-    Detection detection;
-    detection.frame_index = static_cast<int>(sequence.frames.size());
-    Frame frame;
-    frame.world_from_camera = LookingAt(position, target);
-    sequence.frames.push_back(frame);
-    detection.box =
-        *OutlineBox(sequence.camera, Transform(frame.world_from_camera.Inverse(), truth));
-    sequence.detections.push_back(detection);
-  }
-  void AddArc(int views) {
-    for (int i = 0; i < views; ++i) {
-      const double angle = 1.5 * i / (views - 1);
-      AddView({4.0 * std::cos(angle), 4.0 * std::sin(angle), 1.6}, {0, 0, 0.4});
-    }
-  }
-  void AddStraightAhead(int views) {
-    for (int i = 0; i < views; ++i) AddView({6.0 - 0.3 * i, 0.2, 1.2}, {-2.0, 0.2, 0.2});
-  }
+  World(double shape_exponent, const std::vector<Rigid3d>& world_from_camera)
+      : truth(RandomBodyOnFloor(shape_exponent)), sequence(ViewsOfBody(truth, world_from_camera)) {}
+
   ShapePrior Prior(double log_sigma) const {
     return {truth.half_axes.head<2>() / truth.half_axes.z(),
             {log_sigma, log_sigma},
@@ -71,8 +58,7 @@ void ExpectSame(const Landmark& found, const Landmark& expected, double toleranc
 // The plane is given one metre too low.
 TEST(SolveViewsAtYaw, FindsTheHeightOfTheFootWhereItIsFree) {
   for (const double exponent : {kCuboidExponent, 1.4, kEllipsoidExponent}) {
-    World world(exponent);
-    world.AddArc(8);
+    World world(exponent, Arc(8));
     MultiViewObservation observation = world.Observation(world.Prior(0.2));
     observation.plane_in_world.offset += 1.0;
     observation.height_is_free = true;
@@ -84,8 +70,7 @@ TEST(SolveViewsAtYaw, FindsTheHeightOfTheFootWhereItIsFree) {
 
 // How high a body is says how far away it is, also where the camera was in one place only.
 TEST(SolveViewsAtYaw, AKnownSizeTellsDepthFromOneBox) {
-  World world(kCuboidExponent);
-  world.AddView({4, 0, 1.6}, {0, 0, 0.4});
+  World world(kCuboidExponent, {LookingAt({4, 0, 1.6}, {0, 0, 0.4})});
   MultiViewObservation observation = world.Observation(world.Prior(0.02));
   observation.height_is_free = true;
   EXPECT_FALSE(SolveViewsAtYaw(observation, world.TrueYaw()));
@@ -100,8 +85,7 @@ TEST(SolveViewsAtYaw, AKnownSizeTellsDepthFromOneBox) {
 // The grid of yaws is no coarser or finer, and begins nowhere else, in a world that is turned.
 TEST(SweepViews, TurnsAlongWithTheWorld) {
   for (int i = 0; i < 20; ++i) {
-    World world(1.1);
-    world.AddArc(5);
+    World world(1.1, Arc(5));
     const auto optima = SweepViews(world.Observation(world.Prior(0.3)), 10.0 * kRadPerDeg);
     const Rigid3d turn{
         Eigen::Quaterniond(Eigen::AngleAxisd(RandomUniform(-3, 3), Eigen::Vector3d::UnitZ())),
@@ -126,8 +110,7 @@ TEST(SolveViewsAtYaw, RecoversTheBodyFromExactBoxes) {
   for (const double p : kShapeExponents) {
     SCOPED_TRACE(p);
     for (int i = 0; i < 20; ++i) {
-      World world(p);
-      world.AddArc(6);
+      World world(p, Arc(6));
       const auto found = SolveViewsAtYaw(world.Observation(world.Prior(0.3)), world.TrueYaw());
       ASSERT_TRUE(found);
       ExpectSame(found->landmark, world.truth, 1e-4);
@@ -138,8 +121,7 @@ TEST(SolveViewsAtYaw, RecoversTheBodyFromExactBoxes) {
 
 TEST(SolveViewsAtYaw, FindsTheRatioOfACuboidWithoutAPrior) {
   for (int i = 0; i < 20; ++i) {
-    World world(kCuboidExponent);
-    world.AddArc(6);
+    World world(kCuboidExponent, Arc(6));
     const auto found = SolveViewsAtYaw(world.Observation(std::nullopt), world.TrueYaw());
     ASSERT_TRUE(found);
     ExpectSame(found->landmark, world.truth, 1e-4);
@@ -147,8 +129,7 @@ TEST(SolveViewsAtYaw, FindsTheRatioOfACuboidWithoutAPrior) {
 }
 
 TEST(SolveViewsAtYaw, IsNotMisledByOneWrongBox) {
-  World world(kCuboidExponent);
-  world.AddArc(12);
+  World world(kCuboidExponent, Arc(12));
   world.sequence.detections[5].box.x_max += 150.0;
   world.sequence.detections[5].box.y_min -= 80.0;
   const auto found = SolveViewsAtYaw(world.Observation(world.Prior(0.3)), world.TrueYaw());
@@ -157,8 +138,7 @@ TEST(SolveViewsAtYaw, IsNotMisledByOneWrongBox) {
 }
 
 TEST(SolveViewsAtYaw, TakesBoundsForBounds) {
-  World world(kCuboidExponent);
-  world.AddArc(8);
+  World world(kCuboidExponent, Arc(8));
   for (Detection& detection : world.sequence.detections) {
     detection.box.y_max -= 0.3 * detection.box.Height();
   }
@@ -174,8 +154,7 @@ TEST(SolveViewsAtYaw, TakesBoundsForBounds) {
 }
 
 TEST(SolveViewsAtYaw, IsExactWithBoxesOfAKnownBias) {
-  World world(kCuboidExponent);
-  world.AddArc(8);
+  World world(kCuboidExponent, Arc(8));
   for (Detection& detection : world.sequence.detections) {
     detection.box.y_max -= 0.2 * detection.box.Height();
   }
@@ -188,8 +167,7 @@ TEST(SolveViewsAtYaw, IsExactWithBoxesOfAKnownBias) {
 
 TEST(SolveViews, PolishesTheYaw) {
   for (int i = 0; i < 10; ++i) {
-    World world(kCuboidExponent);
-    world.AddArc(8);
+    World world(kCuboidExponent, Arc(8));
     const auto found = SolveViews(world.Observation(world.Prior(0.05)), 3.0 * kRadPerDeg);
     ASSERT_TRUE(found);
     EXPECT_GT(BoxIou(found->landmark, world.truth), 0.97);
@@ -201,15 +179,13 @@ TEST(InitialiseMultiView, NeedsNoWideBaseline) {
   double multi_view = 0.0;
   double svd = 0.0;
   constexpr int kWorlds = 20;
+  std::vector<Rigid3d> straight_ahead;
+  for (int i = 0; i < 8; ++i) {
+    straight_ahead.push_back(LookingAt({6.0 - 0.3 * i, 0.2, 1.2}, {-2.0, 0.2, 0.2}));
+  }
   for (int i = 0; i < kWorlds; ++i) {
-    World world(kCuboidExponent);
-    world.AddStraightAhead(8);
-    for (Detection& detection : world.sequence.detections) {
-      detection.box.x_min += RandomUniform(-1, 1);
-      detection.box.y_min += RandomUniform(-1, 1);
-      detection.box.x_max += RandomUniform(-1, 1);
-      detection.box.y_max += RandomUniform(-1, 1);
-    }
+    World world(kCuboidExponent, straight_ahead);
+    world.sequence = WithBoxNoise(world.sequence, 1.0);
     InitialiseOptions options;
     options.upright.axes_weight = 0.0;
     const auto iou = [&](const LandmarkEstimates& estimates) {
@@ -224,8 +200,7 @@ TEST(InitialiseMultiView, NeedsNoWideBaseline) {
 }
 
 TEST(InitialiseMultiView, SaysWhichObjectsAreNotDetermined) {
-  World world(kCuboidExponent);
-  world.AddView({3.0, 1.0, 1.5}, {0, 0, 0.4});
+  World world(kCuboidExponent, {LookingAt({3.0, 1.0, 1.5}, {0, 0, 0.4})});
   const LandmarkEstimates estimates =
       InitialiseMultiView(world.sequence, {std::nullopt}, InitialiseOptions(), 1);
   ASSERT_EQ(estimates.objects.size(), 1u);

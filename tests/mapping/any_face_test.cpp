@@ -16,7 +16,7 @@
 #include "initialisation/initialise.h"
 #include "mapping/back_end.h"
 #include "mapping/initial_landmarks.h"
-#include "support/looking_at.h"
+#include "support/one_body.h"
 #include "support/random.h"
 
 namespace soslam::any_face {
@@ -50,35 +50,18 @@ Landmark LandmarkOf(const Body& body) {
 }
 
 Sequence Observe(const Landmark& landmark, const Views& views) {
-  Sequence sequence;
-  sequence.camera = TestCamera();
-  sequence.planes = {{0, Plane()}};
-  Object object;
-  object.plane_index = 0;
-  object.ground_truth = GroundTruth{landmark};
-  sequence.objects = {object};
+  Sequence sequence =
+      ViewsOfBody(landmark, CamerasOnArc(views.frames, views.arc_rad, 3.0, 1.5, 0.3));
   std::mt19937 random(views.seed);
   std::normal_distribution<double> normal;
-  for (int i = 0; i < views.frames; ++i) {
-    const double angle = views.arc_rad * i / (views.frames - 1);
-    Frame frame;
-    frame.id = i;
-    frame.world_from_camera =
-        LookingAt({3.0 * std::cos(angle), 3.0 * std::sin(angle), 1.5}, {0.0, 0.0, 0.3});
-    const Rigid3d camera_from_world = frame.world_from_camera.Inverse();
-    Box box = *OutlineBox(sequence.camera, Transform(camera_from_world, landmark));
+  for (Detection& detection : sequence.detections) {
+    Box& box = detection.box;
     const double sigma_x = views.box_sigma_fraction * box.Width();
     const double sigma_y = views.box_sigma_fraction * box.Height();
     box.x_min += sigma_x * normal(random);
     box.x_max += sigma_x * normal(random);
     box.y_min += sigma_y * normal(random);
     box.y_max += sigma_y * normal(random);
-    Detection detection;
-    detection.frame_index = i;
-    detection.box = box;
-    detection.plane_in_camera = Transform(camera_from_world, Plane());
-    sequence.frames.push_back(frame);
-    sequence.detections.push_back(detection);
   }
   return sequence;
 }

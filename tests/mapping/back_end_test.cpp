@@ -50,11 +50,7 @@ TEST(BackEnd, ComesBackFromADisturbedStart) {
 
 // A rigid motion of the whole world leaves the cost unchanged and moves the result.
 TEST(BackEnd, MovesWithTheWorld) {
-  Sequence sequence = SyntheticSequence(RandomScene(5, 4, 10), false);
-  for (Detection& detection : sequence.detections) {
-    detection.box.x_min += RandomUniform(-5, 5);
-    detection.box.y_max += RandomUniform(-5, 5);
-  }
+  const Sequence sequence = WithBoxNoise(SyntheticSequence(RandomScene(5, 4, 10), false), 5.0);
   BackEndInput input = EllipsoidInput(sequence);
   const OptimiseOptions options;
   const MapEstimate before = OptimiseMap(input, options);

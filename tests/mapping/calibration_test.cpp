@@ -14,7 +14,7 @@
 #include "initialisation/upright.h"
 #include "mapping/back_end.h"
 #include "orientation/model_edges.h"
-#include "support/looking_at.h"
+#include "support/one_body.h"
 #include "support/random.h"
 #include "support/simulated_points.h"
 
@@ -88,39 +88,26 @@ Truth RandomTruth(const Case& c, const OptimiseOptions& options) {
                                     UprightRotation(Eigen::Vector3d::UnitZ(), RandomUniform(-3, 3)),
                                 {RandomUniform(-0.1, 0.1), RandomUniform(-0.1, 0.1),
                                  landmark.half_axes.z() + Normal(options.standing_height_sigma_m)}};
-  // Cameras on an arc around it that look at it.
-  for (int i = 0; i < kFrames; ++i) {
-    const double angle = c.arc_rad * i / (kFrames - 1);
-    truth.world_from_camera.push_back(
-        LookingAt({4.0 * std::cos(angle), 4.0 * std::sin(angle), 1.6}, {0, 0, 0.4}));
-  }
+  truth.world_from_camera = CamerasOnArc(kFrames, c.arc_rad);
   return truth;
 }
 
 // What is observed of it, with errors as the options say.
 Sequence Observe(const Truth& truth, const OptimiseOptions& options) {
-  Sequence sequence;
-  sequence.camera = TestCamera();
-  sequence.planes = {{0, Plane()}};
-  sequence.objects.resize(1);
+  Sequence sequence = ViewsOfBody(truth.landmark_in_world, truth.world_from_camera);
   std::array<double, 4> misfits{};
   if (options.misfit_sigma_fraction > 0.0) {
     for (double& misfit : misfits) misfit = Normal(options.misfit_sigma_fraction);
   }
   for (size_t i = 0; i < truth.world_from_camera.size(); ++i) {
-    Frame frame;
-    frame.id = static_cast<int>(i);
-    frame.world_from_camera = truth.world_from_camera[i];
     if (i > 0) {
       Rigid3d step = truth.world_from_camera[i - 1].Inverse() * truth.world_from_camera[i];
       step.rotation = step.rotation *
                       ExpRotation(NormalVector(options.odometry_rotation_sigma_deg * kRadPerDeg));
       step.translation += NormalVector(options.odometry_translation_sigma_m);
-      frame.world_from_camera = sequence.frames.back().world_from_camera * step;
+      sequence.frames[i].world_from_camera = sequence.frames[i - 1].world_from_camera * step;
     }
-    sequence.frames.push_back(frame);
-    Box box = *OutlineBox(sequence.camera,
-                          Transform(truth.world_from_camera[i].Inverse(), truth.landmark_in_world));
+    Box& box = sequence.detections[i].box;
     const double width = box.Width();
     const double height = box.Height();
     box = {box.x_min - misfits[0] * width, box.y_min - misfits[1] * height,
@@ -129,10 +116,6 @@ Sequence Observe(const Truth& truth, const OptimiseOptions& options) {
     const double sigma_y = options.detection_sigma_fraction * height;
     box = {box.x_min + Normal(sigma_x), box.y_min + Normal(sigma_y), box.x_max + Normal(sigma_x),
            box.y_max + Normal(sigma_y)};
-    Detection detection;
-    detection.frame_index = static_cast<int>(i);
-    detection.box = box;
-    sequence.detections.push_back(detection);
   }
   return sequence;
 }

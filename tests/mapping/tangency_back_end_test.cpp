@@ -50,17 +50,12 @@ TEST(TangencyBackEnd, PlanesThatAreGivenOrNotToBeRefinedStayAsTheyAre) {
   EXPECT_EQ(OptimiseMap(TruthInput(sequence), options).planes_in_world[0].normal, before.normal);
 }
 
-struct HeldPosesTest : testing::Test {
-  HeldPosesTest() {
-    Disturb(&input);
-    options.hold_poses = true;
-  }
+TEST(TangencyBackEnd, HeldPosesStayAsTheyAre) {
   const Sequence sequence = CuboidSequence(4, 12);
   BackEndInput input = TruthInput(sequence);
+  Disturb(&input);
   OptimiseOptions options = TangencyOptions();
-};
-
-TEST_F(HeldPosesTest, StayAsTheyAre) {
+  options.hold_poses = true;
   const MapEstimate map = OptimiseMap(input, options);
   for (size_t i = 0; i < sequence.frames.size(); ++i) {
     const Rigid3d& given = sequence.frames[i].world_from_camera;
@@ -270,12 +265,9 @@ TEST(TangencyBackEnd, SettlesWithEdges) {
 
 // A rigid motion of the whole world leaves the cost unchanged and moves the result.
 TEST(TangencyBackEnd, MovesWithTheWorld) {
-  Sequence sequence = CuboidSequence(3, 8);
-  const auto edge_images = DrawnEdges(sequence);
-  for (Detection& detection : sequence.detections) {
-    detection.box.x_min += RandomUniform(-3, 3);
-    detection.box.y_max += RandomUniform(-3, 3);
-  }
+  const Sequence exact = CuboidSequence(3, 8);
+  const auto edge_images = DrawnEdges(exact);
+  const Sequence sequence = WithBoxNoise(exact, 3.0);
   BackEndInput input = TruthInput(sequence);
   input.edge_images = edge_images;
   OptimiseOptions options = TangencyOptions();

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "dataset/trajectories.h"
+#include "support/fake_colmap.h"
 #include "support/run_command.h"
 #include "support/small_pipeline.h"
 
@@ -23,18 +24,6 @@ using testing::AllOf;
 using testing::ContainsRegex;
 using testing::EndsWith;
 using testing::HasSubstr;
-
-// Stands for COLMAP: copies a finished model to --output_path.
-constexpr const char* kColmap = R"(#!/bin/sh
-here=$(dirname "$0")
-case "$1" in
-  -h) echo "COLMAP 3.8 -- Structure-from-Motion";;
-  feature_extractor) echo "  Features:        1000";;
-  mapper)
-    while [ $# -gt 1 ]; do [ "$1" = --output_path ] && output=$2; shift; done
-    cp -r "$here/model" "$output/0";;
-esac
-)";
 
 // COLMAP's model of the small scene: its true poses, and points on the floor and above it.
 class ModelOfSmallScene {
@@ -94,9 +83,8 @@ class MapTest : public testing::Test {
                photos_ / fmt::format("IMG {}.png", i));
     }
     fs::copy(pipeline_.Dataset() / "detections.csv", detections_);
-    ModelOfSmallScene(pipeline_.Dataset()).Write(programs_ / "model");
-    WriteBytes(programs_ / "colmap", kColmap);
-    fs::permissions(programs_ / "colmap", fs::perms::owner_all);
+    ModelOfSmallScene(pipeline_.Dataset()).Write(programs_ / "models/0");
+    WriteFakeColmap(programs_);
   }
 
   std::vector<std::string> Words(const std::vector<std::string>& settings) const {
@@ -168,7 +156,7 @@ TEST_F(SlowMapTest, EndsWithOneLineAndGoesOnWhereSomethingChanged) {
 TEST_F(SlowMapTest, TakesAFinishedModel) {
   fs::remove(programs_ / "colmap");
   std::vector<std::string> words = WordsForPhotos();
-  words.insert(words.end(), {"MODEL=" + (programs_ / "model").string(), "NAME=room", "SCALE=1"});
+  words.insert(words.end(), {"MODEL=" + (programs_ / "models/0").string(), "NAME=room", "SCALE=1"});
   const CommandResult run = RunCommand(words);
   ASSERT_EQ(run.exit_code, 0) << run.output << run.errors;
   EXPECT_THAT(run.output, HasSubstr("3 objects, scale +- 4 %"));

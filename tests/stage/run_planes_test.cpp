@@ -270,14 +270,5 @@ TEST_F(RunGroundTest, ACameraHeightAboveNoPlaneIsNotWhatTheScaleIsFoundBy) {
   EXPECT_EQ(world.at("findings")[0].at("check"), "camera_height_unused");
 }
 
-TEST_F(RunGroundTest, FindingsAreInTheArtefact) {
-  for (Object& object : scene_.sequence.objects) object.label = "thing";
-  WriteSequence(files_.at("sequence"), scene_.sequence, {});
-  RunGround(options_, files_, 1);
-  const json world = ReadArtefact(files_.at("world"), "world");
-  EXPECT_TRUE(world.at("scale").is_null());
-  EXPECT_EQ(world.at("findings")[0].at("check"), "scale_unknown");
-}
-
 }  // namespace
 }  // namespace soslam

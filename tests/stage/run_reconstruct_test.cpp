@@ -12,6 +12,7 @@
 #include "dataset/trajectories.h"
 #include "stage/stages.h"
 #include "support/expect_error.h"
+#include "support/fake_colmap.h"
 #include "support/image_files.h"
 #include "support/printed.h"
 #include "support/temporary_folder.h"
@@ -23,22 +24,6 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::Not;
 
-// Stands for COLMAP: notes how it was called, and copies a model to --output_path.
-constexpr const char* kProgram = R"sh(#!/bin/sh
-here=$(dirname "$0")
-echo "$@" >> "$here/calls"
-case "$1" in
-  -h) echo "COLMAP 3.8 -- Structure-from-Motion";;
-  feature_extractor) cat "$here/printed";;
-  mapper|point_triangulator)
-    while [ $# -gt 1 ]; do [ "$1" = --output_path ] && output=$2; shift; done
-    echo "Registering image #1 (3)"
-    [ -f "$here/crash" ] && kill -SEGV $$
-    [ -d "$here/models" ] || exit 1
-    cp -r "$here"/models/. "$output";;
-esac
-)sh";
-
 // Three images, of cameras side by side that look along z.
 class RunReconstructTest : public testing::Test {
  protected:
@@ -49,9 +34,7 @@ class RunReconstructTest : public testing::Test {
                   cv::Mat(48, 64, CV_8UC3, cv::Scalar(0, 0, 51 * i)));
     }
     WriteBytes(Dataset() / "rgb.txt", "0 rgb/0.png\n0.5 rgb/1.png\n1 rgb/2.png\n");
-    WriteBytes(folder_ / "bin/colmap", kProgram);
-    fs::permissions(folder_ / "bin/colmap", fs::perms::owner_all);
-    Prints("  Features:        1481");
+    WriteFakeColmap(folder_ / "bin");
     WriteModel("0", 3);
     setenv("PATH", ((folder_ / "bin").string() + ":" + path_).c_str(), 1);
   }

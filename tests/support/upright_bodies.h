@@ -25,11 +25,6 @@ inline UprightVector RandomUprightParameters() {
   return parameters;
 }
 
-// On any plane, not necessarily in view.
-inline Landmark RandomUprightLandmark(const Plane& plane) {
-  return UprightGround(plane).LandmarkAt(RandomUprightParameters(), RandomUniform(1, 2));
-}
-
 // A floor as a camera sees it that looks level or down.
 inline Plane RandomFloor() {
   const Eigen::Vector3d up(RandomUniform(-0.15, 0.15), -1.0, RandomUniform(-0.7, 0.05));
