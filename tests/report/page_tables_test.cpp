@@ -13,7 +13,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-json Metrics(double iou, const json& ate) {
+json MetricsOfPage(double iou, const json& ate) {
   return {{"summary", {{"objects", 2}, {"observations", 9}, {"iou_mean", iou}}},
           {"first_observation", nullptr},
           {"trajectory", {{"ate_rmse_m", ate}}},
@@ -25,8 +25,13 @@ json Metrics(double iou, const json& ate) {
 json Variant(const std::string& name, const std::string& kind, double iou, const json& ate) {
   const json objects = {{{"landmark", {1}}, {"failure", ""}, {"observations", 4}},
                         {{"landmark", nullptr}, {"failure", "too_few_views"}, {"observations", 5}}};
-  return {{"name", name},      {"kind", kind},       {"numbers_only", false},       {"sequence", 0},
-          {"solver", nullptr}, {"objects", objects}, {"metrics", Metrics(iou, ate)}};
+  return {{"name", name},
+          {"kind", kind},
+          {"numbers_only", false},
+          {"sequence", 0},
+          {"solver", nullptr},
+          {"objects", objects},
+          {"metrics", MetricsOfPage(iou, ate)}};
 }
 
 json Page() {

@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "artefact/json_file.h"
+#include "artefact/files.h"
 #include "base/table.h"
+#include "evaluation/statistics.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {
@@ -36,27 +37,21 @@ class ResultsFolder {
   // some, are the same.
   void WriteMetrics(const std::string& dataset, const std::string& variant,
                     const std::vector<ObjectErrors>& objects, bool is_single_frame = false) const {
-    nlohmann::json summary = Summary(objects);
-    nlohmann::json body = {{"dataset", dataset},
-                           {"summary", summary},
-                           {"first_observation", nlohmann::json()},
-                           {"objects", nlohmann::json::array()},
-                           {"trajectory", nlohmann::json()}};
-    if (is_single_frame) {
-      summary["observations"] = objects.size();
-      body["first_observation"] = summary;
-    }
+    Sequence sequence;
+    sequence.name = dataset;
+    Metrics metrics;
+    metrics.summary = Summary(objects);
     for (const ObjectErrors& object : objects) {
-      body["objects"].push_back({{"object", object.id},
-                                 {"label", "box"},
-                                 {"observations", object.observations},
-                                 {"estimates", 1},
-                                 {"iou", object.iou},
-                                 {"centre_m", 0.0},
-                                 {"rotation_deg", object.rotation_deg},
-                                 {"yaw_error_deg", object.rotation_deg}});
+      const int index = static_cast<int>(sequence.objects.size());
+      sequence.objects.push_back({object.id, "box", 0, {}});
+      metrics.objects.push_back({index, object.observations, 1, object.iou, 0.0,
+                                 object.rotation_deg, object.rotation_deg});
     }
-    WriteArtefact(VariantFolder(dataset, variant) / "metrics.json", "metrics", {}, body);
+    if (is_single_frame) {
+      metrics.first_observation = metrics.summary;
+      metrics.first_observation->observations = metrics.summary.objects;
+    }
+    soslam::WriteMetrics(VariantFolder(dataset, variant) / "metrics.json", metrics, sequence, {});
   }
 
   // stages.txt of a variant: runs are <stage>-<key>.
@@ -79,26 +74,16 @@ class ResultsFolder {
   }
 
  private:
-  static nlohmann::json Summary(const std::vector<ObjectErrors>& objects) {
-    double iou = 0.0, rotation = 0.0;
-    int angles = 0, observations = 0;
+  static MetricsSummary Summary(const std::vector<ObjectErrors>& objects) {
+    std::vector<double> ious, angles;
+    int observations = 0;
     for (const ObjectErrors& object : objects) {
-      iou += object.iou;
-      rotation += object.rotation_deg.value_or(0.0);
-      angles += object.rotation_deg ? 1 : 0;
+      ious.push_back(object.iou);
+      if (object.rotation_deg) angles.push_back(*object.rotation_deg);
       observations += object.observations;
     }
-    nlohmann::json iou_mean;
-    if (!objects.empty()) iou_mean = iou / static_cast<double>(objects.size());
-    const nlohmann::json angle_mean = angles > 0 ? nlohmann::json(rotation / angles) : nullptr;
-    return {{"objects", objects.size()},
-            {"observations", observations},
-            {"iou_mean", iou_mean},
-            {"iou_median", iou_mean},
-            {"rotation_deg_mean", angle_mean},
-            {"rotation_deg_median", angle_mean},
-            {"yaw_error_deg_mean", angle_mean},
-            {"yaw_error_deg_median", angle_mean}};
+    const auto iou = MeanOf(ious), angle = MeanOf(angles);
+    return {static_cast<int>(objects.size()), observations, iou, iou, angle, angle, angle, angle};
   }
 
   TemporaryFolder folder_;
