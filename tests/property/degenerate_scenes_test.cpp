@@ -50,8 +50,11 @@ void MoveCameras(const std::function<Eigen::Vector3d(size_t)>& centre, Sequence*
   SeePlanesFromPoses(sequence);
 }
 
-void SetBoxes(const std::function<Box(const Box&)>& box, Sequence* sequence) {
-  for (Detection& detection : sequence->detections) detection.box = box(detection.box);
+// Makes another box of each.
+std::function<void(Sequence*)> Boxes(const std::function<Box(const Box&)>& other) {
+  return [=](Sequence* sequence) {
+    for (Detection& detection : sequence->detections) detection.box = other(detection.box);
+  };
 }
 
 constexpr const char* kNoDegeneracy = "None";  // what has an answer
@@ -90,48 +93,22 @@ std::vector<Degeneracy> Degeneracies() {
        [](Sequence* sequence) {
          for (Detection& detection : sequence->detections) detection.plane_in_camera.offset *= 1e-6;
        }},
-      {"BoxesWithoutArea",
-       [](Sequence* sequence) {
-         SetBoxes(
-             [](const Box& box) {
-               return Box{box.x_min, box.y_min, box.x_min, box.y_min};
-             },
-             sequence);
-       }},
-      {"BoxesOfOnePixel",
-       [](Sequence* sequence) {
-         SetBoxes(
-             [](const Box& box) {
-               return Box{box.x_min, box.y_min, box.x_min + 1.0, box.y_min + 1.0};
-             },
-             sequence);
-       }},
-      {"BoxesThatAreLines",
-       [](Sequence* sequence) {
-         SetBoxes(
-             [](const Box& box) {
-               return Box{box.x_min, box.y_min, box.x_max, box.y_min};
-             },
-             sequence);
-       }},
-      {"BoxesOfTheWholeImage",
-       [](Sequence* sequence) {
-         const Camera& camera = sequence->camera;
-         SetBoxes(
-             [&](const Box&) {
-               return Box{0.0, 0.0, camera.width - 1.0, camera.height - 1.0};
-             },
-             sequence);
-       }},
-      {"BoxesAnywhere",
-       [](Sequence* sequence) {
-         SetBoxes(
-             [](const Box&) {
-               const double x = RandomUniform(0, 300), y = RandomUniform(0, 200);
-               return Box{x, y, x + RandomUniform(1, 300), y + RandomUniform(1, 200)};
-             },
-             sequence);
-       }},
+      {"BoxesWithoutArea", Boxes([](Box box) -> Box {
+         return {box.x_min, box.y_min, box.x_min, box.y_min};
+       })},
+      {"BoxesOfOnePixel", Boxes([](Box box) -> Box {
+         return {box.x_min, box.y_min, box.x_min + 1.0, box.y_min + 1.0};
+       })},
+      {"BoxesThatAreLines", Boxes([](Box box) -> Box {
+         return {box.x_min, box.y_min, box.x_max, box.y_min};
+       })},
+      {"BoxesOfTheWholeImage", Boxes([](Box) -> Box {
+         return {0.0, 0.0, 639.0, 479.0};
+       })},
+      {"BoxesAnywhere", Boxes([](Box) -> Box {
+         const double x = RandomUniform(0, 300), y = RandomUniform(0, 200);
+         return {x, y, x + RandomUniform(1, 300), y + RandomUniform(1, 200)};
+       })},
       {"NoEdgeIsMeasured",
        [](Sequence* sequence) {
          for (Detection& detection : sequence->detections) detection.is_bound.fill(true);
