@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <set>
+#include <utility>
 
 #include "support/small_pipeline.h"
 #include "support/stage_chain.h"
@@ -119,8 +120,13 @@ struct RefusedInput {
   std::string stage;  // that meets it, after all stages ran on the sound dataset
   Spoil spoil;
   std::vector<std::string> words;  // of the error: the file, what was found
-  int exit_code = 3;
+  int exit_code;
 };
+
+RefusedInput Refused(std::string name, std::string stage, Spoil spoil,
+                     std::vector<std::string> words, int exit_code = 3) {
+  return {std::move(name), std::move(stage), std::move(spoil), std::move(words), exit_code};
+}
 
 void PrintTo(const RefusedInput& input, std::ostream* stream) { *stream << input.name; }
 
@@ -148,80 +154,60 @@ TEST_P(RefusedInputTest, EndsWithItsExitCodeAndOneLineThatNamesIt) {
 
 constexpr const char* kDetectionsHeader = "frame,object_id,label,score,x1,y1,x2,y2\n";
 
-const RefusedInput kRefusedInputs[] = {
-    {"ImageTruncated", "edges", InDataset("rgb/000002.png", Truncate), {"rgb/000002.png"}},
-    {"DetectionsMalformed",
-     "import",
-     InDataset("detections.csv", Line(3, "0,2,stool,1.0,wide,100,200,200")),
-     {"detections.csv:3", "x1", "'wide'"}},
-    {"NoDetectionLeft",
-     "import",
-     InDataset("detections.csv", Content(kDetectionsHeader)),
-     {"no usable detection"},
-     4},
-    {"EdgesTruncated", "refine", InArtefact("edges.h5", Truncate), {"edges.h5"}},
-    {"SequenceNewer",
-     "initialise",
-     InArtefact("sequence.json",
-                Text("\"schema_version\": [\n   1,", "\"schema_version\": [\n   2,")),
-     {"sequence.json", "schema version [2, 7]", "[1, 7]"}},
-    {"ArtefactOfAnotherKind",
-     "optimise",
-     [](const StageChain& chain) {
-       fs::copy_file(chain.Artefact("sequence.json"), chain.Artefact("refined.json"),
-                     fs::copy_options::overwrite_existing);
-     },
-     {"refined.json", "kind", "landmarks"}},
+const std::vector<RefusedInput> kRefusedInputs = {
+    Refused("ImageTruncated", "edges", InDataset("rgb/000002.png", Truncate), {"rgb/000002.png"}),
+    Refused("DetectionsMalformed", "import",
+            InDataset("detections.csv", Line(3, "0,2,stool,1.0,wide,100,200,200")),
+            {"detections.csv:3", "x1", "'wide'"}),
+    Refused("NoDetectionLeft", "import", InDataset("detections.csv", Content(kDetectionsHeader)),
+            {"no usable detection"}, 4),
+    Refused("EdgesTruncated", "refine", InArtefact("edges.h5", Truncate), {"edges.h5"}),
+    Refused("SequenceNewer", "initialise",
+            InArtefact("sequence.json",
+                       Text("\"schema_version\": [\n   1,", "\"schema_version\": [\n   2,")),
+            {"sequence.json", "schema version [2, 7]", "[1, 7]"}),
+    Refused("ArtefactOfAnotherKind", "optimise",
+            [](const StageChain& chain) {
+              fs::copy_file(chain.Artefact("sequence.json"), chain.Artefact("refined.json"),
+                            fs::copy_options::overwrite_existing);
+            },
+            {"refined.json", "kind", "landmarks"}),
     // Somebody made these to harm.
-    {"ZeroByte",
-     "import",
-     InDataset("detections.csv", Line(3, std::string("0,2,sto\0ol,1,1,1,2,2", 20))),
-     {"detections.csv:3", "UTF-8"}},
-    {"EscapeSequence",
-     "import",
-     InDataset("detections.csv", Line(3, "\x1b[2J,2,stool,1,1,1,2,2")),
-     {"detections.csv:3", "frame is '\\x1b[2J'"}},
-    {"AMillionDigits",
-     "import",
-     InDataset("odometry.txt", Line(3, std::string(1000000, '1') + "e 0 0 1 0 0 0 1")),
-     {"odometry.txt:3", "timestamp is '11", " ... ", "expected a finite number"}},
-    {"FolderForFile",
-     "import",
-     InDataset("detections.csv", PutFolderInPlaceOf),
-     {"detections.csv", "cannot be read"}},
-    {"LinkToItself", "import", InDataset("camera.json", LinkToItself), {"camera.json is missing"}},
-    {"NestedArtefact",
-     "initialise",
-     InArtefact("sequence.json", Content(std::string(1000000, '['))),
-     {"sequence.json", "more than 100"}},
-    {"ZeroByteInLabel",
-     "import",
-     InDataset("objects.json", Text("\"stool\"", "\"sto\\u0000ol\"")),
-     {"objects.json", "zero byte"}},
-    {"ImageBeyondMemory",
-     "import",
-     InDataset("camera.json", Text("\"width\":", "\"width\": 2000000000, \"source\":")),
-     {"camera.json", "pixels in all"}},
-    {"CameraBeyondMemory",
-     "edges",
-     InArtefact("sequence.json", Text("\"width\": 480", "\"width\": 2000000000")),
-     {"sequence.json", "2000000000 x 360"}},
-    {"NameLeadsOut",
-     "import",
-     InDataset("rgb.txt", Text("rgb/000001.png", "../small/rgb/../../secret.png")),
-     {"rgb.txt", "secret.png", "outside"}},
-    {"LinkLeadsOut",
-     "import",
-     MovedOut("rgb/000001.png"),
-     {"rgb.txt", "rgb/000001.png", "--allow_outside_paths"}},
-    {"FolderLeadsOut",
-     "edges",
-     MovedOut("rgb"),
-     {"sequence.json", "rgb/000000.png", "--allow_outside_paths"}},
-    {"NameInSequenceLeadsOut",
-     "edges",
-     InArtefact("sequence.json", Text("rgb/000001.png", "../secret.png")),
-     {"sequence.json", "../secret.png", "outside"}}};
+    Refused("ZeroByte", "import",
+            InDataset("detections.csv", Line(3, std::string("0,2,sto\0ol,1,1,1,2,2", 20))),
+            {"detections.csv:3", "UTF-8"}),
+    Refused("EscapeSequence", "import",
+            InDataset("detections.csv", Line(3, "\x1b[2J,2,stool,1,1,1,2,2")),
+            {"detections.csv:3", "frame is '\\x1b[2J'"}),
+    Refused("AMillionDigits", "import",
+            InDataset("odometry.txt", Line(3, std::string(1000000, '1') + "e 0 0 1 0 0 0 1")),
+            {"odometry.txt:3", "timestamp is '11", " ... ", "expected a finite number"}),
+    Refused("FolderForFile", "import", InDataset("detections.csv", PutFolderInPlaceOf),
+            {"detections.csv", "cannot be read"}),
+    Refused("LinkToItself", "import", InDataset("camera.json", LinkToItself),
+            {"camera.json is missing"}),
+    Refused("NestedArtefact", "initialise",
+            InArtefact("sequence.json", Content(std::string(1000000, '['))),
+            {"sequence.json", "more than 100"}),
+    Refused("ZeroByteInLabel", "import",
+            InDataset("objects.json", Text("\"stool\"", "\"sto\\u0000ol\"")),
+            {"objects.json", "zero byte"}),
+    Refused("ImageBeyondMemory", "import",
+            InDataset("camera.json", Text("\"width\":", "\"width\": 2000000000, \"source\":")),
+            {"camera.json", "pixels in all"}),
+    Refused("CameraBeyondMemory", "edges",
+            InArtefact("sequence.json", Text("\"width\": 480", "\"width\": 2000000000")),
+            {"sequence.json", "2000000000 x 360"}),
+    Refused("NameLeadsOut", "import",
+            InDataset("rgb.txt", Text("rgb/000001.png", "../small/rgb/../../secret.png")),
+            {"rgb.txt", "secret.png", "outside"}),
+    Refused("LinkLeadsOut", "import", MovedOut("rgb/000001.png"),
+            {"rgb.txt", "rgb/000001.png", "--allow_outside_paths"}),
+    Refused("FolderLeadsOut", "edges", MovedOut("rgb"),
+            {"sequence.json", "rgb/000000.png", "--allow_outside_paths"}),
+    Refused("NameInSequenceLeadsOut", "edges",
+            InArtefact("sequence.json", Text("rgb/000001.png", "../secret.png")),
+            {"sequence.json", "../secret.png", "outside"})};
 
 INSTANTIATE_TEST_SUITE_P(Stages, RefusedInputTest, testing::ValuesIn(kRefusedInputs),
                          [](const auto& info) { return info.param.name; });
