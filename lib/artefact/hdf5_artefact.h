@@ -10,7 +10,7 @@
 #include "artefact/hdf5_file.h"
 #include "artefact/json_file.h"
 #include "image/edge_maps.h"
-#include "model/symmetry_record.h"
+#include "model/estimates.h"
 
 namespace soslam {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "geometry/image_size.h"
+#include "geometry/camera.h"
 
 namespace soslam {
 

@@ -7,7 +7,7 @@
 
 #include "association/fit_object.h"
 #include "association/options.h"
-#include "constraints/edge_bias.h"
+#include "constraints/tangency.h"
 #include "geometry/box.h"
 #include "geometry/landmark.h"
 #include "model/sequence.h"

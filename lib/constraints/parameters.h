@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ceres/manifold.h>
+#include <ceres/product_manifold.h>
+#include <ceres/sphere_manifold.h>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
 
 #include "geometry/landmark.h"
-#include "geometry/landmark_tangent.h"
 #include "geometry/plane.h"
 #include "geometry/rigid3.h"
 
@@ -103,5 +106,19 @@ class RelativeObservation {
   Eigen::Vector3d offset_in_world_;    // object centre minus camera centre
   Landmark landmark_in_camera_;
 };
+
+// The manifold of a pose block (see parameters.h): 6 tangent dimensions.
+inline ceres::Manifold* NewPoseManifold() {
+  return new ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<3>>;
+}
+
+// The manifold of a landmark block: 9 tangent dimensions. Its rotation part is half a rotation
+// vector applied from the left (Ceres' convention).
+inline ceres::Manifold* NewLandmarkManifold() {
+  return new ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<6>>;
+}
+
+// The manifold of a plane's normal: 2 tangent dimensions.
+inline ceres::Manifold* NewNormalManifold() { return new ceres::SphereManifold<3>; }
 
 }  // namespace soslam

@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 
 #include "geometry/landmark.h"
-#include "geometry/landmark_tangent.h"
 
 namespace soslam {
 

@@ -21,7 +21,7 @@
 #include "dataset/text_file.h"
 #include "dataset/trajectories.h"
 #include "dataset/yaml_fields.h"
-#include "geometry/image_size.h"
+#include "geometry/camera.h"
 
 namespace soslam {
 namespace {

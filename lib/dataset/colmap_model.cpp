@@ -18,7 +18,7 @@
 #include "base/error.h"
 #include "base/paths.h"
 #include "dataset/text_file.h"
-#include "geometry/image_size.h"
+#include "geometry/camera.h"
 
 namespace soslam {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/options.h"
-#include "model/image_orientation.h"
+#include "geometry/camera.h"
 
 namespace soslam {
 

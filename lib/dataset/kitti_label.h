@@ -12,7 +12,6 @@
 #include "dataset/gate.h"
 #include "dataset/labelled_box.h"
 #include "geometry/camera.h"
-#include "model/image_orientation.h"
 
 namespace soslam {
 

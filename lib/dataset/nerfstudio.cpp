@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "dataset/json_entry.h"
 #include "dataset/trajectories.h"
-#include "geometry/image_size.h"
+#include "geometry/camera.h"
 
 namespace soslam {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/options.h"
-#include "model/image_orientation.h"
+#include "geometry/camera.h"
 
 namespace soslam {
 

@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "dataset/calibration_file.h"
 #include "dataset/text_file.h"
-#include "geometry/image_size.h"
+#include "geometry/camera.h"
 
 namespace soslam {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
-#include "model/truth.h"
+#include "model/sequence.h"
 
 namespace soslam {
 

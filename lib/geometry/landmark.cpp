@@ -7,9 +7,24 @@
 #include <limits>
 #include <numbers>
 
+#include "geometry/rigid3.h"
 #include "geometry/surface.h"
 
 namespace soslam {
+
+Eigen::Matrix3d OwnFromObject(RestingFace face) {
+  Eigen::Matrix3d own_from_object = Eigen::Matrix3d::Identity();
+  if (face == RestingFace::kBack) {
+    own_from_object << 0.0, 0.0, 1.0, 0.0, 1.0, 0.0, -1.0, 0.0, 0.0;
+  } else if (face == RestingFace::kSide) {
+    own_from_object << 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -1.0, 0.0;
+  }
+  return own_from_object;
+}
+
+Eigen::Vector3d HalfAxesOnFace(const Eigen::Vector3d& own_half_axes, RestingFace face) {
+  return OwnFromObject(face).cwiseAbs().transpose() * own_half_axes;
+}
 namespace {
 
 // A unit vector orthogonal to the normal: the projection of x, or of y where x is nearly parallel
@@ -177,6 +192,15 @@ double YawDifferenceModuloPi(double yaw, double other) {
   constexpr double kPi = std::numbers::pi;
   const double difference = std::fmod(yaw - other + 0.5 * kPi, kPi);
   return (difference < 0.0 ? difference + kPi : difference) - 0.5 * kPi;
+}
+
+Landmark Moved(const Landmark& landmark, const LandmarkStep& step) {
+  Landmark moved = landmark;
+  moved.frame_from_object.rotation =
+      (ExpRotation(step.head<3>()) * landmark.frame_from_object.rotation).normalized();
+  moved.frame_from_object.translation += step.segment<3>(3);
+  moved.half_axes = landmark.half_axes.array() * step.tail<3>().array().exp();
+  return moved;
 }
 
 }  // namespace soslam

@@ -3,16 +3,36 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 #include <optional>
 
 #include "geometry/box.h"
 #include "geometry/camera.h"
 #include "geometry/plane.h"
-#include "geometry/resting_face.h"
 #include "geometry/rigid3.h"
 #include "geometry/support_function.h"
 
 namespace soslam {
+
+// The face that an object rests on. Its own axes are those of the upright object: x the front, z
+// up. Its object frame has z away from the support plane in any case: an object on its back has its
+// own x axis along z, one on its side its own y axis.
+enum class RestingFace { kBottom, kBack, kSide };
+inline constexpr std::array kRestingFaces = {RestingFace::kBottom, RestingFace::kBack,
+                                             RestingFace::kSide};
+inline constexpr std::array kRestingFaceNames = {"bottom", "back", "side"};
+
+// Rotation from the object frame to the object's own axes. Its entries are 0, 1 and -1.
+Eigen::Matrix3d OwnFromObject(RestingFace face);
+
+// Axis of the object frame along which the object's own z axis is.
+constexpr Eigen::Index OwnHeightAxis(RestingFace face) {
+  if (face == RestingFace::kBottom) return 2;
+  return face == RestingFace::kBack ? 0 : 1;
+}
+
+// Half axes along the object frame's x, y and z of half axes along the object's own axes.
+Eigen::Vector3d HalfAxesOnFace(const Eigen::Vector3d& own_half_axes, RestingFace face);
 
 // An object as a convex superquadric, in the paper an ellipsoid: 9 degrees of freedom and a shape
 // exponent. Variables name their frame: landmark_in_world, landmark_in_camera. Object frame: origin
@@ -105,5 +125,18 @@ Landmark RotatedAboutZ(const Landmark& landmark, double angle);
 
 // The difference of two yaws modulo pi, in [-pi/2, pi/2): an xz mirror plane has no front or back.
 double YawDifferenceModuloPi(double yaw, double other);
+
+// The nine degrees of freedom of a landmark in tangent space: rotation vector (in the frame that
+// the landmark is given in, applied from the left, rad), centre (m), log half axes. Derivatives by
+// a landmark are with respect to these, in this order; residuals mostly have the landmark in the
+// camera frame.
+inline constexpr int kLandmarkDof = 9;
+using LandmarkStep = Eigen::Matrix<double, kLandmarkDof, 1>;
+using LandmarkJacobian3 = Eigen::Matrix<double, 3, kLandmarkDof>;
+using LandmarkJacobian2 = Eigen::Matrix<double, 2, kLandmarkDof>;
+using LandmarkJacobian1 = Eigen::Matrix<double, 1, kLandmarkDof>;
+
+// The landmark to which a step leads.
+Landmark Moved(const Landmark& landmark, const LandmarkStep& step);
 
 }  // namespace soslam

@@ -6,7 +6,6 @@
 
 #include "geometry/camera.h"
 #include "geometry/landmark.h"
-#include "geometry/landmark_tangent.h"
 #include "geometry/surface.h"
 
 namespace soslam {

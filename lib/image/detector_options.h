@@ -4,8 +4,8 @@
 #include <string>
 
 #include "base/options.h"
+#include "geometry/camera.h"
 #include "image/yolo_output.h"
-#include "model/image_orientation.h"
 
 namespace soslam {
 

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <utility>
 
-#include "model/image_orientation.h"
+#include "geometry/camera.h"
 
 namespace soslam {
 

@@ -6,7 +6,6 @@
 
 #include "geometry/camera.h"
 #include "geometry/distortion.h"
-#include "model/image_orientation.h"
 
 namespace soslam {
 

@@ -14,7 +14,7 @@
 #include "base/error.h"
 #include "base/paths.h"
 #include "base/run_log.h"
-#include "geometry/image_size.h"
+#include "geometry/camera.h"
 #include "image/image_format.h"
 
 namespace soslam {

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "geometry/landmark.h"
-#include "geometry/landmark_tangent.h"
 #include "geometry/rigid3.h"
 
 namespace soslam {

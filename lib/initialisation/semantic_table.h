@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "constraints/edge_bias.h"
-#include "geometry/resting_face.h"
+#include "constraints/tangency.h"
+#include "geometry/landmark.h"
 #include "geometry/support_function.h"
 #include "model/sequence.h"
 

@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "constraints/detection.h"
-#include "constraints/manifolds.h"
+#include "constraints/parameters.h"
 #include "constraints/scale_ratio.h"
 #include "constraints/support.h"
 #include "geometry/angles.h"

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "image/edge_maps.h"
-#include "model/symmetry_record.h"
+#include "model/estimates.h"
 
 namespace soslam {
 

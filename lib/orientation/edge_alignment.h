@@ -8,7 +8,7 @@
 
 #include "geometry/box.h"
 #include "geometry/camera.h"
-#include "geometry/landmark_tangent.h"
+#include "geometry/landmark.h"
 #include "image/edge_maps.h"
 #include "initialisation/landmark_cost.h"
 #include "orientation/model_edges.h"

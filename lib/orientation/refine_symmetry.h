@@ -7,7 +7,6 @@
 #include "image/edge_maps.h"
 #include "model/estimates.h"
 #include "model/sequence.h"
-#include "model/symmetry_record.h"
 #include "orientation/symmetry_options.h"
 
 namespace soslam {

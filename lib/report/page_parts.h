@@ -17,7 +17,6 @@
 #include "inspection/projection.h"
 #include "model/estimates.h"
 #include "model/sequence.h"
-#include "model/symmetry_record.h"
 #include "report/results_tree.h"
 
 namespace soslam {

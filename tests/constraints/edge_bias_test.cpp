@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "constraints/edge_bias.h"
 
 #include <gtest/gtest.h>
 

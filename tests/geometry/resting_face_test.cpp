@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "geometry/resting_face.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "constraints/manifolds.h"
+#include "constraints/parameters.h"
 #include "support/random_scene.h"
 
 namespace soslam {

@@ -8,7 +8,6 @@
 #include <memory>
 #include <vector>
 
-#include "constraints/manifolds.h"
 #include "constraints/parameters.h"
 
 namespace soslam {
