@@ -11,7 +11,7 @@
 #include "ground/group_boxes.h"
 #include "ground/horizontal_planes.h"
 #include "ground/object_heights.h"
-#include "planes/poses.h"
+#include "planes/up_prior.h"
 
 namespace soslam {
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "base/options.h"
-#include "image/sample_bilinear.h"
 
 namespace soslam {
 
@@ -73,5 +72,17 @@ struct LineSegment {
 // The straight edges of a grey image (CV_8UC1) that are at least this long (px): the line segment
 // detector of Grompone von Gioi et al. (2010).
 std::vector<LineSegment> FindLineSegments(const cv::Mat& grey, double min_length_px);
+
+struct Sample {
+  double value;
+  Eigen::Vector2d gradient;  // d value / d pixel, of the bilinear patch (one-sided on its border)
+};
+
+// Bilinear interpolation of a CV_8UC1 or CV_32FC1 map. Domain: [0, width - 1] x [0, height - 1] of
+// maps of at least 2 x 2 pixels; none outside it (no clamping, which would have zero gradients),
+// and none where one of the four pixels around is not finite.
+std::optional<Sample> SampleBilinear(const cv::Mat& map, const Eigen::Vector2d& pixel);
+// True if a pixel is in that domain, whatever the map's values.
+bool IsBetweenPixelCentres(const cv::Mat& map, const Eigen::Vector2d& pixel);
 
 }  // namespace soslam

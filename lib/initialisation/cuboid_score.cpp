@@ -11,7 +11,7 @@
 
 #include "geometry/angles.h"
 #include "geometry/wireframe.h"
-#include "image/sample_bilinear.h"
+#include "image/edge_maps.h"
 
 namespace soslam {
 namespace {

@@ -8,11 +8,29 @@
 #include <numbers>
 
 #include "constraints/loss.h"
-#include "geometry/direction_weights.h"
+#include "geometry/angles.h"
 #include "initialisation/landmark_terms.h"
 #include "initialisation/yaw_sweep.h"
 
 namespace soslam {
+
+std::vector<double> DirectionWeights(const std::vector<Eigen::Vector3d>& directions,
+                                     double correlation_rad) {
+  std::vector<double> similar(directions.size(), 1.0);  // sums over all directions
+  if (correlation_rad > 0.0) {
+    for (size_t i = 0; i < directions.size(); ++i) {
+      for (size_t j = 0; j < i; ++j) {
+        const double ratio = AngleBetween(directions[i], directions[j]) / correlation_rad;
+        const double similarity = std::exp(-0.5 * ratio * ratio);
+        similar[i] += similarity;
+        similar[j] += similarity;
+      }
+    }
+  }
+  std::vector<double> weights;
+  for (const double sum : similar) weights.push_back(1.0 / sum);
+  return weights;
+}
 namespace {
 
 constexpr int kMaxRounds = 20;

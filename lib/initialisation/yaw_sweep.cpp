@@ -12,7 +12,7 @@
 
 #include "geometry/angles.h"
 #include "initialisation/closed_form.h"
-#include "initialisation/leaning.h"
+#include "initialisation/upright.h"
 
 namespace soslam {
 namespace {

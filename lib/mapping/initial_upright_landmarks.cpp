@@ -7,7 +7,6 @@
 
 #include "base/parallel.h"
 #include "geometry/angles.h"
-#include "initialisation/leaning.h"
 #include "initialisation/multi_view.h"
 #include "initialisation/upright.h"
 #include "mapping/initial_landmarks.h"

@@ -10,7 +10,6 @@
 #include "initialisation/point_term.h"
 #include "initialisation/semantic_table.h"
 #include "orientation/options.h"
-#include "orientation/symmetry_options.h"
 
 namespace soslam {
 

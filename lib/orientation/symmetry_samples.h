@@ -8,7 +8,7 @@
 #include "constraints/symmetry.h"
 #include "geometry/camera.h"
 #include "geometry/landmark.h"
-#include "orientation/symmetry_options.h"
+#include "orientation/options.h"
 
 namespace soslam {
 

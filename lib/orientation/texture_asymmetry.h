@@ -10,7 +10,6 @@
 #include "geometry/camera.h"
 #include "initialisation/landmark_cost.h"
 #include "orientation/options.h"
-#include "orientation/symmetry_options.h"
 
 namespace soslam {
 

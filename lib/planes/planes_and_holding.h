@@ -4,13 +4,29 @@
 #include <optional>
 #include <vector>
 
+#include "geometry/rigid3.h"
 #include "initialisation/semantic_table.h"
 #include "model/sequence.h"
+#include "planes/camera_holding.h"
 #include "planes/options.h"
 #include "planes/planes_estimate.h"
 #include "planes/up_prior.h"
 
 namespace soslam {
+
+// Trajectory without drift about the horizontal axes.
+struct LevelTrajectory {
+  std::vector<Rigid3d> world_from_camera;  // the first pose is unchanged
+  UpPrior attitude;                        // of the first camera's world
+};
+
+// Removes the drift of odometry about the horizontal axes. Because of drift, up differs from frame
+// to frame; it is estimated per frame from the way cameras are held, vertical edges, and continuity
+// with the frame before. Poses are rotated so that up is the same as in the first frame everywhere,
+// and the translations between frames, as measured in the camera, are concatenated again. At least
+// one view.
+LevelTrajectory Level(const std::vector<SegmentView>& views, CameraHolding holding,
+                      const PlanesOptions& options);
 
 // Planes under the most probable camera holding.
 struct PlanesAndHolding {

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "geometry/angles.h"
-#include "planes/poses.h"
+#include "planes/up_prior.h"
 
 namespace soslam {
 

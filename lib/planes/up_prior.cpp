@@ -10,9 +10,8 @@
 #include "base/parallel.h"
 #include "constraints/loss.h"
 #include "geometry/angles.h"
-#include "geometry/direction_weights.h"
 #include "geometry/landmark.h"
-#include "planes/poses.h"
+#include "initialisation/multi_view.h"
 
 namespace soslam {
 
@@ -282,6 +281,18 @@ std::vector<Eigen::Vector3d> SearchUp(
     costs[index] = CostOf(candidates[index], attitude, observations);
   });
   return LowestApart(candidates, costs, kBetweenStarts, kStarts);
+}
+
+std::vector<Rigid3d> PosesOf(const Sequence& sequence) {
+  std::vector<Rigid3d> poses;
+  for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
+  return poses;
+}
+
+std::vector<Rigid3d> PosesOf(const std::vector<SegmentView>& views) {
+  std::vector<Rigid3d> poses;
+  for (const SegmentView& view : views) poses.push_back(view.world_from_camera);
+  return poses;
 }
 
 }  // namespace soslam

@@ -9,6 +9,7 @@
 #include "geometry/rigid3.h"
 #include "image/edge_maps.h"
 #include "initialisation/multi_view.h"
+#include "model/sequence.h"
 #include "planes/camera_holding.h"
 
 namespace soslam {
@@ -90,5 +91,9 @@ std::optional<double> CostOfUprightBody(const Eigen::Vector3d& up_in_world,
 std::vector<Eigen::Vector3d> SearchUp(
     const UpPrior& attitude, const std::vector<std::optional<MultiViewObservation>>& observations,
     int threads);
+
+// world_from_camera of each frame, and of each view.
+std::vector<Rigid3d> PosesOf(const Sequence& sequence);
+std::vector<Rigid3d> PosesOf(const std::vector<SegmentView>& views);
 
 }  // namespace soslam

@@ -10,7 +10,6 @@
 #include <opencv2/imgproc.hpp>
 
 #include "base/error.h"
-#include "image/sample_bilinear.h"
 #include "support/expect_error.h"
 #include "support/random.h"
 

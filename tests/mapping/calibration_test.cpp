@@ -13,7 +13,7 @@
 #include "image/edge_maps.h"
 #include "initialisation/upright.h"
 #include "mapping/back_end.h"
-#include "orientation/model_edges.h"
+#include "orientation/edge_alignment.h"
 #include "support/one_body.h"
 #include "support/random.h"
 #include "support/simulated_points.h"

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "orientation/mirror_planes.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "geometry/angles.h"
+#include "orientation/refine_orientation.h"
 
 namespace soslam {
 namespace {

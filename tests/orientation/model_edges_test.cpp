@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "orientation/model_edges.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <set>
 
+#include "orientation/edge_alignment.h"
 #include "support/random.h"
 
 namespace soslam {

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "geometry/angles.h"
-#include "orientation/refine_symmetry.h"
+#include "orientation/refine_orientation.h"
 #include "orientation/symmetry_samples.h"
 #include "support/random.h"
 #include "support/scene.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "geometry/angles.h"
-#include "planes/poses.h"
+#include "planes/up_prior.h"
 #include "support/random.h"
 #include "support/scene.h"
 

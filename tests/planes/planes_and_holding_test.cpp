@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "geometry/angles.h"
 #include "planes/camera_holding.h"
+#include "planes/up_prior.h"
 #include "support/expect_error.h"
 #include "support/scene.h"
 

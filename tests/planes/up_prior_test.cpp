@@ -10,8 +10,7 @@
 #include <vector>
 
 #include "geometry/angles.h"
-#include "planes/level_trajectory.h"
-#include "planes/poses.h"
+#include "planes/planes_and_holding.h"
 #include "planes/scene_axis.h"
 #include "support/random.h"
 

@@ -12,7 +12,6 @@
 #include "mapping/back_end.h"
 #include "mapping/initial_landmarks.h"
 #include "planes/estimate_planes.h"
-#include "planes/poses.h"
 #include "planes/up_prior.h"
 #include "support/association_scenes.h"
 #include "support/random.h"
