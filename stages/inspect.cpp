@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "cli/command_line.h"
 #include "inspection/difference.h"
-#include "stage/run_inspect.h"
+#include "stage/stages.h"
 
 namespace {
 

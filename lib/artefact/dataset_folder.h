@@ -2,8 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "artefact/json_file.h"
+#include "image/frame_choice.h"
 
 namespace soslam {
 
@@ -41,5 +46,34 @@ class DatasetFolder {
   std::string writer_;
   std::filesystem::path temporary_;
 };
+
+// A photo, or a frame of a video.
+struct SourceFrame {
+  std::string source;               // name of its file, without folders
+  std::optional<int> frame_number;  // in a video, from 0
+  std::optional<double> time_s;     // in a video, since its first frame
+  std::optional<double> sharpness;  // none if it was not measured
+  std::optional<FrameRejection> rejection;
+  std::string detail = {};  // of the rejection, in words
+  std::string image = {};   // path in the dataset folder; empty if it was left out
+};
+
+// A focal length that a reconstruction may start from: a guess, no calibration.
+struct FocalHint {
+  double focal_px;  // in the images of the dataset
+  int images;       // number of chosen photos whose EXIF data have one
+};
+
+struct FramesRecord {
+  std::string name;  // of the folder or video
+  int width = 0;     // of the images of the dataset, px
+  int height = 0;
+  std::optional<FocalHint> focal_hint;
+  std::vector<SourceFrame> frames;  // all, in the order in which they were taken
+};
+
+// The text of frames.json (kind "frames", schemas/frames.schema.json). Errors as ArtefactText.
+std::string FramesText(const std::filesystem::path& path, const FramesRecord& record,
+                       const ArtefactInfo& info);
 
 }  // namespace soslam

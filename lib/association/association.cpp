@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "association/association_model.h"
 #include "association/link_frames.h"
-#include "association/merge_tracks.h"
 
 namespace soslam {
 namespace {

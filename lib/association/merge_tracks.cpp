@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "association/merge_tracks.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +6,7 @@
 #include <tuple>
 #include <vector>
 
+#include "association/association_model.h"
 #include "base/parallel.h"
 #include "geometry/iou.h"
 #include "model/occlusion.h"

@@ -8,7 +8,6 @@
 
 #include "base/upper_median.h"
 #include "geometry/angles.h"
-#include "ground/group_boxes.h"
 #include "ground/horizontal_planes.h"
 #include "ground/object_heights.h"
 #include "planes/up_prior.h"

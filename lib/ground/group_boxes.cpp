@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ground/group_boxes.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "base/upper_median.h"
+#include "ground/object_heights.h"
 
 namespace soslam {
 namespace {

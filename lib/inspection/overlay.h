@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <opencv2/core/mat.hpp>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "geometry/camera.h"
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
+#include "image/edge_maps.h"
 #include "inspection/canvas.h"
 #include "model/estimates.h"
 #include "model/sequence.h"
@@ -59,5 +61,19 @@ void DrawOverlay(const OverlayInput& input, cv::Mat* image);
 
 // Legend of DrawOverlay, for WithCaption.
 std::vector<CaptionEntry> OverlayLegend(const OverlayInput& input);
+
+// Layers of a picture of a frame's edge maps.
+enum class EdgeLayer { kAll, kGrey, kEdges, kDistance, kNearest };
+inline constexpr std::array kEdgeLayerNames = {"all", "grey", "edges", "distance", "nearest"};
+
+// One layer, or all of them side by side, in colour (CV_8UC3), each with a caption: the image with
+// its corners; the edges; the distance transform, bright for large distances; the direction to the
+// nearest edge as hue.
+cv::Mat EdgesPicture(const EdgeMaps& maps, EdgeLayer layer, const std::string& title);
+
+// The pixels that are used for symmetry and their mirror pixels, joined in pairs, on the part of
+// `image` (CV_8UC1) around them.
+cv::Mat SymmetryPicture(const SymmetryRecord& record, const cv::Mat& image,
+                        const std::string& title);
 
 }  // namespace soslam

@@ -13,7 +13,6 @@
 #include "image/edge_maps.h"
 
 namespace soslam {
-
 namespace {
 
 // Up to this shape exponent an object has edges of its own, beyond it only a silhouette.

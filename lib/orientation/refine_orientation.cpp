@@ -20,7 +20,6 @@
 #include "orientation/yaw_profile.h"
 
 namespace soslam {
-
 namespace {
 
 // One observation, and the data that all steps of its refinement share.

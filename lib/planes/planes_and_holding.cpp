@@ -13,7 +13,6 @@
 #include "planes/up_prior.h"
 
 namespace soslam {
-
 namespace {
 
 constexpr double kMaxLevelTilt = 12.0 * kRadPerDeg;

@@ -9,7 +9,6 @@
 #include <numeric>
 
 #include "model/label_groups.h"
-#include "priors/statistics.h"
 
 namespace soslam {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "priors/statistics.h"
+#include "evaluation/statistics.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "evaluation/statistics.h"
+#include "priors/learn_priors.h"
 
 namespace soslam {
 namespace {

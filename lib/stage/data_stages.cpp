@@ -17,14 +17,12 @@
 #include "dataset/gate.h"
 #include "priors/furniture_catalogue.h"
 #include "priors/learn_priors.h"
-#include "stage/segment_views.h"
+#include "stage/read_evidence.h"
 #include "stage/stages.h"
 #include "synthesis/scene.h"
 #include "synthesis/simulate.h"
-#include "synthesis/write_dataset.h"
 
 namespace soslam {
-
 namespace {
 
 // Adds what soslam-reconstruct found when it made the poses of the dataset, and the images to which

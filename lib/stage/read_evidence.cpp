@@ -8,6 +8,12 @@
 
 #include "artefact/files.h"
 #include "base/error.h"
+#include "base/parallel.h"
+#include "base/paths.h"
+#include "dataset/image_path.h"
+#include "geometry/angles.h"
+#include "image/edge_maps.h"
+#include "planes/scene_axis.h"
 
 namespace soslam {
 
@@ -50,6 +56,144 @@ std::vector<MapPoint> ReadPointsOf(const Sequence& sequence, const StageFiles& f
         sequence.frames.size()));
   }
   return points;
+}
+
+namespace fs = std::filesystem;
+
+std::vector<FrameImage> FrameImages(const Sequence& sequence, const fs::path& dataset,
+                                    const fs::path& sequence_file) {
+  std::vector<FrameImage> images;
+  for (const Frame& frame : sequence.frames) {
+    if (frame.image.empty()) continue;
+    images.push_back(
+        {&frame, ImagePath(dataset, frame.image,
+                           fmt::format("{}: frame {}", sequence_file.string(), frame.id))});
+  }
+  if (images.empty()) {
+    throw NothingUsableError(
+        fmt::format("{}: none of its {} frames has an image; expected at least one",
+                    sequence_file.string(), sequence.frames.size()));
+  }
+  return images;
+}
+
+FrameImageReader::FrameImageReader(const Sequence& sequence) : sequence_(sequence) {
+  if (sequence.image_distortion) undistorter_.emplace(sequence.camera, *sequence.image_distortion);
+}
+
+cv::Mat FrameImageReader::ReadGrey(const FrameImage& image) const {
+  const Camera& camera = sequence_.CameraOf(*image.frame);
+  const cv::Mat grey =
+      ReadGreyImage(image.path, camera.width, camera.height, sequence_.image_orientation);
+  return undistorter_ ? undistorter_->Undistort(grey) : grey;
+}
+
+cv::Mat FrameImageReader::ReadColour(const FrameImage& image) const {
+  const Camera& camera = sequence_.CameraOf(*image.frame);
+  const cv::Mat colour =
+      ReadColourImage(image.path, camera.width, camera.height, sequence_.image_orientation);
+  return undistorter_ ? undistorter_->Undistort(colour) : colour;
+}
+
+namespace {
+
+// Straight edges of at least `min_length_px` in an image of a sequence, with its frame's pose.
+SegmentView ReadSegmentView(const Sequence& sequence, const FrameImageReader& reader,
+                            const FrameImage& image, double min_length_px) {
+  return {sequence.CameraOf(*image.frame), FindLineSegments(reader.ReadGrey(image), min_length_px),
+          image.frame->world_from_camera};
+}
+
+}  // namespace
+
+std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, double min_length_px,
+                                         const StageFiles& files, int threads,
+                                         std::vector<std::filesystem::path>* inputs) {
+  const bool has_images =
+      std::ranges::any_of(sequence.frames, [](const Frame& frame) { return !frame.image.empty(); });
+  if (!has_images) return {};
+  if (!files.contains("dataset")) {
+    throw SettingsError(
+        "verticals is true; expected --dataset with the images, or verticals = false");
+  }
+  const std::vector<FrameImage> images =
+      FrameImages(sequence, files.at("dataset"), files.at("sequence"));
+  for (const FrameImage& image : images) inputs->push_back(image.path);
+  std::vector<SegmentView> views;
+  for (const Frame& frame : sequence.frames) {
+    views.push_back({sequence.CameraOf(frame), {}, frame.world_from_camera});
+  }
+  const FrameImageReader reader(sequence);
+  ParallelFor("images", static_cast<int>(images.size()), threads, [&](int i) {
+    const FrameImage& image = images[i];
+    views[image.frame - sequence.frames.data()] =
+        ReadSegmentView(sequence, reader, image, min_length_px);
+  });
+  return views;
+}
+
+void CheckOneSegment(const Sequence& sequence, const std::filesystem::path& path) {
+  const int first = sequence.frames.front().segment;
+  for (size_t i = 0; i < sequence.frames.size(); ++i) {
+    if (sequence.frames[i].segment == first) continue;
+    throw InputError(fmt::format(
+        "{}: /frames/{} is of segment {}, the frames before of segment {}; expected one segment "
+        "where planes are estimated, or planes = given or camera_height",
+        path.string(), i, sequence.frames[i].segment, first));
+  }
+}
+
+namespace {
+
+constexpr int kMaxSceneImages = 24;
+constexpr double kMinSegmentPx = 30.0;
+constexpr double kSceneCorrelation = 20.0 * kRadPerDeg;
+
+// The sequence's images that exist, at most kMaxSceneImages, spread over all.
+std::vector<FrameImage> SomeImages(const Sequence& sequence, const std::filesystem::path& folder) {
+  std::vector<FrameImage> images;
+  if (std::ranges::all_of(sequence.frames, [](const Frame& frame) { return frame.image.empty(); }))
+    return images;
+  for (const FrameImage& image : FrameImages(sequence, folder, folder)) {
+    if (IsFile(image.path)) images.push_back(image);
+  }
+  const size_t step = images.size() / kMaxSceneImages + 1;
+  std::vector<FrameImage> some;
+  for (size_t i = 0; i < images.size(); i += step) some.push_back(images[i]);
+  return some;
+}
+
+// Straight edges of the images that can be read; soslam-edges says what is wrong with others.
+std::vector<SegmentView> SegmentsOf(const std::vector<FrameImage>& images, int threads,
+                                    const Sequence& sequence) {
+  const FrameImageReader reader(sequence);
+  std::vector<SegmentView> views(images.size());
+  ParallelFor(static_cast<int>(images.size()), threads, [&](int i) {
+    const auto index = static_cast<size_t>(i);
+    try {
+      views[index] = ReadSegmentView(sequence, reader, images[index], kMinSegmentPx);
+    } catch (const InputError&) {
+    }
+  });
+  std::erase_if(views, [](const SegmentView& view) { return view.segments.empty(); });
+  return views;
+}
+
+}  // namespace
+
+void AddSceneAxes(const std::filesystem::path& folder, int threads, Sequence* sequence,
+                  std::vector<std::filesystem::path>* inputs) {
+  const auto has_axis = [](const SupportPlane& plane) { return bool(plane.scene_axis_in_world); };
+  const auto is_of_first = [&](const Frame& frame) {
+    return frame.segment == sequence->frames.front().segment;
+  };
+  if (std::ranges::all_of(sequence->planes, has_axis) ||
+      !std::ranges::all_of(sequence->frames, is_of_first)) {
+    return;
+  }
+  const std::vector<FrameImage> images = SomeImages(*sequence, folder);
+  for (const FrameImage& image : images) inputs->push_back(image.path);
+  SetSceneAxes(SegmentsOf(images, threads, *sequence), kSceneCorrelation, sequence);
 }
 
 }  // namespace soslam

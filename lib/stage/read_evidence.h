@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <filesystem>
+#include <opencv2/core/mat.hpp>
+#include <optional>
 #include <vector>
 
 #include "artefact/hdf5_artefact.h"
-#include "cli/stage_files.h"
+#include "cli/command_line.h"
 #include "image/edge_maps.h"
+#include "image/read_image.h"
 #include "initialisation/point_term.h"
 #include "model/map_points.h"
 #include "model/sequence.h"
+#include "planes/up_prior.h"
 
 namespace soslam {
 
@@ -33,5 +38,47 @@ void CheckHasPoints(const PointOptions& options, const StageFiles& files);
 // of another dataset, or of other images, would be no evidence in silence. None at all is what
 // soslam-track has warned of.
 std::vector<MapPoint> ReadPointsOf(const Sequence& sequence, const StageFiles& files);
+
+// A frame of a sequence, which must outlive this, and the path of its image in the dataset folder.
+struct FrameImage {
+  const Frame* frame;
+  std::filesystem::path path;
+};
+
+// All frames that have an image in the folder `dataset`, in order. `sequence_file` is for messages.
+// Throws InputError for a path that leaves the folder, NothingUsableError when no frame has an
+// image.
+std::vector<FrameImage> FrameImages(const Sequence& sequence, const std::filesystem::path& dataset,
+                                    const std::filesystem::path& sequence_file);
+
+// Reads undistorted images for the cameras of a sequence, which must outlive it.
+class FrameImageReader {
+ public:
+  explicit FrameImageReader(const Sequence& sequence);
+  // Grey image, CV_8UC1, of the camera's size. Thread-safe. Throws InputError, also when the file
+  // has another size.
+  cv::Mat ReadGrey(const FrameImage& image) const;
+  // Colour image, CV_8UC3; otherwise like ReadGrey.
+  cv::Mat ReadColour(const FrameImage& image) const;
+
+ private:
+  const Sequence& sequence_;
+  std::optional<ImageUndistorter> undistorter_;
+};
+
+// Line segments of at least `min_length_px` in the images of folder "dataset", per frame; none if
+// no frame has an image. The images are added to `inputs`. Throws SettingsError without a folder.
+std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, double min_length_px,
+                                         const StageFiles& files, int threads,
+                                         std::vector<std::filesystem::path>* inputs);
+
+// Throws InputError, naming the file, if there are several segments: every segment has its own
+// world, up direction and planes.
+void CheckOneSegment(const Sequence& sequence, const std::filesystem::path& path);
+
+// Sets the scene axes of a sequence's planes from images of the dataset folder, if the sequence has
+// one world. Images that are missing or damaged are left out. Those read are added to `inputs`.
+void AddSceneAxes(const std::filesystem::path& folder, int threads, Sequence* sequence,
+                  std::vector<std::filesystem::path>* inputs);
 
 }  // namespace soslam

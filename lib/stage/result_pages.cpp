@@ -18,7 +18,7 @@
 #include "report/page_html.h"
 #include "report/results_tree.h"
 #include "report/tables.h"
-#include "stage/frame_images.h"
+#include "stage/read_evidence.h"
 #include "stage/stages.h"
 
 namespace soslam {

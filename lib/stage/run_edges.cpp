@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/progress.h"
-#include "stage/frame_images.h"
+#include "stage/read_evidence.h"
 #include "stage/stages.h"
 
 namespace soslam {

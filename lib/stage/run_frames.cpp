@@ -20,7 +20,6 @@
 #include <vector>
 
 #include "artefact/dataset_folder.h"
-#include "artefact/frames_file.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/paths.h"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/run_inspect.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +16,8 @@
 #include "inspection/doubts.h"
 #include "inspection/inspection.h"
 #include "inspection/overlay.h"
-#include "stage/frame_images.h"
+#include "stage/read_evidence.h"
+#include "stage/stages.h"
 
 namespace soslam {
 namespace {

@@ -17,7 +17,7 @@
 #include "geometry/triangulation.h"
 #include "model/finding.h"
 #include "model/map_points.h"
-#include "stage/frame_images.h"
+#include "stage/read_evidence.h"
 #include "stage/stages.h"
 
 namespace soslam {

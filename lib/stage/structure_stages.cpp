@@ -22,7 +22,7 @@
 #include "planes/planes_and_holding.h"
 #include "planes/planes_estimate.h"
 #include "planes/scene_axis.h"
-#include "stage/segment_views.h"
+#include "stage/read_evidence.h"
 #include "stage/stages.h"
 
 namespace soslam {

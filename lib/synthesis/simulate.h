@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <random>
 #include <string>
@@ -58,5 +59,12 @@ GroundTruth ObjectGroundTruth(const Scene& scene, const SceneObject& object);
 
 // The path of a frame's image in its dataset folder.
 std::string ImageName(int frame_index);
+
+// Renders and simulates the scene into a dataset folder: rgb.txt, rgb/*.png, groundtruth.txt,
+// odometry.txt, camera.json, planes.json, objects.json, detections.csv, boxes_exact.csv, and a
+// README.md that explains them. Numbers are written so that they read back exactly. The same bytes
+// for any number of threads. The folder appears whole or not at all; one that an earlier call wrote
+// is replaced. Throws SettingsError when the folder holds anything else or cannot be written.
+void WriteDataset(const Scene& scene, bool noise, const std::filesystem::path& folder, int threads);
 
 }  // namespace soslam

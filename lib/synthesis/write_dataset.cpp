@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "synthesis/write_dataset.h"
-
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>

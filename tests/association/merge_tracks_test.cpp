@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "association/merge_tracks.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "association/association_model.h"
 #include "support/association_scenes.h"
 
 namespace soslam {

@@ -10,7 +10,7 @@
 
 #include "geometry/angles.h"
 #include "ground/ground_checks.h"
-#include "ground/group_boxes.h"
+#include "ground/object_heights.h"
 #include "support/prior_scene.h"
 
 namespace soslam {

@@ -8,7 +8,6 @@
 #include <opencv2/imgproc.hpp>
 
 #include "inspection/canvas.h"
-#include "inspection/evidence_pictures.h"
 #include "inspection/projection.h"
 #include "support/random.h"
 #include "support/scene.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "priors/statistics.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "priors/learn_priors.h"
 
 namespace soslam {
 namespace {

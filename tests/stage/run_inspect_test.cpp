@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/run_inspect.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,7 +10,8 @@
 #include "base/options.h"
 #include "ground/ground_checks.h"
 #include "inspection/canvas.h"
-#include "inspection/evidence_pictures.h"
+#include "inspection/overlay.h"
+#include "stage/stages.h"
 #include "support/expect_error.h"
 #include "support/scene.h"
 #include "support/temporary_folder.h"

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "synthesis/write_dataset.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
