@@ -61,10 +61,6 @@ void WriteAssociations(const std::filesystem::path& path, const Sequence& sequen
 // Kind "planes". `given`: the sequence that the planes were estimated from, with its given planes.
 void WritePlanes(const std::filesystem::path& path, const PlanesEstimate& estimate,
                  const Sequence& given, const ArtefactInfo& info);
-// A plane in kind "planes" and "world", without its id and error. `tilt_variance` (rad^2) is added
-// to the tilt of the covariance.
-nlohmann::json PlaneToJson(const EstimatedPlane& plane, double tilt_variance);
-
 // Kind "world".
 void WriteWorld(const std::filesystem::path& path, const GroundEstimate& estimate,
                 const Sequence& input, const ArtefactInfo& info);

@@ -24,15 +24,4 @@ inline Plane Transform(const Rigid3d& target_from_source, const Plane& plane_in_
           plane_in_source.offset - normal_in_target.dot(target_from_source.translation)};
 }
 
-// Least squares point of planes; of several, that nearest to the frame's origin.
-class PointOnPlanes {
- public:
-  void Add(const Plane& plane, double weight = 1.0);
-  Eigen::Vector3d Solve() const;
-
- private:
-  Eigen::Matrix3d normal_matrix_ = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right_side_ = Eigen::Vector3d::Zero();
-};
-
 }  // namespace soslam

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/camera.h"
+#include "geometry/plane.h"
 #include "geometry/rigid3.h"
 
 namespace soslam {
@@ -20,6 +21,17 @@ struct Ray {
 // them, must be above `least_spread`.
 std::optional<Eigen::Vector3d> NearestPointToRays(const std::vector<Ray>& rays,
                                                   double least_spread);
+
+// Least squares point of planes; of several, that nearest to the frame's origin.
+class PointOnPlanes {
+ public:
+  void Add(const Plane& plane, double weight = 1.0);
+  Eigen::Vector3d Solve() const;
+
+ private:
+  Eigen::Matrix3d normal_matrix_ = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right_side_ = Eigen::Vector3d::Zero();
+};
 
 // Pixel of a point in one camera, without lens distortion.
 struct PointView {

@@ -9,6 +9,7 @@
 
 #include "constraints/loss.h"
 #include "geometry/angles.h"
+#include "geometry/triangulation.h"
 #include "initialisation/landmark_terms.h"
 #include "initialisation/yaw_sweep.h"
 

@@ -6,6 +6,7 @@
 #include "geometry/angles.h"
 #include "geometry/box.h"
 #include "geometry/plane.h"
+#include "geometry/triangulation.h"
 #include "support/random.h"
 
 namespace soslam {
