@@ -123,8 +123,7 @@ json PlanesToJson(const std::vector<Plane>& planes_in_world, const Sequence& seq
 
 // Before version 1.3 all planes were given.
 std::vector<Plane> PlanesFromJson(const json& map, const Sequence& sequence) {
-  std::vector<Plane> planes;
-  for (const SupportPlane& plane : sequence.planes) planes.push_back(plane.plane_in_world);
+  std::vector<Plane> planes = PlanesOf(sequence);
   if (!map.contains("planes")) return planes;
   const json& found = map["planes"];
   if (found.size() != planes.size()) {

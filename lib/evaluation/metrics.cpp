@@ -92,12 +92,6 @@ std::vector<ObjectMetrics> EvaluateObjects(const Sequence& sequence,
 
 }  // namespace
 
-std::vector<Rigid3d> OdometryPoses(const Sequence& sequence) {
-  std::vector<Rigid3d> poses;
-  for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
-  return poses;
-}
-
 Metrics EvaluateLandmarks(const Sequence& sequence, const LandmarkEstimates& estimates,
                           AlignmentChoice alignment) {
   Metrics metrics;
@@ -122,11 +116,9 @@ Metrics EvaluateLandmarks(const Sequence& sequence, const LandmarkEstimates& est
     held_out_poses.push_back(held_out.frame.world_from_camera);
   }
   metrics.held_out = EvaluateHeldOut(sequence, estimates.objects, held_out_poses);
-  std::vector<Plane> planes;
-  for (const SupportPlane& plane : sequence.planes) planes.push_back(plane.plane_in_world);
   if (estimates.observations.empty()) {
-    metrics.map_quality =
-        EvaluateMapQuality(sequence, estimates.objects, OdometryPoses(sequence), planes, alignment);
+    metrics.map_quality = EvaluateMapQuality(sequence, estimates.objects, PosesOf(sequence),
+                                             PlanesOf(sequence), alignment);
   }
   return metrics;
 }

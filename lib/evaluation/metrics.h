@@ -48,9 +48,6 @@ struct Metrics {
   std::optional<MapQuality> map_quality;            // for maps only, with true objects
 };
 
-// The poses that the sequence has as estimates, one per Sequence::frames.
-std::vector<Rigid3d> OdometryPoses(const Sequence& sequence);
-
 // Single-frame estimates are compared in the frame of their camera, with the truth of that frame if
 // there is one, so that trajectory errors have no effect; estimates over several frames in the
 // world, without objects that move. Objects without ground truth or detections are left out. The

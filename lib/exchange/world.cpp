@@ -59,17 +59,15 @@ void AddObjects(const Sequence& sequence, const std::vector<ObjectEstimate>& est
 }  // namespace
 
 std::vector<World> WorldsOfMap(const Sequence& sequence, const MapEstimate& map) {
-  const std::vector<std::optional<Rigid3d>> poses(map.world_from_camera.begin(),
-                                                  map.world_from_camera.end());
-  std::vector<World> worlds = WorldsOfFrames(sequence, poses);
+  std::vector<World> worlds =
+      WorldsOfFrames(sequence, {map.world_from_camera.begin(), map.world_from_camera.end()});
   AddObjects(sequence, map.objects, map.planes_in_world, &worlds);
   return worlds;
 }
 
 std::vector<World> WorldsOfOdometry(const Sequence& sequence) {
-  std::vector<std::optional<Rigid3d>> poses;
-  for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
-  return WorldsOfFrames(sequence, poses);
+  const std::vector<Rigid3d> poses = PosesOf(sequence);
+  return WorldsOfFrames(sequence, {poses.begin(), poses.end()});
 }
 
 std::vector<World> WorldsOfTruth(const Sequence& sequence) {

@@ -295,16 +295,6 @@ Estimation BestHeld(const Estimation& none, const UpEstimate& of_cameras,
   return *std::move(best);
 }
 
-UpEstimate UpOfCameras(const Sequence& sequence, const SemanticTable& table,
-                       const GroundOptions& options) {
-  AssociateOptions associate;
-  associate.camera_roll_sigma_deg = options.camera_roll_sigma_deg;
-  associate.camera_pitch_sigma_deg = options.camera_pitch_sigma_deg;
-  associate.view_correlation_deg = options.view_correlation_deg;
-  associate.box_sigma_fraction = options.box_sigma_fraction;
-  return UpOfSegments(sequence, table, associate).begin()->second;
-}
-
 ScalePosterior Shifted(ScalePosterior posterior, double log_factor) {
   posterior.log_scale += log_factor;
   posterior.low += log_factor;
@@ -372,7 +362,8 @@ GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoi
   const double log_units = -std::log(normalised_from_input.scale);
   Estimation none(normalised, ground_points, table, options, threads);
   none.units_per_input = std::exp(log_units);
-  const UpEstimate of_cameras = UpOfCameras(normalised, table, options);
+  const UpEstimate of_cameras =
+      UpOfSegments(normalised, table, FitOptions(options)).begin()->second;
   const Estimation estimation = BestHeld(none, of_cameras, views);
 
   GroundEstimate result;

@@ -19,13 +19,6 @@ constexpr double kNoSupport = 0.1;       // prior probability of a free height
 constexpr double kBesidePlane = 0.02;    // factor where a plane has no surface under the object
 constexpr double kEvidenceWeight = 0.5;  // see AssociateOptions::label_evidence_weight
 
-AssociateOptions FitOptions(const GroundOptions& options) {
-  AssociateOptions fit;
-  fit.box_sigma_fraction = options.box_sigma_fraction;
-  fit.view_correlation_deg = options.view_correlation_deg;
-  return fit;
-}
-
 std::map<std::string, double> VotesOf(const Sequence& sequence,
                                       const std::vector<int>& detections) {
   std::map<std::string, double> votes;
@@ -158,6 +151,15 @@ double WrongProbability(const Sequence& sequence, const MeasuredObject& object,
 }
 
 }  // namespace
+
+AssociateOptions FitOptions(const GroundOptions& options) {
+  AssociateOptions fit;
+  fit.camera_roll_sigma_deg = options.camera_roll_sigma_deg;
+  fit.camera_pitch_sigma_deg = options.camera_pitch_sigma_deg;
+  fit.view_correlation_deg = options.view_correlation_deg;
+  fit.box_sigma_fraction = options.box_sigma_fraction;
+  return fit;
+}
 
 std::vector<MeasuredObject> MeasureObjects(const Sequence& sequence,
                                            const std::vector<std::vector<int>>& groups,

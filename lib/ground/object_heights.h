@@ -40,4 +40,7 @@ std::vector<MeasuredObject> MeasureObjects(const Sequence& sequence,
                                            const HorizontalPlanes& planes, const UpEstimate& up,
                                            const GroundOptions& options, int threads);
 
+// The settings of association with which bodies are fitted and up is found.
+AssociateOptions FitOptions(const GroundOptions& options);
+
 }  // namespace soslam

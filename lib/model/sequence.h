@@ -213,6 +213,19 @@ struct Sequence {
   const Camera& CameraOf(const Detection& detection) const { return CameraOf(FrameOf(detection)); }
 };
 
+// The estimated pose of each frame: odometry.
+inline std::vector<Rigid3d> PosesOf(const Sequence& sequence) {
+  std::vector<Rigid3d> world_from_camera;
+  for (const Frame& frame : sequence.frames) world_from_camera.push_back(frame.world_from_camera);
+  return world_from_camera;
+}
+
+inline std::vector<Plane> PlanesOf(const Sequence& sequence) {
+  std::vector<Plane> planes_in_world;
+  for (const SupportPlane& plane : sequence.planes) planes_in_world.push_back(plane.plane_in_world);
+  return planes_in_world;
+}
+
 // Record of a detection that a stage rejects.
 inline RejectedDetection Rejected(const Sequence& sequence, const Detection& detection,
                                   RejectingStage stage, std::string reason) {

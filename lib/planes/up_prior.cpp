@@ -283,12 +283,6 @@ std::vector<Eigen::Vector3d> SearchUp(
   return LowestApart(candidates, costs, kBetweenStarts, kStarts);
 }
 
-std::vector<Rigid3d> PosesOf(const Sequence& sequence) {
-  std::vector<Rigid3d> poses;
-  for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
-  return poses;
-}
-
 std::vector<Rigid3d> PosesOf(const std::vector<SegmentView>& views) {
   std::vector<Rigid3d> poses;
   for (const SegmentView& view : views) poses.push_back(view.world_from_camera);

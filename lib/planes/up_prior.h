@@ -92,8 +92,7 @@ std::vector<Eigen::Vector3d> SearchUp(
     const UpPrior& attitude, const std::vector<std::optional<MultiViewObservation>>& observations,
     int threads);
 
-// world_from_camera of each frame, and of each view.
-std::vector<Rigid3d> PosesOf(const Sequence& sequence);
+// world_from_camera of each view.
 std::vector<Rigid3d> PosesOf(const std::vector<SegmentView>& views);
 
 }  // namespace soslam

@@ -81,8 +81,6 @@ PlaneGrids GridsAround(const PointsByPlane& points, const std::vector<Plane>& pl
 PlaneGrids GridsOfSequence(const Sequence& sequence) {
   if (!sequence.HasSupports()) return {};
   PointsByPlane points(sequence.planes.size());
-  std::vector<Plane> planes;
-  for (const SupportPlane& plane : sequence.planes) planes.push_back(plane.plane_in_world);
   for (const Detection& detection : sequence.detections) {
     const Object& object = sequence.ObjectOf(detection);
     const auto plane_index = static_cast<size_t>(object.plane_index);
@@ -91,12 +89,12 @@ PlaneGrids GridsOfSequence(const Sequence& sequence) {
       continue;
     }
     const Rigid3d& world_from_camera = sequence.FrameOf(detection).world_from_camera;
-    const auto foot =
-        GroundContactInCamera(sequence.CameraOf(detection), detection.box,
-                              Transform(world_from_camera.Inverse(), planes[plane_index]));
+    const auto foot = GroundContactInCamera(
+        sequence.CameraOf(detection), detection.box,
+        Transform(world_from_camera.Inverse(), sequence.planes[plane_index].plane_in_world));
     if (foot) points[plane_index].push_back(world_from_camera * *foot);
   }
-  return GridsAround(points, planes);
+  return GridsAround(points, PlanesOf(sequence));
 }
 
 PlaneGrids GridsOfMap(const MapEstimate& map, const Sequence& sequence) {

@@ -140,7 +140,7 @@ void AddViews(const LandmarkEstimates& estimates, const Sequence& sequence,
   (*variant)["kind"] = "views";
   (*variant)["objects"] = PageObjects(estimates.objects, sequence);
   (*variant)["outlines"] =
-      OutlinesOfObjects(estimates.objects, sequence, OdometryPoses(sequence), selection);
+      OutlinesOfObjects(estimates.objects, sequence, PosesOf(sequence), selection);
 }
 
 // The first observation of each object that has a landmark.
