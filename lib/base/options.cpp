@@ -11,10 +11,6 @@
 namespace soslam::internal {
 namespace {
 
-std::string JoinNames(std::span<const char* const> names) {
-  return fmt::format("{}", fmt::join(names, " | "));
-}
-
 class Reader : public OptionVisitor {
  public:
   Reader(const nlohmann::json& values, const std::string& where) : values_(values), where_(where) {
@@ -70,7 +66,7 @@ class Reader : public OptionVisitor {
           return;
         }
       }
-      Refuse(name, *found, "one of " + JoinNames(names));
+      Refuse(name, *found, fmt::format("one of {}", fmt::join(names, " | ")));
     }
   }
 

@@ -16,10 +16,6 @@ namespace {
 
 constexpr int kYoloStrides[] = {8, 16, 32};
 
-bool IsV5OrYolox(YoloLayout layout) {
-  return layout == YoloLayout::kV5 || layout == YoloLayout::kYolox;
-}
-
 // The output as one row per candidate.
 cv::Mat CandidateRows(const cv::Mat& output, const YoloFormat& format, const std::string& network) {
   const bool is_transposed = format.layout == YoloLayout::kV8;
@@ -95,7 +91,8 @@ YoloDetection ReadCandidate(const float* row, const YoloFormat& format) {
                           row[5] == std::floor(row[5]);
     return {is_class ? static_cast<int>(row[5]) : -1, row[4], {row[0], row[1], row[2], row[3]}};
   }
-  const bool has_objectness = IsV5OrYolox(format.layout);
+  const bool has_objectness =
+      format.layout == YoloLayout::kV5 || format.layout == YoloLayout::kYolox;
   const float* scores = row + (has_objectness ? 5 : 4);
   const float* best = std::max_element(scores, scores + format.classes);
   const double cx = row[0], cy = row[1], half_w = 0.5 * row[2], half_h = 0.5 * row[3];

@@ -259,7 +259,7 @@ json PageVariant(const VariantResult& result, const Sequence& sequence,
 
 std::vector<size_t> DetailedVariants(const json& page) {
   const json& variants = page.at("variants");
-  std::vector<std::string> names = KnownVariants();
+  auto names = kKnownVariants;
   std::ranges::reverse(names);
   const std::array<std::string, 3> kinds = {"map", "views", "frames"};
   const auto place = [](const auto& in, const json& name) {

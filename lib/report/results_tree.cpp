@@ -38,13 +38,6 @@ std::vector<std::string> RunsIn(const fs::path& list) {
   return runs;
 }
 
-std::vector<std::string> KnownVariants() {
-  std::vector<std::string> names(kPaperVariants.begin(), kPaperVariants.end());
-  names.insert(names.end(), {"Cube", "MultiView", "InitS", "InitST", "InitSTE", "InitSP",
-                             "InitSTEP", "OursS", "OursST", "OursSTE", "OursSP", "OursSTEP"});
-  return names;
-}
-
 std::string StageOf(const std::string& run) { return run.substr(0, run.rfind('-')); }
 
 namespace {
@@ -66,8 +59,7 @@ using nlohmann::json;
 
 // Rank in the order of variants; equal for all that are neither the paper's nor ours.
 auto VariantRank(const VariantResult& variant) {
-  static const std::vector<std::string> known = KnownVariants();
-  return std::ranges::find(known, variant.name) - known.begin();
+  return std::ranges::find(kKnownVariants, variant.name) - kKnownVariants.begin();
 }
 
 std::optional<StageTiming> ReadTiming(const fs::path& file) {

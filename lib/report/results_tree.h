@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -60,11 +61,13 @@ std::string StageOf(const std::string& run);
 // Error of the last run in a folder: the first line of its file `failed`; empty if it did not fail.
 std::string FailureIn(const std::filesystem::path& run_folder);
 
-// The methods that the paper compares, in its order.
-inline constexpr std::array kPaperVariants = {"SVD",     "Init1-1", "InitP", "InitPT",
-                                              "Quadric", "OursP",   "OursPT"};
-// These, then the variants that this project adds: the same steps with superquadrics.
-std::vector<std::string> KnownVariants();
+// The methods that the paper compares, in its order, then the variants that this project adds: the
+// same steps with superquadrics.
+inline constexpr std::array kKnownVariants = {"SVD",    "Init1-1", "InitP",  "InitPT",    "Quadric",
+                                              "OursP",  "OursPT",  "Cube",   "MultiView", "InitS",
+                                              "InitST", "InitSTE", "InitSP", "InitSTEP",  "OursS",
+                                              "OursST", "OursSTE", "OursSP", "OursSTEP"};
+inline constexpr std::span kPaperVariants = std::span(kKnownVariants).first<7>();
 
 // An error that metrics.json has for each object and, as a mean over objects, in its summaries.
 struct Quantity {

@@ -57,12 +57,12 @@ constexpr std::array<TimeRow, 3> kTimeRows = {{{"wall ms", &LandmarkTime::wall_m
                                                {"CPU ms", &LandmarkTime::cpu_ms},
                                                {"observations", &LandmarkTime::observations}}};
 
-// Times in the order of KnownVariants(). Variants share sequences, which can be large: each is read
+// Times in the order of kKnownVariants. Variants share sequences, which can be large: each is read
 // once.
 std::vector<std::optional<LandmarkTime>> TimesOf(const DatasetResult& dataset) {
   std::map<std::filesystem::path, SequenceCounts> counts;
   std::vector<std::optional<LandmarkTime>> times;
-  for (const std::string& name : KnownVariants()) {
+  for (const char* name : kKnownVariants) {
     const VariantResult* const variant = dataset.Evaluated(name);
     times.emplace_back();
     if (!variant || !Exists(variant->folder / "sequence.json")) continue;
@@ -90,7 +90,7 @@ void AddPublishedTimes(const PublishedTimes& published, Table* table) {
   if (published.values.empty()) return;
   std::vector<Cell> times = {published.dataset, "published ms"};
   std::vector<Cell> observations = {published.dataset, "published observations"};
-  for (const std::string& name : KnownVariants()) {
+  for (const char* name : kKnownVariants) {
     const auto time = std::ranges::find(published.values, name, &PublishedTime::variant);
     const bool is_published = time != published.values.end();
     times.emplace_back(is_published ? fmt::format("{:.1f} ± {:.1f}", time->ms_mean, time->ms_sigma)
@@ -137,7 +137,7 @@ std::optional<LandmarkTime> TimePerLandmark(const VariantResult& variant,
 
 Table TimeTable(const std::vector<DatasetResult>& datasets, const Published& published) {
   Table table = {"table_5_time", "Time per landmark (Table V)", {"dataset", "values"}, {}, 2, {}};
-  for (const std::string& name : KnownVariants()) table.header.push_back(name);
+  for (const char* name : kKnownVariants) table.header.emplace_back(name);
   for (const DatasetResult& dataset : datasets) AddMeasuredTimes(dataset, &table);
   if (table.rows.empty()) return table;
   table.notes = {

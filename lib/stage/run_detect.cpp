@@ -160,10 +160,6 @@ std::vector<std::string> NamesIn(const NetworkFile& network) {
   }
 }
 
-std::vector<std::string> ClassesOf(const NetworkFile& network, const StageFiles& files) {
-  return files.contains("labels") ? ReadLabelFile(files.at("labels")) : NamesIn(network);
-}
-
 // The options with the format in place of "auto": with them the same comes out again.
 DetectorOptions WithFormat(DetectorOptions options, const YoloFormat& format) {
   options.output_layout = format.layout;
@@ -178,7 +174,8 @@ DetectorOptions WithFormat(DetectorOptions options, const YoloFormat& format) {
 void RunDetect(const DetectorOptions& options, const StageFiles& files, int threads) {
   const fs::path& dataset = files.at("dataset");
   const NetworkFile network = ReadNetworkFile(files.at("network"));
-  const DetectorLabels labels = LabelsForDetector(ClassesOf(network, files), options);
+  const DetectorLabels labels = LabelsForDetector(
+      files.contains("labels") ? ReadLabelFile(files.at("labels")) : NamesIn(network), options);
   const std::vector<fs::path> images = ImagePaths(dataset);
   const YoloFormat format =
       FindFormat(network, static_cast<int>(labels.names.size()), options,

@@ -91,11 +91,6 @@ FoundFiles FindFiles(const fs::path& dataset) {
   return found;
 }
 
-// Fingerprint of what imports depend on: the content of tables, and the existence of images.
-std::string DatasetFingerprint(const fs::path& dataset, const FoundFiles& files) {
-  return Fingerprint(dataset, files.tables) + fmt::format("{}\n", fmt::join(files.others, "\n"));
-}
-
 void WriteFile(const fs::path& path, const std::string& text) {
   std::error_code error;
   fs::create_directories(path.parent_path(), error);
@@ -180,7 +175,10 @@ void RunPlan(const PlanOptions& options, const StageFiles& files, int /*threads*
     WriteFile(folders.results / variant.name / "stages.txt",
               fmt::format("{}\n", fmt::join(variant.instances, "\n")));
   }
-  WriteFile(folders.results / kDatasetListing, DatasetFingerprint(dataset, found));
+  // Imports depend on the content of tables, and on the existence of images.
+  WriteFile(
+      folders.results / kDatasetListing,
+      Fingerprint(dataset, found.tables) + fmt::format("{}\n", fmt::join(found.others, "\n")));
   WriteFile(folders.results / kImagesListing, Fingerprint(dataset, found.others));
   WriteFile(folders.results / "plan.mk", PlanMakefile(plan, name, folders));
 }

@@ -23,10 +23,6 @@ namespace {
 
 constexpr double kLegHalfWidth = 0.025;  // metres
 
-Eigen::Quaterniond RotationAboutZ(double yaw) {
-  return Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
-}
-
 // The uniform Catmull-Rom spline through four points, from p1 at 0 to p2 at 1.
 Eigen::Vector3d CatmullRom(const Eigen::Vector3d& p0, const Eigen::Vector3d& p1,
                            const Eigen::Vector3d& p2, const Eigen::Vector3d& p3, double t) {
@@ -116,7 +112,8 @@ std::vector<Body> Furniture(const Scene& scene) {
     if (!plane.table) continue;
     const TableTop& table = *plane.table;
     const Rigid3d plane_from_table = {
-        RotationAboutZ(table.yaw), {table.position_on_plane.x(), table.position_on_plane.y(), 0.0}};
+        Eigen::Quaterniond(Eigen::AngleAxisd(table.yaw, Eigen::Vector3d::UnitZ())),
+        {table.position_on_plane.x(), table.position_on_plane.y(), 0.0}};
     const Rigid3d world_from_table = WorldFromPlane(plane.plane_in_world) * plane_from_table;
     const auto add_box = [&](const Eigen::Vector3d& centre, const Eigen::Vector3d& half_axes) {
       bodies.push_back(

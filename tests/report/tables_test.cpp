@@ -364,7 +364,7 @@ TEST(ResultsPage, TablesOfTheDocumentationAreNotEditedByHand) {
 TEST(ResultsPage, TheDocumentationHasAColumnForEachVariant) {
   const std::string page =
       FileBytes(std::filesystem::path(SOSLAM_SOURCE_DIR) / "docs" / "results.md");
-  for (const std::string& variant : KnownVariants()) {
+  for (const std::string variant : kKnownVariants) {
     EXPECT_THAT(page, testing::ContainsRegex("\\| +" + variant + " \\|"));
   }
 }
