@@ -9,11 +9,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
-#include <string>
 #include <string_view>
 #include <utility>
 
-#include "artefact/atomic_file.h"
 #include "base/error.h"
 
 namespace soslam {

@@ -2,7 +2,6 @@
 #include "artefact/hdf5_types.h"
 
 #include <fmt/format.h>
-#include <hdf5.h>
 #include <zlib.h>
 
 #include <algorithm>

@@ -15,7 +15,6 @@
 
 #include "artefact/atomic_file.h"
 #include "artefact/model_json.h"
-#include "base/error.h"
 #include "base/paths.h"
 #include "base/run_log.h"
 #include "base/text.h"

@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "artefact/model_json.h"
 
-#include <fmt/format.h>
-
-#include <array>
 #include <cmath>
-
-#include "base/error.h"
-#include "geometry/camera.h"
 
 namespace soslam {
 

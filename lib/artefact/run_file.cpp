@@ -9,7 +9,6 @@
 
 #include <CLI/Version.hpp>
 #include <Eigen/Core>
-#include <nlohmann/json.hpp>
 #include <opencv2/core/utility.hpp>
 #include <stdexcept>
 

@@ -14,21 +14,6 @@ std::set<std::string> LabelsOf(const Sequence& sequence) {
   return labels;
 }
 
-}  // namespace
-
-AssociationModel::AssociationModel(const Sequence& sequence, const SemanticTable& table,
-                                   const AssociateOptions& options)
-    : sequence_(sequence),
-      table_(table),
-      options_(options),
-      up_of_segments_(sequence.planes.empty() ? UpOfSegments(sequence, table, options)
-                                              : std::map<int, UpEstimate>()),
-      boxes_(sequence, options),
-      labels_(LabelsOf(sequence), options),
-      moving_labels_(NormalisedLabels("moving_labels", options.moving_labels)) {}
-
-namespace {
-
 // Direction away from the most support planes, as floors, tables and shelves are parallel.
 Eigen::Vector3d UpOfPlanes(const Sequence& sequence) {
   constexpr double kCosineOfParallel = 0.95;
@@ -90,6 +75,17 @@ double CostOfPlane(const Sequence& sequence, const Plane& plane_in_world, const 
 }
 
 }  // namespace
+
+AssociationModel::AssociationModel(const Sequence& sequence, const SemanticTable& table,
+                                   const AssociateOptions& options)
+    : sequence_(sequence),
+      table_(table),
+      options_(options),
+      up_of_segments_(sequence.planes.empty() ? UpOfSegments(sequence, table, options)
+                                              : std::map<int, UpEstimate>()),
+      boxes_(sequence, options),
+      labels_(LabelsOf(sequence), options),
+      moving_labels_(NormalisedLabels("moving_labels", options.moving_labels)) {}
 
 std::vector<Support> AssociationModel::SupportsOf(const Track& track) const {
   if (sequence_.planes.empty()) return {{kNoPlane, up_of_segments_.at(SegmentOf(track))}};

@@ -8,9 +8,7 @@
 #include <limits>
 #include <memory>
 #include <numbers>
-#include <vector>
 
-#include "constraints/tangency.h"
 #include "geometry/angles.h"
 #include "initialisation/landmark_terms.h"
 

@@ -4,7 +4,6 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 #include "constraints/tangency.h"
 #include "geometry/angles.h"

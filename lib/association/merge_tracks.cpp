@@ -86,22 +86,6 @@ TrackFate FateOf(const AssociationModel& model, const Track& track, const Shown&
              : TrackFate::kObject;
 }
 
-}  // namespace
-
-void DropFalseTracks(const AssociationModel& model, int threads, Association* association) {
-  const double border_px = SmallestDistanceToBorder(model.sequence());
-  ParallelFor("tracks", static_cast<int>(association->tracks.size()), threads, [&](int i) {
-    Track& track = association->tracks[i];
-    if (track.fate == TrackFate::kMerged) return;
-    const Shown shown = ShownBy(model, track);
-    const bool is_candidate = track.fit && shown.three_edges >= model.options().min_observations;
-    if (is_candidate) track.frames_in_sight = FramesInSight(model, track, border_px);
-    track.fate = FateOf(model, track, shown);
-  });
-}
-
-namespace {
-
 // Candidate merge of a smaller track into a larger one.
 struct Merge {
   int into = -1;
@@ -286,6 +270,18 @@ class TrackMerger {
 };
 
 }  // namespace
+
+void DropFalseTracks(const AssociationModel& model, int threads, Association* association) {
+  const double border_px = SmallestDistanceToBorder(model.sequence());
+  ParallelFor("tracks", static_cast<int>(association->tracks.size()), threads, [&](int i) {
+    Track& track = association->tracks[i];
+    if (track.fate == TrackFate::kMerged) return;
+    const Shown shown = ShownBy(model, track);
+    const bool is_candidate = track.fit && shown.three_edges >= model.options().min_observations;
+    if (is_candidate) track.frames_in_sight = FramesInSight(model, track, border_px);
+    track.fate = FateOf(model, track, shown);
+  });
+}
 
 void MergeTracks(const AssociationModel& model, int threads, Association* association) {
   TrackMerger(model, threads, association).Run();

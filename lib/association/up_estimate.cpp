@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <optional>
-#include <vector>
 
 #include "geometry/angles.h"
 #include "geometry/rigid3.h"

@@ -17,7 +17,6 @@
 #include <thread>
 
 #include "artefact/json_file.h"
-#include "base/error.h"
 #include "base/progress.h"
 #include "base/text.h"
 #include "cli/run_recorder.h"

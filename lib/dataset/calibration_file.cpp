@@ -10,7 +10,6 @@
 #include <initializer_list>
 #include <iterator>
 #include <map>
-#include <string>
 #include <vector>
 
 #include "base/error.h"
@@ -21,7 +20,6 @@
 #include "dataset/text_file.h"
 #include "dataset/trajectories.h"
 #include "dataset/yaml_fields.h"
-#include "geometry/camera.h"
 
 namespace soslam {
 namespace {

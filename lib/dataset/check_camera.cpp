@@ -81,22 +81,6 @@ std::vector<Finding> CheckIntrinsics(const Camera& camera) {
            advice.cause, advice.remedy}};
 }
 
-}  // namespace
-
-std::vector<Finding> CheckCamera(const ImportView& view) {
-  std::vector<Finding> findings;
-  std::vector<Camera> seen;
-  for (const Frame& frame : view.sequence.frames) {
-    const Camera& camera = view.sequence.CameraOf(frame);
-    if (std::ranges::find(seen, camera) != seen.end()) continue;
-    seen.push_back(camera);
-    std::ranges::move(CheckIntrinsics(camera), std::back_inserter(findings));
-  }
-  return findings;
-}
-
-namespace {
-
 // An image size that differs from the camera's.
 struct Mismatch {
   Camera camera;
@@ -166,6 +150,18 @@ std::vector<Finding> CheckTurned(size_t turned, size_t all, const ImportOptions&
 }
 
 }  // namespace
+
+std::vector<Finding> CheckCamera(const ImportView& view) {
+  std::vector<Finding> findings;
+  std::vector<Camera> seen;
+  for (const Frame& frame : view.sequence.frames) {
+    const Camera& camera = view.sequence.CameraOf(frame);
+    if (std::ranges::find(seen, camera) != seen.end()) continue;
+    seen.push_back(camera);
+    std::ranges::move(CheckIntrinsics(camera), std::back_inserter(findings));
+  }
+  return findings;
+}
 
 std::vector<Finding> CheckImages(const ImportView& view) {
   const ImageOrientation read_as = view.options.image_orientation;

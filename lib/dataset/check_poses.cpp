@@ -362,23 +362,6 @@ std::vector<Finding> CheckContradiction(const ImportView& view,
            "stamps"}};
 }
 
-}  // namespace
-
-std::vector<Finding> CheckPoses(const ImportView& view) {
-  constexpr size_t kFewestRays = 15;
-  const std::vector<TrackedObject> objects = TrackedObjects(view);
-  auto as_read = MedianRayError(objects, [&](size_t frame) { return PoseAt(view, frame); });
-  if (as_read && as_read->rays < kFewestRays) as_read.reset();
-  std::vector<Finding> findings;
-  if (as_read) findings = CheckReadings(view, objects, *as_read);
-  if (findings.empty() && as_read) findings = CheckFrameNumbers(view, objects, *as_read);
-  if (findings.empty()) findings = CheckBody(view, as_read);
-  if (findings.empty() && as_read) findings = CheckContradiction(view, objects, *as_read);
-  return findings;
-}
-
-namespace {
-
 // Pose pairs of the first segment, as each segment has its own world.
 std::vector<PosePair> Pairs(const ImportView& view) {
   std::vector<PosePair> pairs;
@@ -431,6 +414,19 @@ Advice AdviceOnTrajectory(const std::vector<PosePair>& pairs, double extent_m) {
 }
 
 }  // namespace
+
+std::vector<Finding> CheckPoses(const ImportView& view) {
+  constexpr size_t kFewestRays = 15;
+  const std::vector<TrackedObject> objects = TrackedObjects(view);
+  auto as_read = MedianRayError(objects, [&](size_t frame) { return PoseAt(view, frame); });
+  if (as_read && as_read->rays < kFewestRays) as_read.reset();
+  std::vector<Finding> findings;
+  if (as_read) findings = CheckReadings(view, objects, *as_read);
+  if (findings.empty() && as_read) findings = CheckFrameNumbers(view, objects, *as_read);
+  if (findings.empty()) findings = CheckBody(view, as_read);
+  if (findings.empty() && as_read) findings = CheckContradiction(view, objects, *as_read);
+  return findings;
+}
 
 std::vector<Finding> CheckTruth(const ImportView& view) {
   constexpr size_t kFewest = 3;

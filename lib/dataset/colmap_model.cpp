@@ -11,8 +11,6 @@
 #include <cstring>
 #include <limits>
 #include <map>
-#include <span>
-#include <string_view>
 #include <utility>
 
 #include "base/error.h"

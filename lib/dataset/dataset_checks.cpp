@@ -9,7 +9,6 @@
 #include <iterator>
 #include <map>
 #include <set>
-#include <string>
 
 #include "dataset/gate.h"
 

@@ -7,7 +7,6 @@
 
 #include "artefact/json_file.h"
 #include "base/error.h"
-#include "dataset/json_entry.h"
 #include "dataset/trajectories.h"
 #include "geometry/camera.h"
 

@@ -4,15 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <limits>
 #include <tuple>
-#include <utility>
-#include <vector>
 
 #include "base/text.h"
 #include "dataset/class_names.h"
-#include "geometry/box.h"
 #include "model/occlusion.h"
 
 namespace soslam {

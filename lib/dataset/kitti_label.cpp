@@ -16,7 +16,6 @@
 #include "base/text.h"
 #include "dataset/text_file.h"
 #include "dataset/trajectories.h"
-#include "geometry/camera.h"
 #include "image/read_image.h"
 
 namespace soslam {

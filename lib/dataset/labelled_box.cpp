@@ -6,10 +6,7 @@
 
 #include <array>
 #include <map>
-#include <optional>
-#include <string>
 #include <string_view>
-#include <variant>
 
 #include "artefact/json_file.h"
 #include "base/error.h"

@@ -10,7 +10,6 @@
 #include "artefact/json_file.h"
 #include "base/error.h"
 #include "dataset/json_entry.h"
-#include "dataset/trajectories.h"
 #include "geometry/camera.h"
 
 namespace soslam {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <utility>
-#include <vector>
 
 #include "base/error.h"
 #include "dataset/calibration_file.h"

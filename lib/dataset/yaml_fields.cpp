@@ -9,7 +9,6 @@
 #include <span>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "base/error.h"
 #include "dataset/text_file.h"
@@ -105,14 +104,6 @@ class YamlReader {
   NamedFields fields_;
 };
 
-}  // namespace
-
-NamedFields YamlFields(const std::string& text, const std::string& name) {
-  return YamlReader(name).Read(JoinedLines(text, name, '\n'));
-}
-
-namespace {
-
 class XmlReader {
  public:
   XmlReader(std::string text, std::string place)
@@ -197,6 +188,10 @@ class XmlReader {
 };
 
 }  // namespace
+
+NamedFields YamlFields(const std::string& text, const std::string& name) {
+  return YamlReader(name).Read(JoinedLines(text, name, '\n'));
+}
 
 NamedFields XmlFields(const std::string& text, const std::string& name) {
   return XmlReader(JoinedLines(text, name, ' '), name).Read();

@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <limits>
@@ -17,7 +16,6 @@
 #include "base/paths.h"
 #include "dataset/class_names.h"
 #include "dataset/dataset_files.h"
-#include "dataset/text_file.h"
 
 namespace soslam {
 namespace {
@@ -165,20 +163,6 @@ void ReadSingles(const Rows& rows, bool are_beside_pairs) {
   SetTracks(rows, 0);
 }
 
-}  // namespace
-
-void ReadYoloExtras(std::vector<YoloRow>* rows) {
-  Rows singles, pairs;
-  for (YoloRow& row : *rows) {
-    if (row.extras.size() == 1) singles.push_back(&row);
-    if (row.extras.size() == 2) pairs.push_back(&row);
-  }
-  if (!pairs.empty()) ReadPairs(pairs);
-  if (!singles.empty()) ReadSingles(singles, !pairs.empty());
-}
-
-namespace {
-
 constexpr double kRounding = 1e-3;  // files round to three digits at least
 // Largest overhang of boxes by annotators and detectors, fraction.
 constexpr double kMostBeyond = 0.05;
@@ -259,6 +243,16 @@ LabelledBox LabelledBoxOf(const YoloRow& row, const Box& box,
 }
 
 }  // namespace
+
+void ReadYoloExtras(std::vector<YoloRow>* rows) {
+  Rows singles, pairs;
+  for (YoloRow& row : *rows) {
+    if (row.extras.size() == 1) singles.push_back(&row);
+    if (row.extras.size() == 2) pairs.push_back(&row);
+  }
+  if (!pairs.empty()) ReadPairs(pairs);
+  if (!singles.empty()) ReadSingles(singles, !pairs.empty());
+}
 
 std::vector<LabelledBox> ReadNormalisedYoloBoxes(const YoloTexts& texts,
                                                  const std::vector<std::string>& labels,

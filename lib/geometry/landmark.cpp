@@ -2,12 +2,10 @@
 #include "geometry/landmark.h"
 
 #include <Eigen/Eigenvalues>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "geometry/rigid3.h"
 #include "geometry/surface.h"
 
 namespace soslam {

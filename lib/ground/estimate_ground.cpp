@@ -2,15 +2,12 @@
 #include "ground/estimate_ground.h"
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "base/upper_median.h"
 #include "geometry/angles.h"
 #include "ground/horizontal_planes.h"
-#include "ground/object_heights.h"
-#include "planes/up_prior.h"
 
 namespace soslam {
 

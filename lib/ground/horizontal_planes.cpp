@@ -44,19 +44,6 @@ std::optional<GroundPoint> GroundPointOf(const Sequence& sequence, const MapPoin
   return result.covariance.allFinite() ? std::optional(std::move(result)) : std::nullopt;
 }
 
-}  // namespace
-
-std::vector<GroundPoint> GroundPoints(const Sequence& sequence,
-                                      const std::vector<MapPoint>& points) {
-  std::vector<GroundPoint> result;
-  for (const MapPoint& point : points) {
-    if (auto one = GroundPointOf(sequence, point)) result.push_back(std::move(*one));
-  }
-  return result;
-}
-
-namespace {
-
 // Lengths have the typical distance of the points from the cameras as their unit.
 constexpr double kMaxPointSigma = 0.01;  // of points that are used
 constexpr double kRoughness = 0.0015;    // deviation of surfaces from planes
@@ -353,6 +340,15 @@ HorizontalPlanes WithoutPlanes(const UpPrior& attitude) {
 }
 
 }  // namespace
+
+std::vector<GroundPoint> GroundPoints(const Sequence& sequence,
+                                      const std::vector<MapPoint>& points) {
+  std::vector<GroundPoint> result;
+  for (const MapPoint& point : points) {
+    if (auto one = GroundPointOf(sequence, point)) result.push_back(std::move(*one));
+  }
+  return result;
+}
 
 HorizontalPlanes FindHorizontalPlanes(const std::vector<GroundPoint>& points,
                                       const UpPrior& attitude) {

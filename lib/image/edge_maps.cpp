@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <limits>
 #include <opencv2/imgproc.hpp>
-#include <vector>
 
 #include "base/error.h"
 

@@ -5,12 +5,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <iterator>
 #include <limits>
-#include <map>
 #include <optional>
-#include <string_view>
 #include <utility>
 
 #include "base/error.h"

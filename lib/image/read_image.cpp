@@ -16,7 +16,6 @@
 
 #include "base/error.h"
 #include "base/run_log.h"
-#include "geometry/camera.h"
 #include "image/image_format.h"
 
 namespace soslam {

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <initializer_list>
 
-#include "image/image_format.h"
-
 namespace soslam {
 namespace {
 
@@ -193,13 +191,6 @@ void ClearOrientation(std::span<char> file) {
   (directory->order() == ByteOrder::kBigEndian ? number.back() : number.front()) = 1;
 }
 
-}  // namespace
-
-constexpr ImageFormat kTiffFormat = {
-    "TIFF", &IsTiff, &Header, &Length, "with all of its strips or tiles", &ClearOrientation};
-
-namespace {
-
 // EXIF 2.32, section 4.6.
 constexpr std::uint64_t kExifDirectory = 0x8769;
 constexpr std::uint64_t kFocalLength = 0x920A, kFocalLengthIn35mmFilm = 0xA405;
@@ -237,6 +228,9 @@ std::optional<double> FromSensor(const TiffDirectory& exif, const ImageSize& wri
 }
 
 }  // namespace
+
+constexpr ImageFormat kTiffFormat = {
+    "TIFF", &IsTiff, &Header, &Length, "with all of its strips or tiles", &ClearOrientation};
 
 std::string FocalLengthSegment(double focal_over_diagonal) {
   const auto focal_mm =

@@ -5,13 +5,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <opencv2/core/types.hpp>
 #include <optional>
 
 #include "geometry/angles.h"
 #include "geometry/wireframe.h"
-#include "image/edge_maps.h"
 
 namespace soslam {
 namespace {

@@ -4,8 +4,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <vector>
 
 #include "base/parallel.h"
 #include "geometry/angles.h"

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
-#include <utility>
 
 #include "geometry/triangulation.h"
 #include "model/occlusion.h"

@@ -2,7 +2,6 @@
 #include "initialisation/yaw_prior.h"
 
 #include <cmath>
-#include <cstdlib>
 
 #include "base/parallel.h"
 #include "geometry/angles.h"

@@ -12,7 +12,6 @@
 
 #include "geometry/angles.h"
 #include "initialisation/closed_form.h"
-#include "initialisation/upright.h"
 
 namespace soslam {
 namespace {

@@ -9,7 +9,6 @@
 #include <opencv2/imgproc.hpp>
 #include <set>
 
-#include "inspection/canvas.h"
 #include "inspection/projection.h"
 #include "model/occlusion.h"
 

@@ -2,7 +2,6 @@
 #include "mapping/back_end.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "mapping/back_end_problem.h"
 #include "mapping/covariance.h"

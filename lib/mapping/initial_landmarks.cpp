@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mapping/initial_landmarks.h"
 
-#include <algorithm>
 #include <limits>
 
 #include "base/upper_median.h"

@@ -10,7 +10,6 @@
 #include "constraints/loss.h"
 #include "geometry/angles.h"
 #include "geometry/wireframe.h"
-#include "image/edge_maps.h"
 
 namespace soslam {
 namespace {

@@ -8,7 +8,6 @@
 #include <memory>
 #include <numbers>
 #include <utility>
-#include <vector>
 
 #include "geometry/angles.h"
 #include "geometry/landmark.h"

@@ -12,9 +12,7 @@
 #include "base/parallel.h"
 #include "geometry/angles.h"
 #include "planes/plane_heights.h"
-#include "planes/planes_estimate.h"
 #include "planes/standing_body.h"
-#include "planes/up_prior.h"
 
 namespace soslam {
 namespace {

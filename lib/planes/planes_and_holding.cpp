@@ -8,9 +8,7 @@
 
 #include "geometry/angles.h"
 #include "geometry/landmark.h"
-#include "planes/camera_holding.h"
 #include "planes/estimate_planes.h"
-#include "planes/up_prior.h"
 
 namespace soslam {
 namespace {

@@ -7,7 +7,6 @@
 #include <map>
 
 #include "geometry/angles.h"
-#include "planes/up_prior.h"
 
 namespace soslam {
 

@@ -8,7 +8,6 @@
 #include "geometry/angles.h"
 #include "geometry/landmark.h"
 #include "geometry/rigid3.h"
-#include "planes/up_prior.h"
 
 namespace soslam {
 namespace {

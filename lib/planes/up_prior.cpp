@@ -11,7 +11,6 @@
 #include "constraints/loss.h"
 #include "geometry/angles.h"
 #include "geometry/landmark.h"
-#include "initialisation/multi_view.h"
 
 namespace soslam {
 

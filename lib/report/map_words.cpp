@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "artefact/files.h"
-#include "base/text.h"
 #include "evaluation/statistics.h"
 #include "model/segments.h"
 #include "report/page_parts.h"

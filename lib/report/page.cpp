@@ -8,13 +8,11 @@
 #include <deque>
 #include <map>
 #include <set>
-#include <string>
 
 #include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
 #include "base/error.h"
 #include "report/page_html.h"
-#include "report/page_parts.h"
 #include "report/tables.h"
 
 namespace soslam {

@@ -11,7 +11,6 @@
 
 #include "artefact/files.h"
 #include "base/error.h"
-#include "evaluation/metrics.h"
 #include "geometry/angles.h"
 #include "model/map_points.h"
 #include "report/page_parts.h"

@@ -49,12 +49,6 @@ std::string FirstLineOf(const fs::path& file) {
   return line;
 }
 
-}  // namespace
-
-std::string FailureIn(const fs::path& run_folder) { return FirstLineOf(run_folder / "failed"); }
-
-namespace {
-
 using nlohmann::json;
 
 // Rank in the order of variants; equal for all that are neither the paper's nor ours.
@@ -106,6 +100,8 @@ std::vector<VariantResult> ReadVariants(const fs::path& dataset, DamagedFiles da
 }
 
 }  // namespace
+
+std::string FailureIn(const fs::path& run_folder) { return FirstLineOf(run_folder / "failed"); }
 
 const VariantResult* DatasetResult::Evaluated(const std::string& variant) const {
   const auto found = std::ranges::find_if(variants, [&](const VariantResult& candidate) {

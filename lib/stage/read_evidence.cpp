@@ -12,7 +12,6 @@
 #include "base/paths.h"
 #include "dataset/image_path.h"
 #include "geometry/angles.h"
-#include "image/edge_maps.h"
 #include "planes/scene_axis.h"
 
 namespace soslam {

@@ -15,7 +15,6 @@
 #include "inspection/difference.h"
 #include "report/results_tree.h"
 #include "workflow/pipeline_settings.h"
-#include "workflow/plan.h"
 #include "workflow/verify.h"
 
 namespace soslam {
@@ -27,17 +26,6 @@ std::string Quoted(const std::string& word) {
   for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
   return quoted + "'";
 }
-
-}  // namespace
-
-int RunProgram(const std::vector<std::string>& words, const std::filesystem::path& printed) {
-  std::string command = "exec";  // so that the status is the program's, not the shell's
-  for (const std::string& word : words) command += " " + Quoted(word);
-  const int status = std::system((command + " > " + Quoted(printed.string()) + " 2>&1").c_str());
-  return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
-}
-
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -235,6 +223,13 @@ class Reproduction {
 };
 
 }  // namespace
+
+int RunProgram(const std::vector<std::string>& words, const std::filesystem::path& printed) {
+  std::string command = "exec";  // so that the status is the program's, not the shell's
+  for (const std::string& word : words) command += " " + Quoted(word);
+  const int status = std::system((command + " > " + Quoted(printed.string()) + " 2>&1").c_str());
+  return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+}
 
 std::set<std::string> Reproduce(const DatasetRuns& dataset, const fs::path& executables,
                                 const fs::path& again, int threads,
