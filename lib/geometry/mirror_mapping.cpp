@@ -104,21 +104,14 @@ std::optional<VisibleSurface::Pixel> VisibleSurface::ToPixel(const Point& point,
   return pixel;
 }
 
-double VisibleSurface::CosineAt(const Eigen::Vector3d& point_in_object,
-                                const Eigen::Vector3d& normal) const {
-  return normal.dot((camera_in_object_ - point_in_object).normalized());
-}
-
-double VisibleSurface::ViewingCosine(const Point& point) const {
-  return CosineAt(point.in_object, surface_.Gradient(point.in_object).normalized());
-}
-
 bool VisibleSurface::AreSeen(const Point& point, double min_viewing_cosine) const {
   const Eigen::Vector3d mirror(1, -1, 1);
   const Eigen::Vector3d normal = surface_.Gradient(point.in_object).normalized();
-  return CosineAt(point.in_object, normal) >= min_viewing_cosine &&
-         CosineAt(point.in_object.cwiseProduct(mirror), normal.cwiseProduct(mirror)) >=
-             min_viewing_cosine;
+  const auto is_seen = [&](const Eigen::Vector3d& in_object, const Eigen::Vector3d& outward) {
+    return outward.dot((camera_in_object_ - in_object).normalized()) >= min_viewing_cosine;
+  };
+  return is_seen(point.in_object, normal) &&
+         is_seen(point.in_object.cwiseProduct(mirror), normal.cwiseProduct(mirror));
 }
 
 }  // namespace soslam

@@ -52,15 +52,11 @@ class VisibleSurface {
   // P: the projection of a point to its pixel, visible or not. None behind the camera.
   std::optional<Pixel> ToPixel(const Point& point, bool with_jacobian = false) const;
 
-  // The cosine between the outward normal at a surface point and the direction to the camera; > 0
-  // where the camera sees the point, 0 on the outline.
-  double ViewingCosine(const Point& point) const;
-  // True if those of a surface point and of its mirror image are at least this.
+  // True if the cosine between the outward normal and the direction to the camera is at least this
+  // at a surface point and at its mirror image; it is 0 on the outline.
   bool AreSeen(const Point& point, double min_viewing_cosine) const;
 
  private:
-  // The viewing cosine at a point with this outward unit normal.
-  double CosineAt(const Eigen::Vector3d& point_in_object, const Eigen::Vector3d& normal) const;
   Eigen::Vector3d RayInObject(const Eigen::Vector2d& pixel) const;
   // The derivative of R^T (x - t) for a point x fixed in the camera frame.
   LandmarkJacobian3 FixedPointJacobian(const Eigen::Vector3d& point_in_object) const;
