@@ -87,10 +87,18 @@ void from_json(const json& json, Camera& camera) {
   }
 }
 
+ShapeExponents ShapeExponentsFromJson(const json& json, double absent) {
+  const double horizontal = json.value("shape_exponent", absent);
+  return {horizontal, json.value("vertical_exponent", horizontal)};
+}
+
 json LandmarkToJson(const Landmark& landmark, const std::string& frame) {
   json fields = {{frame + "_from_object", landmark.frame_from_object},
                  {"half_axes", VectorToJson(landmark.half_axes)},
-                 {"shape_exponent", landmark.shape_exponent}};
+                 {"shape_exponent", landmark.shape_exponents.horizontal}};
+  if (landmark.shape_exponents.HasAxis()) {
+    fields["vertical_exponent"] = landmark.shape_exponents.vertical;
+  }
   if (landmark.rests_on != RestingFace::kBottom) {
     fields["rests_on"] = kRestingFaceNames[static_cast<size_t>(landmark.rests_on)];
   }
@@ -99,7 +107,7 @@ json LandmarkToJson(const Landmark& landmark, const std::string& frame) {
 
 Landmark LandmarkFromJson(const json& json, const std::string& frame) {
   return {json.at(frame + "_from_object").get<Rigid3d>(), VectorFromJson(json.at("half_axes")),
-          json.value("shape_exponent", kEllipsoidExponent),
+          ShapeExponentsFromJson(json, kEllipsoidExponent),
           EnumFromName<RestingFace>(kRestingFaceNames,
                                     json.value("rests_on", kRestingFaceNames.front()))};
 }

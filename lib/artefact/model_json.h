@@ -119,10 +119,14 @@ nlohmann::json MatrixToJson(const Eigen::Matrix3d& matrix);
 Eigen::Matrix3d MatrixFromJson(const nlohmann::json& json);
 
 // {"<frame>_from_object": rigid, "half_axes": [a, b, c] in metres, "shape_exponent": 1 to 2,
-// "rests_on": a name of kRestingFaceNames, "bottom" if absent};
-// `frame` is "world" or "camera". Schema version 1.0 had no shape exponent: all were ellipsoids.
+// "vertical_exponent": 1 to 2, the same if absent, "rests_on": a name of kRestingFaceNames,
+// "bottom" if absent}; `frame` is "world" or "camera". Schema version 1.0 had no exponents: all
+// were ellipsoids.
 nlohmann::json LandmarkToJson(const Landmark& landmark, const std::string& frame);
 Landmark LandmarkFromJson(const nlohmann::json& json, const std::string& frame);
+
+// The exponents of such an object or of an entry of a semantic table; `absent` without any.
+ShapeExponents ShapeExponentsFromJson(const nlohmann::json& json, double absent);
 
 // Covariance as nine rows of nine numbers.
 nlohmann::json CovarianceToJson(const Covariance9& covariance);

@@ -23,7 +23,7 @@ ShapePrior Prior(const json& entry) {
   ShapePrior prior = {{entry.at("a_by_c").get<double>(), entry.at("b_by_c").get<double>()},
                       {entry.value("a_by_c_log_sigma", kDefaultLogSigma),
                        entry.value("b_by_c_log_sigma", kDefaultLogSigma)},
-                      entry.value("shape_exponent", kDefaultShapeExponent),
+                      ShapeExponentsFromJson(entry, kDefaultShapeExponent),
                       entry.value("log_correlation", 0.0),
                       {},
                       EnumFromName<Mount>(kMountNames, entry.value("mount", kMountNames.front()))};
@@ -57,9 +57,12 @@ json Entry(const SemanticRow& row) {
                 {"a_by_c_log_sigma", prior.log_sigma.x()},
                 {"b_by_c_log_sigma", prior.log_sigma.y()},
                 {"log_correlation", prior.log_correlation},
-                {"shape_exponent", prior.shape_exponent},
+                {"shape_exponent", prior.shape_exponents.horizontal},
                 {"samples", row.samples},
                 {"source", row.source}};
+  if (prior.shape_exponents.HasAxis()) {
+    entry["vertical_exponent"] = prior.shape_exponents.vertical;
+  }
   if (prior.mount != Mount::kStanding) {
     entry["mount"] = kMountNames[static_cast<size_t>(prior.mount)];
   }

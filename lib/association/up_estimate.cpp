@@ -31,7 +31,7 @@ constexpr double kUnknownHeightLogSigma = 1.0;
 // deviation of 1.
 ShapePrior UnknownShape() {
   ShapePrior prior;
-  prior.shape_exponent = kCuboidExponent;
+  prior.shape_exponents = kCuboidExponent;
   return prior;
 }
 

@@ -11,7 +11,7 @@ LeaningOnPlane::LeaningOnPlane(const Landmark& landmark, const Plane& plane,
   const Eigen::Vector3d normal_in_object = frame_from_object.transpose() * plane.normal;
   // The body is symmetric: it reaches as far down as up.
   const SupportValue support =
-      SupportFunction(landmark.half_axes, landmark.shape_exponent, normal_in_object);
+      SupportFunction(landmark.half_axes, landmark.shape_exponents, normal_in_object);
   const Eigen::Vector3d contact = frame_from_object * support.contact;
   residuals << normal_in_object.head<2>(), plane.SignedDistance(landmark.Centre()) - support.extent;
   d_landmark.setZero();
@@ -35,7 +35,7 @@ bool LeaningOnPlaneResidual::Evaluate(double const* const* blocks, double* resid
   Landmark landmark = UnpackLandmark(blocks[0]);
   if (!landmark.half_axes.allFinite())
     return false;  // the step was too large: the solver shortens it
-  landmark.shape_exponent = shape_exponent_;
+  landmark.shape_exponents = shape_exponents_;
   Plane plane = UnpackPlane(blocks[1], blocks[2]);
   plane.normal *= side_;
   const LeaningOnPlane leaning(landmark, plane, sigmas_);

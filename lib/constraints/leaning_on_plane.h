@@ -31,13 +31,14 @@ struct LeaningOnPlane {
 class LeaningOnPlaneResidual final
     : public ceres::SizedCostFunction<3, kLandmarkSize, kNormalSize, kOffsetSize> {
  public:
-  LeaningOnPlaneResidual(double shape_exponent, const LeaningSigmas& sigmas, double side = 1.0)
-      : shape_exponent_(shape_exponent), sigmas_(sigmas), side_(side) {}
+  LeaningOnPlaneResidual(const ShapeExponents& shape_exponents, const LeaningSigmas& sigmas,
+                         double side = 1.0)
+      : shape_exponents_(shape_exponents), sigmas_(sigmas), side_(side) {}
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
 
  private:
-  double shape_exponent_;
+  ShapeExponents shape_exponents_;
   LeaningSigmas sigmas_;
   double side_;
 };

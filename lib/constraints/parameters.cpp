@@ -37,7 +37,8 @@ Eigen::Matrix<double, 3, 4> RotationVectorJacobian(const double* quaternion_xyzw
   return matrix;
 }
 
-RelativeObservation::RelativeObservation(double const* const* blocks, double shape_exponent) {
+RelativeObservation::RelativeObservation(double const* const* blocks,
+                                         const ShapeExponents& shape_exponents) {
   const Rigid3d world_from_camera = UnpackPose(blocks[0]);
   const Landmark landmark_in_world = UnpackLandmark(blocks[1]);
   const Rigid3d& world_from_object = landmark_in_world.frame_from_object;
@@ -47,7 +48,7 @@ RelativeObservation::RelativeObservation(double const* const* blocks, double sha
       world_from_camera.rotation.conjugate() * world_from_object.rotation,
       camera_from_world_ * offset_in_world_};
   landmark_in_camera_.half_axes = landmark_in_world.half_axes;
-  landmark_in_camera_.shape_exponent = shape_exponent;
+  landmark_in_camera_.shape_exponents = shape_exponents;
 }
 
 }  // namespace soslam

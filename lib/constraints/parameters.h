@@ -76,7 +76,7 @@ void WriteLandmarkJacobian(const double* landmark_block,
 class RelativeObservation {
  public:
   explicit RelativeObservation(double const* const* blocks,
-                               double shape_exponent = kEllipsoidExponent);
+                               const ShapeExponents& shape_exponents = kEllipsoidExponent);
 
   const Landmark& landmark_in_camera() const { return landmark_in_camera_; }
   const Eigen::Matrix3d& camera_from_world() const { return camera_from_world_; }  // rotation

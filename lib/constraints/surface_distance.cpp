@@ -1,33 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "constraints/surface_distance.h"
 
+#include <algorithm>
 #include <cmath>
 
-#include "geometry/surface.h"
+#include "geometry/superquadric_norm.h"
 
 namespace soslam {
 namespace {
 
 constexpr double kNearCentre = 1e-9;
-
-// F of the point u = (x / a, y / b, z / c), with derivatives by u.
-struct Norm {
-  double value;
-  Eigen::Array3d slopes;
-  Eigen::Matrix3d hessian;
-};
-
-Norm QNorm(const Eigen::Array3d& u, double q) {
-  const double largest = u.abs().maxCoeff();
-  const Eigen::Array3d share = u.abs() / largest;  // at most 1: powers stay finite
-  const double value = largest * std::pow(share.pow(q).sum(), 1.0 / q);
-  const Eigen::Array3d relative = u.abs() / value;
-  Norm norm = {value, relative.pow(q - 1.0) * u.sign(), Eigen::Matrix3d::Zero()};
-  norm.hessian = -norm.slopes.matrix() * norm.slopes.matrix().transpose();
-  norm.hessian.diagonal() += relative.pow(q - 2.0).matrix();
-  norm.hessian *= (q - 1.0) / value;
-  return norm;
-}
+// The largest dual exponent of the sections of a body without flat caps. With an infinite one the
+// distance would jump where the sections' sides meet.
+constexpr double kSharpestSection = 40.0;
 
 // In the object's frame.
 struct Distance {
@@ -37,32 +22,49 @@ struct Distance {
   Eigen::Vector3d d_log_half_axes;
 };
 
-Distance CuboidDistance(const Eigen::Vector3d& half_axes, const Eigen::Vector3d& x) {
-  Eigen::Index face = 0;
-  const double value = (x.cwiseAbs() - half_axes).maxCoeff(&face);
-  const Eigen::Vector3d normal = Eigen::Vector3d::Unit(face) * std::copysign(1.0, x[face]);
-  return {value, normal, normal, -half_axes[face] * Eigen::Vector3d::Unit(face)};
+Distance FaceDistance(const Eigen::Vector3d& half_axes, int axis, const Eigen::Vector3d& x) {
+  const Eigen::Vector3d normal = Eigen::Vector3d::Unit(axis) * std::copysign(1.0, x[axis]);
+  return {std::abs(x[axis]) - half_axes[axis], normal, normal,
+          -half_axes[axis] * Eigen::Vector3d::Unit(axis)};
 }
 
-Distance SuperquadricDistance(const Eigen::Vector3d& half_axes, double q,
-                              const Eigen::Vector3d& x) {
+Distance Larger(const Distance& one, const Distance& other) {
+  return one.value >= other.value ? one : other;
+}
+
+Distance FirstOrderDistance(const Eigen::Vector3d& half_axes, const ShapeExponents& dual,
+                            const Eigen::Vector3d& x) {
   const Eigen::Array3d inverse_axes = half_axes.array().inverse();
   const Eigen::Array3d u = x.array() * inverse_axes;
   if (!(u.abs().maxCoeff() > kNearCentre)) {
     return {-half_axes.minCoeff(), Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero(),
             Eigen::Vector3d::Zero()};
   }
-  const Norm norm = QNorm(u, q);
-  const Eigen::Vector3d gradient = (norm.slopes * inverse_axes).matrix();  // dF / dx
+  Eigen::Matrix3d hessian;  // of F by u
+  const auto [norm, slopes] = SuperquadricNorm(u, dual, &hessian);
+  const Eigen::Vector3d gradient = (slopes * inverse_axes).matrix();  // dF / dx
   const double slope = gradient.norm();
-  const double value = (norm.value - 1.0) / slope;
+  const double value = (norm - 1.0) / slope;
   const Eigen::Vector3d d_slope =
-      ((norm.hessian * gradient.cwiseProduct(inverse_axes.matrix())).array() * inverse_axes)
-          .matrix() /
+      ((hessian * gradient.cwiseProduct(inverse_axes.matrix())).array() * inverse_axes).matrix() /
       slope;
   const Eigen::Vector3d d_point = (gradient - value * d_slope) / slope;
   return {value, gradient / slope, d_point,
           -x.cwiseProduct(d_point) + value / (slope * slope) * gradient.cwiseAbs2()};
+}
+
+Distance DistanceInObject(const Landmark& landmark, const Eigen::Vector3d& x) {
+  const Eigen::Vector3d& half_axes = landmark.half_axes;
+  ShapeExponents dual = DualExponents(landmark.shape_exponents);
+  if (!std::isinf(dual.vertical)) {
+    dual.horizontal = std::min(dual.horizontal, kSharpestSection);
+    return FirstOrderDistance(half_axes, dual, x);
+  }
+  const Distance side =
+      std::isinf(dual.horizontal)
+          ? Larger(FaceDistance(half_axes, 0, x), FaceDistance(half_axes, 1, x))
+          : FirstOrderDistance(half_axes, dual, Eigen::Vector3d(x.x(), x.y(), 0.0));
+  return Larger(side, FaceDistance(half_axes, 2, x));
 }
 
 }  // namespace
@@ -72,9 +74,7 @@ double SurfaceDistance(const Landmark& landmark, const Eigen::Vector3d& point,
   const Eigen::Matrix3d rotation = landmark.frame_from_object.rotation.toRotationMatrix();
   const Eigen::Vector3d from_centre = point - landmark.Centre();
   const Eigen::Vector3d x = rotation.transpose() * from_centre;
-  const double q = DualExponent(landmark.shape_exponent);
-  const Distance distance = std::isinf(q) ? CuboidDistance(landmark.half_axes, x)
-                                          : SuperquadricDistance(landmark.half_axes, q, x);
+  const Distance distance = DistanceInObject(landmark, x);
   if (normal != nullptr) *normal = rotation * distance.normal;
   if (jacobian != nullptr) {
     const Eigen::Vector3d d_point = rotation * distance.d_point;

@@ -198,18 +198,18 @@ std::optional<Sample> SymmetryDescriptor::LookUp(const Eigen::Vector2d& pixel) c
 
 SymmetryResidual::SymmetryResidual(Descriptor descriptor,
                                    std::shared_ptr<const SymmetryImage> image, const Camera& camera,
-                                   const Eigen::Vector2d& pixel, double shape_exponent,
-                                   double sigma)
+                                   const Eigen::Vector2d& pixel,
+                                   const ShapeExponents& shape_exponents, double sigma)
     : descriptor_(descriptor),
       image_(std::move(image)),
       camera_(camera),
       pixel_(pixel),
-      shape_exponent_(shape_exponent),
+      shape_exponents_(shape_exponents),
       weight_(1.0 / sigma) {}
 
 bool SymmetryResidual::Evaluate(double const* const* blocks, double* residuals,
                                 double** jacobians) const {
-  const RelativeObservation observation(blocks, shape_exponent_);
+  const RelativeObservation observation(blocks, shape_exponents_);
   const SymmetryDescriptor descriptor(descriptor_, *image_, camera_,
                                       observation.landmark_in_camera());
   const auto pair = descriptor.Evaluate(pixel_, std::nullopt, jacobians != nullptr);

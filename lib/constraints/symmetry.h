@@ -138,8 +138,8 @@ class SymmetryDescriptor {
 class SymmetryResidual final : public ceres::SizedCostFunction<1, kPoseSize, kLandmarkSize> {
  public:
   SymmetryResidual(Descriptor descriptor, std::shared_ptr<const SymmetryImage> image,
-                   const Camera& camera, const Eigen::Vector2d& pixel, double shape_exponent,
-                   double sigma);
+                   const Camera& camera, const Eigen::Vector2d& pixel,
+                   const ShapeExponents& shape_exponents, double sigma);
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
 
@@ -148,7 +148,7 @@ class SymmetryResidual final : public ceres::SizedCostFunction<1, kPoseSize, kLa
   std::shared_ptr<const SymmetryImage> image_;
   Camera camera_;
   Eigen::Vector2d pixel_;
-  double shape_exponent_;
+  ShapeExponents shape_exponents_;
   double weight_;
 };
 

@@ -45,7 +45,7 @@ double Tangency(const BoxEdge& edge, const Landmark& landmark_in_camera, const T
                 double bias_px, LandmarkJacobian1* jacobian) {
   const Eigen::Quaterniond& rotation = landmark_in_camera.frame_from_object.rotation;
   const SupportValue support =
-      SupportFunction(landmark_in_camera.half_axes, landmark_in_camera.shape_exponent,
+      SupportFunction(landmark_in_camera.half_axes, landmark_in_camera.shape_exponents,
                       rotation.conjugate() * edge.plane);
   const double weight = 1.0 / (depth.depth_m * edge.sigma_px);
   const double outside = weight * (edge.plane.dot(landmark_in_camera.Centre()) + support.extent);
@@ -66,7 +66,7 @@ double Tangency(const BoxEdge& edge, const Landmark& landmark_in_camera, const T
 Eigen::Matrix<double, 2, 3> TangencyCurvature(const BoxEdge& edge,
                                               const Landmark& landmark_in_camera, double depth_m,
                                               double tangency) {
-  if (!(tangency > 0.0) || !(landmark_in_camera.shape_exponent < kEllipsoidExponent)) {
+  if (!(tangency > 0.0) || landmark_in_camera.shape_exponents == kEllipsoidExponent) {
     return Eigen::Matrix<double, 2, 3>::Zero();
   }
   const Eigen::Matrix3d camera_from_object =
@@ -77,7 +77,7 @@ Eigen::Matrix<double, 2, 3> TangencyCurvature(const BoxEdge& edge,
   across.col(1) = m.normalized().cross(across.col(0));
   const Eigen::Matrix2d hessian =
       across.transpose() *
-      SupportHessian(landmark_in_camera.half_axes, landmark_in_camera.shape_exponent, m) * across;
+      SupportHessian(landmark_in_camera.half_axes, landmark_in_camera.shape_exponents, m) * across;
   Eigen::Matrix2d root;  // upper Cholesky factor of a matrix that may be singular
   root(0, 0) = std::sqrt(std::max(0.0, hessian(0, 0)));
   root(0, 1) = root(0, 0) > 0.0 ? hessian(0, 1) / root(0, 0) : 0.0;
@@ -113,7 +113,7 @@ double OutlineExcess(const BoxEdge& edge, const Landmark& landmark_in_camera,
 TangencyResidual::TangencyResidual(const BoxEdge& edge, const Landmark& initial_in_camera,
                                    const bool* with_curvature)
     : edge_(edge),
-      shape_exponent_(initial_in_camera.shape_exponent),
+      shape_exponents_(initial_in_camera.shape_exponents),
       depth_ratio_(FindTangentDepth(edge, initial_in_camera).depth_m /
                    initial_in_camera.Centre().z()),
       min_centre_depth_m_(kMinDepthShare * initial_in_camera.Centre().z()),
@@ -121,7 +121,7 @@ TangencyResidual::TangencyResidual(const BoxEdge& edge, const Landmark& initial_
 
 bool TangencyResidual::Evaluate(double const* const* blocks, double* residuals,
                                 double** jacobians) const {
-  const RelativeObservation observation(blocks, shape_exponent_);
+  const RelativeObservation observation(blocks, shape_exponents_);
   const Landmark& landmark = observation.landmark_in_camera();
   if (!landmark.half_axes.allFinite())
     return false;  // the step was too large: the solver shortens it

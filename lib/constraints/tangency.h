@@ -20,7 +20,7 @@ using EdgeBias = std::array<double, 4>;
 // The box without the bias of its edges. Bounds are not measured and stay.
 Box WithoutBias(const Box& box, const std::array<bool, 4>& is_bound, const EdgeBias& bias);
 
-// An edge of a detection's box, for a body of any shape exponent.
+// An edge of a detection's box, for a body of any shape exponents.
 struct BoxEdge {
   // K^T l of the edge's line l, pointing out of the box: plane . x / x_z is the signed distance
   // (px) by which the projection of x (camera frame) lies outside the edge.
@@ -90,7 +90,7 @@ class TangencyResidual final
 
  private:
   BoxEdge edge_;
-  double shape_exponent_;
+  ShapeExponents shape_exponents_;
   double depth_ratio_;  // of the tangent point and the centre
   double min_centre_depth_m_;
   const bool* with_curvature_;

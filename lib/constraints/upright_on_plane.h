@@ -7,8 +7,8 @@
 
 namespace soslam {
 
-// An object of any shape exponent stands upright on its support plane: eq. (5)-(8), with the height
-// of the centre over the plane, which must equal the half axis c, in place of pi^T Q* pi. In
+// An object of any shape exponents stands upright on its support plane: eq. (5)-(8), with the
+// height of the centre over the plane, which must equal the half axis c, in place of pi^T Q* pi. In
 // metres, so that a flat object is constrained as strongly as a high one.
 //
 // Residuals: 3 (cosines of the x and y axis with the normal, height minus c), each divided by its

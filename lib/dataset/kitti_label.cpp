@@ -267,7 +267,7 @@ Landmark LandmarkInCamera(const KittiLabel& label, const KittiCalibration& calib
   landmark.frame_from_object = {
       Eigen::Quaterniond(rotation).normalized(),
       label.bottom_centre + calibration.camera2_from_camera0 + landmark.half_axes.z() * up};
-  landmark.shape_exponent = kCuboidExponent;
+  landmark.shape_exponents = kCuboidExponent;
   return landmark;
 }
 

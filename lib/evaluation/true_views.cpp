@@ -49,7 +49,7 @@ std::vector<std::optional<Box>> Outlines(const Sequence& sequence, const TrueVie
   for (size_t i = 0; i < outlines.size(); ++i) {
     auto landmark = views.InCamera(frame_index, static_cast<int>(i));
     if (!landmark) continue;
-    landmark->shape_exponent = kOutlineShapeExponent;
+    landmark->shape_exponents = kOutlineShapeExponent;
     if (const auto box = OutlineBox(camera, *landmark)) outlines[i] = CutToImage(*box, camera);
   }
   return outlines;

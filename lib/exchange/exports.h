@@ -21,7 +21,7 @@ struct TriangleMesh {
 // The closed surface of a landmark's body (see BodySurface) in its object frame: all vertices are
 // on the surface; the 12 triangles of a box for the cuboid. Its volume is at most 1 % below the
 // body's.
-TriangleMesh BodyMesh(const Eigen::Vector3d& half_axes, double shape_exponent);
+TriangleMesh BodyMesh(const Eigen::Vector3d& half_axes, const ShapeExponents& shape_exponents);
 
 // Red, green and blue in sRGB, 0 to 1.
 using Colour = Eigen::Vector3d;
@@ -56,7 +56,8 @@ std::string CocoDatasetText(const std::vector<World>& worlds, CocoAnnotations an
 // - a node "<label> <id>" per landmark: its pose, its body as a mesh in the object frame, a
 // material
 //   named by the label, and extras: id, label, observations, half_axes [a, b, c] in metres, yaw_deg
-//   about the support normal, shape_exponent, and the covariance of ObjectEstimate if there is one;
+//   about the support normal, shape_exponents, and the covariance of ObjectEstimate if there is
+//   one;
 // - a node "trajectory": the camera centres as a line strip, if there are at least two frames.
 // `colours` must have all labels of the world.
 // JSON with the numbers as a base64 data URI (.gltf):

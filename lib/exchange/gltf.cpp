@@ -44,7 +44,8 @@ json ExtrasOf(const WorldObject& object) {
                  {"observations", object.estimate.observations},
                  {"half_axes", VectorToJson(landmark.half_axes)},
                  {"yaw_deg", YawOf(object) * kDegPerRad},
-                 {"shape_exponent", landmark.shape_exponent}};
+                 {"shape_exponent", landmark.shape_exponents.horizontal},
+                 {"vertical_exponent", landmark.shape_exponents.vertical}};
   if (landmark.rests_on != RestingFace::kBottom) {
     extras["rests_on"] = kRestingFaceNames[static_cast<size_t>(landmark.rests_on)];
   }
@@ -148,7 +149,7 @@ class GltfBuilder {
 
   void AddLandmark(const WorldObject& object) {
     const Landmark& landmark = *object.estimate.landmark_in_world;
-    const TriangleMesh mesh = BodyMesh(landmark.half_axes, landmark.shape_exponent);
+    const TriangleMesh mesh = BodyMesh(landmark.half_axes, landmark.shape_exponents);
     const json primitive = {{"attributes", {{"POSITION", AddPositions(mesh.vertices)}}},
                             {"indices", AddIndices(mesh)},
                             {"material", MaterialOf(object.label)}};

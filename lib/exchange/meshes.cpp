@@ -6,54 +6,59 @@
 #include <numbers>
 
 #include "exchange/exports.h"
-#include "geometry/surface.h"
+#include "geometry/superquadric_norm.h"
 
 namespace soslam {
 namespace {
 
 constexpr int kCellsAcrossFace = 16;
 
-// A grid on the surface of the cube |x_i| <= 1, projected along rays from the centre to the body.
+// A grid on the surface of the cube |x_i| <= 1, moved onto the body: first in the horizontal
+// section, then between the axis and the section's rim.
 class SurfaceGrid {
  public:
-  // A node (i, j, k), each from 0 to cells(); at least one of them is at an end.
+  // A node (i, j, k), each from 0 to Cells(axis); at least one of them is at an end.
   using Node = std::array<int, 3>;
 
-  SurfaceGrid(const Eigen::Vector3d& half_axes, double shape_exponent)
-      : half_axes_(half_axes),
-        is_cuboid_(BodySurface(half_axes, shape_exponent).IsCuboid()),
-        q_(shape_exponent / (shape_exponent - 1.0)) {
-    const int cells = is_cuboid_ ? 1 : kCellsAcrossFace;
-    // Equally spaced angles of superquadrics, which are dense where the surface is curved (Barr,
-    // "Superquadrics and angle-preserving transformations", 1981): x / z = tan(angle)^(2 / q).
-    for (int i = 0; i <= cells; ++i) {
-      const double tangent = std::tan((2.0 * i / cells - 1.0) * std::numbers::pi / 4.0);
-      lines_.push_back(std::copysign(std::pow(std::abs(tangent), 2.0 / q_), tangent));
-    }
+  SurfaceGrid(const Eigen::Vector3d& half_axes, const ShapeExponents& exponents)
+      : half_axes_(half_axes), dual_(DualExponents(exponents)) {
+    const double round = std::isinf(dual_.horizontal) ? dual_.vertical : dual_.horizontal;
+    for (const size_t axis : {0, 1, 2}) lines_[axis] = LinesFor(axis < 2 ? round : dual_.vertical);
   }
 
-  int cells() const { return static_cast<int>(lines_.size()) - 1; }
+  int Cells(size_t axis) const { return static_cast<int>(lines_[axis].size()) - 1; }
 
   Eigen::Vector3d Point(const Node& node) const {
-    const Eigen::Vector3d on_cube(Line(node[0]), Line(node[1]), Line(node[2]));
-    const Eigen::Array3d size = on_cube.array().abs();
-    const double norm = is_cuboid_ ? size.maxCoeff() : std::pow(size.pow(q_).sum(), 1.0 / q_);
-    return half_axes_.cwiseProduct(on_cube / norm);
+    const Eigen::Array3d on_cube(lines_[0][node[0]], lines_[1][node[1]], lines_[2][node[2]]);
+    const double rim = on_cube.head<2>().abs().maxCoeff();
+    Eigen::Array3d in_section(on_cube.x(), on_cube.y(), 0.0);
+    if (rim > 0.0) in_section *= rim / SuperquadricNorm(in_section, dual_).value;
+    const Eigen::Array3d point(in_section.x(), in_section.y(), on_cube.z());
+    return half_axes_.cwiseProduct((point / SuperquadricNorm(point, dual_).value).matrix());
   }
 
  private:
-  double Line(int i) const { return lines_[i]; }
+  // Equally spaced angles of superquadrics, which are dense where the surface is curved (Barr,
+  // "Superquadrics and angle-preserving transformations", 1981): x / z = tan(angle)^(2 / q).
+  static std::vector<double> LinesFor(double q) {
+    if (std::isinf(q)) return {-1.0, 1.0};
+    std::vector<double> lines;
+    for (int i = 0; i <= kCellsAcrossFace; ++i) {
+      const double tangent = std::tan((2.0 * i / kCellsAcrossFace - 1.0) * std::numbers::pi / 4.0);
+      lines.push_back(std::copysign(std::pow(std::abs(tangent), 2.0 / q), tangent));
+    }
+    return lines;
+  }
 
   Eigen::Vector3d half_axes_;
-  bool is_cuboid_;
-  double q_;
-  std::vector<double> lines_;
+  ShapeExponents dual_;
+  std::array<std::vector<double>, 3> lines_;
 };
 
 }  // namespace
 
-TriangleMesh BodyMesh(const Eigen::Vector3d& half_axes, double shape_exponent) {
-  const SurfaceGrid grid(half_axes, shape_exponent);
+TriangleMesh BodyMesh(const Eigen::Vector3d& half_axes, const ShapeExponents& shape_exponents) {
+  const SurfaceGrid grid(half_axes, shape_exponents);
   TriangleMesh mesh;
   std::map<SurfaceGrid::Node, std::uint32_t> vertices;
   const auto vertex = [&](const SurfaceGrid::Node& node) {
@@ -77,9 +82,9 @@ TriangleMesh BodyMesh(const Eigen::Vector3d& half_axes, double shape_exponent) {
     mesh.triangles.push_back({quad[0], quad[2], quad[3]});
   };
   for (size_t axis = 0; axis < 3; ++axis) {
-    for (const int side : {0, grid.cells()}) {
-      for (int i = 0; i < grid.cells(); ++i) {
-        for (int j = 0; j < grid.cells(); ++j) add_cell(axis, side, i, j);
+    for (const int side : {0, grid.Cells(axis)}) {
+      for (int i = 0; i < grid.Cells((axis + 1) % 3); ++i) {
+        for (int j = 0; j < grid.Cells((axis + 2) % 3); ++j) add_cell(axis, side, i, j);
       }
     }
   }
@@ -127,7 +132,7 @@ std::string PlyText(const World& world, const LabelColours& colours) {
   for (const WorldObject& object : world.objects) {
     if (!object.estimate.landmark_in_world) continue;
     const Landmark& landmark = *object.estimate.landmark_in_world;
-    const TriangleMesh mesh = BodyMesh(landmark.half_axes, landmark.shape_exponent);
+    const TriangleMesh mesh = BodyMesh(landmark.half_axes, landmark.shape_exponents);
     const Eigen::Array3i rgb = (colours.at(object.label).array() * 255.0).round().cast<int>();
     for (const Eigen::Vector3d& vertex : mesh.vertices) {
       vertices += fmt::format("{} {}\n", fmt::join(landmark.frame_from_object * vertex, " "),

@@ -15,11 +15,11 @@ namespace {
 
 constexpr const char* kHeader =
     "id,label,segment,observations,centre_x,centre_y,centre_z,qx,qy,qz,qw,"
-    "half_axis_a,half_axis_b,half_axis_c,yaw_deg,shape_exponent,"
+    "half_axis_a,half_axis_b,half_axis_c,yaw_deg,shape_exponent,vertical_exponent,"
     "sigma_centre_x,sigma_centre_y,sigma_centre_z,"
     "sigma_half_axis_a,sigma_half_axis_b,sigma_half_axis_c,sigma_yaw_deg,"
     "failure,fate,true_object,iou,reason";
-constexpr size_t kFailureColumn = 23;
+constexpr size_t kFailureColumn = 24;
 constexpr size_t kColumns = kFailureColumn + 5;
 
 template <typename Numbers>
@@ -32,7 +32,9 @@ void AppendLandmark(const WorldObject& object, std::vector<std::string>* row) {
   Append(landmark.Centre(), row);
   Append(landmark.frame_from_object.rotation.coeffs(), row);
   Append(landmark.half_axes, row);
-  Append(std::array{YawOf(object) * kDegPerRad, landmark.shape_exponent}, row);
+  Append(std::array{YawOf(object) * kDegPerRad, landmark.shape_exponents.horizontal,
+                    landmark.shape_exponents.vertical},
+         row);
   if (!object.estimate.covariance) return;
   const Covariance9& covariance = *object.estimate.covariance;
   const Eigen::Matrix<double, 9, 1> sigmas = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();

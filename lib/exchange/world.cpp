@@ -89,7 +89,7 @@ std::vector<World> WorldsOfTruth(const Sequence& sequence) {
       continue;
     }
     exported.estimate.landmark_in_world = truth;
-    exported.estimate.landmark_in_world->shape_exponent = kCuboidExponent;
+    exported.estimate.landmark_in_world->shape_exponents = kCuboidExponent;
   }
   return worlds;
 }

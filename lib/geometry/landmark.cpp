@@ -86,7 +86,7 @@ std::optional<DualQuadricLandmark> LandmarkFromDualQuadric(const Eigen::Matrix4d
 
 SupportPoint FindSupportPoint(const Landmark& landmark, const Eigen::Vector3d& direction) {
   const Eigen::Quaterniond& rotation = landmark.frame_from_object.rotation;
-  const SupportValue support = SupportFunction(landmark.half_axes, landmark.shape_exponent,
+  const SupportValue support = SupportFunction(landmark.half_axes, landmark.shape_exponents,
                                                rotation.conjugate() * direction);
   return {landmark.frame_from_object * support.contact,
           direction.dot(landmark.Centre()) + support.extent};
@@ -156,7 +156,7 @@ double OutlineEdgeRms(const Camera& camera, const Landmark& landmark_in_camera, 
 std::optional<double> NearestIntersection(const Landmark& landmark, const Eigen::Vector3d& origin,
                                           const Eigen::Vector3d& direction) {
   const Eigen::Quaterniond object_from_frame = landmark.frame_from_object.rotation.conjugate();
-  return BodySurface(landmark.half_axes, landmark.shape_exponent)
+  return BodySurface(landmark.half_axes, landmark.shape_exponents)
       .Entry(object_from_frame * (origin - landmark.Centre()), object_from_frame * direction);
 }
 

@@ -34,14 +34,14 @@ constexpr Eigen::Index OwnHeightAxis(RestingFace face) {
 // Half axes along the object frame's x, y and z of half axes along the object's own axes.
 Eigen::Vector3d HalfAxesOnFace(const Eigen::Vector3d& own_half_axes, RestingFace face);
 
-// An object as a convex superquadric, in the paper an ellipsoid: 9 degrees of freedom and a shape
-// exponent. Variables name their frame: landmark_in_world, landmark_in_camera. Object frame: origin
-// at the centre, z away from the support plane, x the front, so that the mirror plane of a
+// An object as a convex superquadric, in the paper an ellipsoid: 9 degrees of freedom and two shape
+// exponents. Variables name their frame: landmark_in_world, landmark_in_camera. Object frame:
+// origin at the centre, z away from the support plane, x the front, so that the mirror plane of a
 // symmetric object that stands is its xz plane. See RestingFace for objects that lie.
 struct Landmark {
   Rigid3d frame_from_object;
   Eigen::Vector3d half_axes = Eigen::Vector3d::Ones();  // (a, b, c) along x, y, z, metres, > 0
-  double shape_exponent = kEllipsoidExponent;           // p of SupportFunction, in [1, 2]
+  ShapeExponents shape_exponents = kEllipsoidExponent;  // of SupportFunction, in [1, 2]
   RestingFace rests_on = RestingFace::kBottom;
 
   const Eigen::Vector3d& Centre() const { return frame_from_object.translation; }
@@ -57,7 +57,7 @@ Landmark Transform(const Rigid3d& target_from_source, const Landmark& landmark_i
 // object; it rests on its bottom there.
 Landmark InOwnAxes(const Landmark& landmark);
 
-// Dual quadric of the ellipsoid with the landmark's half axes, whatever its shape exponent: Q* = Z
+// Dual quadric of the ellipsoid with the landmark's half axes, whatever its exponents: Q* = Z
 // diag(a^2, b^2, c^2, -1) Z^T, Z = frame_from_object; pi^T Q* pi = 0 iff the plane pi is tangent.
 Eigen::Matrix4d DualQuadric(const Landmark& landmark);
 

@@ -11,7 +11,7 @@ VisibleSurface::VisibleSurface(const Camera& camera, const Landmark& landmark_in
           landmark_in_camera.frame_from_object.rotation.toRotationMatrix()),
       centre_in_camera_(landmark_in_camera.Centre()),
       camera_in_object_(-(camera_from_object_rotation_.transpose() * centre_in_camera_)),
-      surface_(landmark_in_camera.half_axes, landmark_in_camera.shape_exponent),
+      surface_(landmark_in_camera.half_axes, landmark_in_camera.shape_exponents),
       size_(MeanHalfAxis(landmark_in_camera)) {}
 
 Eigen::Vector3d VisibleSurface::RayInObject(const Eigen::Vector2d& pixel) const {
@@ -58,13 +58,13 @@ std::optional<VisibleSurface::Point> VisibleSurface::FromPixelOnTangentPlane(
   point.in_object = camera_in_object_ + depth * ray;
   if (with_jacobian) {
     // The plane normal . x = 1 moves with the contact point and the half axes.
-    const Eigen::Vector3d d_contact =
-        surface_.GradientDerivatives(contact.in_object).cwiseProduct(point.in_object);
+    const Eigen::Vector3d d_contact = surface_.Hessian(contact.in_object) * point.in_object;
     point.jacobian = FixedPointJacobian(point.in_object);
     LandmarkJacobian1 plane =
         normal.transpose() * point.jacobian + d_contact.transpose() * contact.jacobian;
     plane.tail<3>() -=
-        surface_.GradientByLogHalfAxes() * normal.cwiseProduct(point.in_object).transpose();
+        (normal.cwiseProduct(point.in_object) + d_contact.cwiseProduct(contact.in_object))
+            .transpose();
     point.jacobian -= ray * (plane / slope);
   }
   return point;

@@ -6,13 +6,9 @@
 #include <limits>
 #include <utility>
 
-#include "geometry/support_function.h"
-
 namespace soslam {
 namespace {
 
-// Superquadrics with a larger q, which have sharper edges, are treated as cuboids.
-constexpr double kLargestQ = 200.0;
 constexpr int kMaxNewtonSteps = 30;
 // Newton's method converges quadratically: after a step of this size the error is near rounding.
 constexpr double kNewtonTolerance = 1e-8;
@@ -37,53 +33,8 @@ std::optional<std::pair<double, double>> CuboidInterval(const Eigen::Vector3d& o
   return std::pair(entry, exit);
 }
 
-// |x|^exponent, exponent >= 0. For most shape exponents (1.1, 1.2, 1.4, 1.5) 2 q is an integer:
-// products and a root then take a fraction of the time of logarithms.
-double AbsolutePower(double x, double exponent) {
-  constexpr double kRounding = 1e-12;  // of q = p / (p - 1)
-  const double halves = std::round(2.0 * exponent);
-  if (std::abs(2.0 * exponent - halves) > kRounding) return std::pow(std::abs(x), exponent);
-  const int whole_halves = static_cast<int>(halves);
-  double power = whole_halves % 2 == 1 ? std::sqrt(std::abs(x)) : 1.0;
-  double squared = std::abs(x);
-  for (int whole = whole_halves / 2; whole > 0; whole /= 2) {
-    if (whole % 2 == 1) power *= squared;
-    squared *= squared;
-  }
-  return power;
-}
-
-// Newton's step to F = 1 from F^q = 1 + u: q ((1 + u) - (1 + u)^(1 - 1 / q)) over the slope of F^q,
-// as a series to the third power of u, which is not larger. F is closer to linear than F^q and
-// convex as well, so that steps do not pass the root.
-double StepToSurface(double excess, double slope, double q) {
-  const double second = 0.5 * (1.0 - 1.0 / q);
-  const double third = second / 3.0 * (1.0 + 1.0 / q);
-  return excess * (1.0 + excess * (second - excess * third)) / -slope;
-}
-
-}  // namespace
-
-double DualExponent(double shape_exponent) {
-  const double q = shape_exponent / (shape_exponent - 1.0);
-  return shape_exponent > 1.0 && q <= kLargestQ ? q : std::numeric_limits<double>::infinity();
-}
-
-BodySurface::BodySurface(const Eigen::Vector3d& half_axes, double shape_exponent)
-    : inverse_axes_(half_axes.cwiseInverse()),
-      q_(DualExponent(shape_exponent)),
-      is_cuboid_(std::isinf(q_)) {}
-
-std::optional<double> BodySurface::Entry(const Eigen::Vector3d& origin,
-                                         const Eigen::Vector3d& direction) const {
-  // Coordinates in which all half axes are 1.
-  const Eigen::Vector3d o = origin.cwiseProduct(inverse_axes_);
-  const Eigen::Vector3d d = direction.cwiseProduct(inverse_axes_);
-  return q_ == kEllipsoidExponent ? QuadricEntry(o, d) : SuperquadricEntry(o, d);
-}
-
-std::optional<double> BodySurface::QuadricEntry(const Eigen::Vector3d& origin,
-                                                const Eigen::Vector3d& direction) const {
+// Depth at which the ray enters the unit sphere.
+std::optional<double> SphereEntry(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
   const double a = direction.squaredNorm();
   const double half_b = origin.dot(direction);
   const double c = origin.squaredNorm() - 1.0;
@@ -93,50 +44,97 @@ std::optional<double> BodySurface::QuadricEntry(const Eigen::Vector3d& origin,
   return c / (-half_b + std::sqrt(discriminant));
 }
 
+// F^q - 1 in the unit cuboid, with a q for which it takes few powers, and its slope along a
+// direction. Flat faces, which are the cuboid's own, are left out: F is that of what is between.
+struct PowerOfF {
+  double excess;
+  double slope;
+  double q;
+};
+
+PowerOfF PowerAlong(const Eigen::Vector3d& x, const Eigen::Vector3d& direction,
+                    const ShapeExponents& dual) {
+  const bool has_caps = std::isinf(dual.vertical);
+  double section = 0.0;  // the norm of (x, y), to the power h
+  double section_slope = 0.0;
+  double h = dual.horizontal;
+  if (std::isinf(h)) {
+    if (has_caps) return {0.0, 0.0, 1.0};
+    const int side = std::abs(x.x()) >= std::abs(x.y()) ? 0 : 1;
+    h = 1.0;
+    section = std::abs(x[side]);
+    section_slope = x[side] < 0.0 ? -direction[side] : direction[side];
+  } else {
+    for (const int i : {0, 1}) {
+      const double power = AbsolutePower(x[i], h - 2.0);
+      section += x[i] * x[i] * power;
+      section_slope += h * x[i] * power * direction[i];
+    }
+  }
+  if (has_caps) return {section - 1.0, section_slope, h};
+  const double v = dual.vertical;
+  const double ratio = v / h;
+  const double outer = section > 0.0 ? AbsolutePower(section, ratio - 1.0) : 0.0;
+  const double along_axis = AbsolutePower(x.z(), v - 2.0);
+  return {section * outer + x.z() * x.z() * along_axis - 1.0,
+          ratio * outer * section_slope + v * x.z() * along_axis * direction.z(), v};
+}
+
+// Newton's step to F = 1 from F^q = 1 + u: q ((1 + u) - (1 + u)^(1 - 1 / q)) over the slope of F^q;
+// for u up to 2 as a series to its third power, which is not larger. F is closer to linear than F^q
+// and convex as well, so that steps do not pass the root.
+double StepToSurface(double excess, double slope, double q) {
+  if (excess > 2.0) return q * (1.0 + excess - std::pow(1.0 + excess, 1.0 - 1.0 / q)) / -slope;
+  const double second = 0.5 * (1.0 - 1.0 / q);
+  const double third = second / 3.0 * (1.0 + 1.0 / q);
+  return excess * (1.0 + excess * (second - excess * third)) / -slope;
+}
+
+}  // namespace
+
+BodySurface::BodySurface(const Eigen::Vector3d& half_axes, const ShapeExponents& exponents)
+    : inverse_axes_(half_axes.cwiseInverse()), dual_(DualExponents(exponents)) {}
+
+std::optional<double> BodySurface::Entry(const Eigen::Vector3d& origin,
+                                         const Eigen::Vector3d& direction) const {
+  // Coordinates in which all half axes are 1.
+  const Eigen::Vector3d o = origin.cwiseProduct(inverse_axes_);
+  const Eigen::Vector3d d = direction.cwiseProduct(inverse_axes_);
+  return dual_ == kEllipsoidExponent ? SphereEntry(o, d) : SuperquadricEntry(o, d);
+}
+
 std::optional<double> BodySurface::SuperquadricEntry(const Eigen::Vector3d& origin,
                                                      const Eigen::Vector3d& direction) const {
   const auto interval = CuboidInterval(origin, direction);
   if (!interval) return std::nullopt;
-  if (is_cuboid_) return interval->first > 0.0 ? std::optional(interval->first) : std::nullopt;
   // F is convex along the ray and at least 1 where it enters the cuboid: Newton's steps from there
   // approach the root without passing it. If the origin is inside the cuboid but outside the body,
   // they start at the origin.
   double depth = std::max(interval->first, 0.0);
   for (int i = 0; i < kMaxNewtonSteps; ++i) {
-    double excess = -1.0;  // F^q - 1, at most 2
-    double slope = 0.0;    // of F^q by the depth
-    for (int k = 0; k < 3; ++k) {
-      const double x = origin[k] + depth * direction[k];
-      const double power = AbsolutePower(x, q_ - 2.0);
-      excess += x * x * power;
-      slope += q_ * x * power * direction[k];
+    const PowerOfF power = PowerAlong(origin + depth * direction, direction, dual_);
+    if (i == 0 && !(power.excess > 0.0)) {  // a flat face, or the origin is inside
+      return depth > 0.0 ? std::optional(depth) : std::nullopt;
     }
-    if (depth == 0.0 && !(excess > 0.0)) return std::nullopt;  // the origin is inside
-    if (!(slope < 0.0)) return std::nullopt;
-    const double step = StepToSurface(excess, slope, q_);
+    if (!(power.slope < 0.0)) return std::nullopt;
+    const double step = StepToSurface(power.excess, power.slope, power.q);
     depth += step;
     if (!(depth < interval->second)) return std::nullopt;
-    if (q_ * step < kNewtonTolerance * depth) return depth;  // F^q changes q times as fast as F
+    // F^q changes q times as fast as F.
+    if (power.q * step < kNewtonTolerance * depth) return depth;
   }
   return std::nullopt;  // the ray grazes the surface
 }
 
 Eigen::Vector3d BodySurface::Gradient(const Eigen::Vector3d& point) const {
-  const Eigen::Vector3d x = point.cwiseProduct(inverse_axes_);
-  if (q_ == kEllipsoidExponent) return x.cwiseProduct(inverse_axes_);
-  if (is_cuboid_) {
-    Eigen::Index face = 0;
-    x.cwiseAbs().maxCoeff(&face);
-    return Eigen::Vector3d::Unit(face) * std::copysign(inverse_axes_[face], x[face]);
-  }
-  return x.unaryExpr([this](double c) { return AbsolutePower(c, q_ - 2.0) * c; })
-      .cwiseProduct(inverse_axes_);
+  const Eigen::Array3d slopes = SuperquadricNorm(point.cwiseProduct(inverse_axes_), dual_).slopes;
+  return slopes.matrix().cwiseProduct(inverse_axes_);
 }
 
-Eigen::Vector3d BodySurface::GradientDerivatives(const Eigen::Vector3d& point) const {
-  if (is_cuboid_) return Eigen::Vector3d::Zero();
-  const Eigen::Array3d x = (point.array() * inverse_axes_.array()).abs();
-  return ((q_ - 1.0) * x.pow(q_ - 2.0) * inverse_axes_.array().square()).matrix();
+Eigen::Matrix3d BodySurface::Hessian(const Eigen::Vector3d& point) const {
+  Eigen::Matrix3d by_u;
+  SuperquadricNorm(point.cwiseProduct(inverse_axes_), dual_, &by_u);
+  return inverse_axes_.asDiagonal() * by_u * inverse_axes_.asDiagonal();
 }
 
 }  // namespace soslam

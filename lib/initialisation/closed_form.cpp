@@ -18,7 +18,7 @@ constexpr double kDepthTolerance = 1e-10;
 
 ClosedForm::ClosedForm(const UprightObservation& observation)
     : proportions_(observation.prior.ratio.x(), observation.prior.ratio.y(), 1.0),
-      shape_exponent_(observation.prior.shape_exponent) {
+      shape_exponents_(observation.prior.shape_exponents) {
   const UprightGround ground(observation.plane_in_camera);
   Eigen::Matrix3d camera_from_ground;
   camera_from_ground << ground.x, ground.y, ground.normal;
@@ -45,12 +45,12 @@ ClosedForm::HalfHeightCoefficients ClosedForm::CoefficientsAt(double yaw) const 
   HalfHeightCoefficients coefficients;
   for (int edge = 0; edge < 4; ++edge) {
     const Eigen::Vector3d normal = object_from_ground * normals_.row(edge).transpose();
-    const SupportValue support = SupportFunction(proportions_, shape_exponent_, normal);
+    const SupportValue support = SupportFunction(proportions_, shape_exponents_, normal);
     coefficients.residuals[edge] = normal.z() + support.extent;
     coefficients.tangent_depths[edge] = axis.z() + axis.dot(support.contact);
   }
   coefficients.nearest_depth =
-      axis.z() - SupportFunction(proportions_, shape_exponent_, axis).extent;
+      axis.z() - SupportFunction(proportions_, shape_exponents_, axis).extent;
   return coefficients;
 }
 

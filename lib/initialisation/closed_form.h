@@ -55,7 +55,7 @@ class ClosedForm {
   Eigen::Vector3d optical_axis_;  // of the camera, in the ground frame
   double origin_depth_;           // depth of the ground's origin, m
   Eigen::Vector3d proportions_;   // (a, b, c) / c
-  double shape_exponent_;
+  ShapeExponents shape_exponents_;
   Eigen::Matrix<double, 4, 2> without_foot_;  // N, orthonormal
   Eigen::Matrix<double, 2, 4> foot_by_b_;     // pseudo-inverse of F
 };

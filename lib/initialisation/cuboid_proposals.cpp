@@ -93,7 +93,7 @@ std::optional<Landmark> CuboidAt(const CuboidView& view, double yaw, double corn
   if (!solution.allFinite() || !(solution.tail<3>().minCoeff() > 0.0)) return std::nullopt;
 
   Landmark cuboid;
-  cuboid.shape_exponent = kCuboidExponent;
+  cuboid.shape_exponents = kCuboidExponent;
   cuboid.half_axes = {solution[2], solution[3], 0.5 * solution[4]};
   cuboid.frame_from_object = {
       rotation, axes * Eigen::Vector3d(solution[0], solution[1], cuboid.half_axes.z()) -

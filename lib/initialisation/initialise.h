@@ -19,7 +19,7 @@ LandmarkEstimates InitialiseSingleFrame(const Sequence& sequence,
                                         const std::vector<std::optional<Eigen::Vector2d>>& ratios,
                                         const InitialiseOptions& options, int threads);
 
-// Upright landmarks of any shape exponent for all detections: all local optima of the sweep over
+// Upright landmarks of any shape exponents for all detections: all local optima of the sweep over
 // yaw, lowest cost first. `yaw_priors`: one per detection, or empty. `points`: none if null.
 // Failures: no_ratio_for_label, fewer_than_three_measured_edges, no_solution.
 LandmarkEstimates InitialiseUpright(const Sequence& sequence,

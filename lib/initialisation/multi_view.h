@@ -42,7 +42,9 @@ struct MultiViewObservation {
   double huber_delta = 1.0;
 
   RestingFace RestsOn() const { return prior ? prior->rests_on : RestingFace::kBottom; }
-  double ShapeExponent() const { return prior ? prior->shape_exponent : kCuboidExponent; }
+  ShapeExponents ShapeExponent() const {
+    return prior ? prior->shape_exponents : ShapeExponents(kCuboidExponent);
+  }
 };
 // Observation of one object from its detections (indices into Sequence::detections, at least one),
 // with the frames' estimated poses, on the given plane or else that of the object. View weights are

@@ -70,7 +70,7 @@ struct InitialiseOptions {
                  "quarter turns), or with the front facing the camera most");
     variances.Describe(visit);
     upright.Describe(visit);  // the next two options belong to its group
-    visit.Choice("shape", &shape, kShapeSourceNames, "where the shape exponent comes from");
+    visit.Choice("shape", &shape, kShapeSourceNames, "where the shape exponents come from");
     visit.Real("view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
                "multi_view, and yaw_prior = motion: boxes from viewpoints closer than this angle "
                "at the object share the error of the label's shape, and together have the weight "

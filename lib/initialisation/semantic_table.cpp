@@ -46,6 +46,9 @@ ShapePrior OnFace(const ShapePrior& standing, RestingFace face) {
   ShapePrior turned = standing;
   turned.rests_on = face;
   if (face == RestingFace::kBottom) return turned;
+  // The axis of the sections lies down with the body: one exponent between the two stands for both.
+  turned.shape_exponents =
+      0.5 * (standing.shape_exponents.horizontal + standing.shape_exponents.vertical);
   // Logarithms of half axes along the object frame by those of (a / c, b / c) and of c.
   Eigen::Matrix<double, 3, 2> by_ratios;
   by_ratios << Eigen::Matrix2d::Identity(), Eigen::RowVector2d::Zero();
@@ -105,11 +108,12 @@ ShapePrior MomentsOfMixture(const std::vector<WeightedPrior>& priors) {
   ShapePrior mixture = priors.front().prior;
   if (priors.size() == 1) return mixture;
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  mixture.shape_exponent = 0.0;
+  mixture.shape_exponents = 0.0;
   mixture.edge_bias = {};
   for (const auto& [weight, prior] : priors) {
     mean += weight * prior.ratio.array().log().matrix();
-    mixture.shape_exponent += weight * prior.shape_exponent;
+    mixture.shape_exponents.horizontal += weight * prior.shape_exponents.horizontal;
+    mixture.shape_exponents.vertical += weight * prior.shape_exponents.vertical;
     for (size_t i = 0; i < mixture.edge_bias.size(); ++i) {
       mixture.edge_bias[i] += weight * prior.edge_bias[i];
     }
@@ -122,7 +126,10 @@ ShapePrior MomentsOfMixture(const std::vector<WeightedPrior>& priors) {
   mixture.ratio = mean.array().exp();
   mixture.log_sigma = covariance.diagonal().cwiseSqrt();
   mixture.log_correlation = covariance(0, 1) / mixture.log_sigma.prod();
-  mixture.shape_exponent = std::clamp(mixture.shape_exponent, kCuboidExponent, kEllipsoidExponent);
+  for (double* exponent :
+       {&mixture.shape_exponents.horizontal, &mixture.shape_exponents.vertical}) {
+    *exponent = std::clamp(*exponent, kCuboidExponent, kEllipsoidExponent);  // but for rounding
+  }
   mixture.height_m = HeightOfMixture(priors);
   return mixture;
 }
@@ -183,7 +190,7 @@ std::vector<std::optional<ShapePrior>> ObjectPriors(const Sequence& sequence,
   for (const Object& object : sequence.objects) {
     priors.push_back(ObjectPrior(object, table, prior));
     if (!priors.back() || shape == ShapeSource::kTable) continue;
-    priors.back()->shape_exponent =
+    priors.back()->shape_exponents =
         shape == ShapeSource::kCuboid ? kCuboidExponent : kEllipsoidExponent;
   }
   return priors;

@@ -42,7 +42,7 @@ inline constexpr std::array kAttitudeNames = {"standing", "any_face", "free"};
 struct ShapePrior {
   Eigen::Vector2d ratio = Eigen::Vector2d::Ones();      // (a / c, b / c), medians
   Eigen::Vector2d log_sigma = Eigen::Vector2d::Ones();  // standard deviations of their logarithms
-  double shape_exponent = kEllipsoidExponent;
+  ShapeExponents shape_exponents = kEllipsoidExponent;
   double log_correlation = 0.0;            // of the logarithms of the two ratios, in (-1, 1)
   std::optional<LogNormal> height_m = {};  // along its own z axis; none if the size is unknown
   Mount mount = Mount::kStanding;
@@ -116,7 +116,7 @@ enum class RatioPrior {
 };
 inline constexpr std::array kRatioPriorNames = {"table", "unit", "groundtruth"};
 
-// Source of an object's shape exponent.
+// Source of an object's shape exponents.
 enum class ShapeSource {
   kTable,      // its label's entry in the semantic table
   kCuboid,     // always a cuboid

@@ -19,11 +19,12 @@ UprightGround::UprightGround(const Plane& plane)
       normal(plane.normal),
       origin(-plane.offset * plane.normal) {}
 
-Landmark UprightGround::LandmarkAt(const UprightVector& parameters, double shape_exponent,
+Landmark UprightGround::LandmarkAt(const UprightVector& parameters,
+                                   const ShapeExponents& shape_exponents,
                                    RestingFace rests_on) const {
   Landmark landmark;
   landmark.half_axes = parameters.tail<3>().array().exp();
-  landmark.shape_exponent = shape_exponent;
+  landmark.shape_exponents = shape_exponents;
   landmark.rests_on = rests_on;
   const double half_yaw = 0.5 * parameters[0];
   const Eigen::Quaterniond turn(std::cos(half_yaw), 0.0, 0.0, std::sin(half_yaw));
@@ -62,7 +63,7 @@ std::optional<UprightSolution> FitUpright(const Plane& plane, const Landmark& st
                                           const LandmarkCosts& costs, bool yaw_is_free) {
   const UprightGround ground(plane);
   const auto landmark_at = [&](const UprightVector& at) {
-    return ground.LandmarkAt(at, start.shape_exponent, start.rests_on);
+    return ground.LandmarkAt(at, start.shape_exponents, start.rests_on);
   };
   const auto evaluate = [&](const UprightVector& at) {
     QuadraticModel<6> sum = UprightModel(costs, ground, landmark_at(at));

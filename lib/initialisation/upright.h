@@ -23,7 +23,7 @@ using UprightJacobian = Eigen::Matrix<double, kLandmarkDof, 6>;  // d landmark /
 struct UprightGround {
   explicit UprightGround(const Plane& plane);
 
-  Landmark LandmarkAt(const UprightVector& parameters, double shape_exponent,
+  Landmark LandmarkAt(const UprightVector& parameters, const ShapeExponents& shape_exponents,
                       RestingFace rests_on = RestingFace::kBottom) const;
   // Parameters of a landmark that is upright on the plane; for any other, those of the nearest
   // upright landmark.

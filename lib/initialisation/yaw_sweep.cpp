@@ -121,7 +121,7 @@ class Fitter {
   }
 
   Landmark LandmarkAt(const UprightVector& parameters) const {
-    return ground_.LandmarkAt(parameters, observation_.prior.shape_exponent,
+    return ground_.LandmarkAt(parameters, observation_.prior.shape_exponents,
                               observation_.prior.rests_on);
   }
 

@@ -34,6 +34,7 @@ std::vector<ValueColumn> EstimateColumns() {
           {"b", "m", 3},
           {"c", "m", 3},
           {"p"},
+          {"p_vertical"},
           {"yaw", "deg", 1},
           {"rests_on"},
           {"sigma_centre", "m", 3},
@@ -44,20 +45,24 @@ std::vector<ValueColumn> EstimateColumns() {
           {"failure"}};
 }
 
-// Centre, half axes, shape exponent, yaw about the z axis of the object's frame, and the face that
+// Centre, half axes, shape exponents, yaw about the z axis of the object's frame, and the face that
 // it rests on.
 json CellsOf(const Landmark& landmark) {
   const Eigen::Vector3d &centre = landmark.Centre(), &half_axes = landmark.half_axes;
   const Eigen::Quaterniond& rotation = landmark.frame_from_object.rotation;
-  return {{"x", centre.x()},
-          {"y", centre.y()},
-          {"z", centre.z()},
-          {"a", half_axes.x()},
-          {"b", half_axes.y()},
-          {"c", half_axes.z()},
-          {"p", landmark.shape_exponent},
-          {"yaw", kDegPerRad * Yaw(rotation * Eigen::Vector3d::UnitZ(), rotation)},
-          {"rests_on", kRestingFaceNames[static_cast<size_t>(landmark.rests_on)]}};
+  json cells = {{"x", centre.x()},
+                {"y", centre.y()},
+                {"z", centre.z()},
+                {"a", half_axes.x()},
+                {"b", half_axes.y()},
+                {"c", half_axes.z()},
+                {"p", landmark.shape_exponents.horizontal},
+                {"yaw", kDegPerRad * Yaw(rotation * Eigen::Vector3d::UnitZ(), rotation)},
+                {"rests_on", kRestingFaceNames[static_cast<size_t>(landmark.rests_on)]}};
+  if (landmark.shape_exponents.HasAxis()) {
+    cells["p_vertical"] = landmark.shape_exponents.vertical;
+  }
+  return cells;
 }
 
 // Standard deviations: of the centre over all directions, of the yaw, and the root mean square over

@@ -24,7 +24,7 @@ Polygon CornersOf(const Box& box) {
 Polygon OutlinePolygon(const Camera& camera, const Landmark& landmark_in_camera) {
   if (!IsInFront(landmark_in_camera)) return {};
   std::vector<Eigen::Vector3d> points_in_camera;
-  if (landmark_in_camera.shape_exponent == kCuboidExponent) {
+  if (landmark_in_camera.shape_exponents == kCuboidExponent) {
     for (const LineSegment3& edge : UnitCuboidEdges()) {
       for (const Eigen::Vector3d& corner : edge) {
         points_in_camera.push_back(PointAt(landmark_in_camera, corner));

@@ -87,7 +87,7 @@ BackEndProblem::ImageBlocks BackEndProblem::TextureBlocks(
   ImageBlocks blocks{kSymmetry, kTooFewPairs, texture->NumPairs(), {}, true};
   if (blocks.count > 0) {
     blocks.functions.push_back(
-        std::make_unique<ImageResidual>(std::move(texture), in_camera.shape_exponent));
+        std::make_unique<ImageResidual>(std::move(texture), in_camera.shape_exponents));
   }
   return blocks;
 }
@@ -108,7 +108,7 @@ BackEndProblem::ImageBlocks BackEndProblem::PairBlocks(
   for (const Eigen::Vector2d& pixel : visible) {
     blocks.functions.push_back(
         std::make_unique<SymmetryResidual>(symmetry.descriptor, image, camera, pixel,
-                                           in_camera.shape_exponent, options_.symmetry_sigma));
+                                           in_camera.shape_exponents, options_.symmetry_sigma));
   }
   return blocks;
 }
@@ -142,7 +142,7 @@ BackEndProblem::ImageBlocks BackEndProblem::PointBlocks(size_t object_index,
   auto points = std::make_unique<PointTerm>(PointTermOf(object_index, view, in_camera));
   ImageBlocks blocks{kPoints, nullptr, static_cast<int>(view.points.size()), {}, true};
   blocks.functions.push_back(
-      std::make_unique<ImageResidual>(std::move(points), in_camera.shape_exponent));
+      std::make_unique<ImageResidual>(std::move(points), in_camera.shape_exponents));
   return blocks;
 }
 
@@ -155,7 +155,7 @@ BackEndProblem::ImageBlocks BackEndProblem::EdgeBlocks(
   ImageBlocks blocks{kEdges, kNoEdgeCounts, 1, {}, true};
   if (edges->NumPoints() > 0) {
     blocks.functions.push_back(
-        std::make_unique<ImageResidual>(std::move(edges), in_camera.shape_exponent));
+        std::make_unique<ImageResidual>(std::move(edges), in_camera.shape_exponents));
   }
   return blocks;
 }

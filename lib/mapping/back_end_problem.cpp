@@ -124,7 +124,7 @@ void BackEndProblem::AddStanding(size_t object_index) {
   ceres::CostFunction* standing = nullptr;
   const auto& prior = input_.priors[object_index];
   if (prior && prior->attitude == Attitude::kFree) {
-    standing = new LeaningOnPlaneResidual(input_.initial_landmarks[object_index]->shape_exponent,
+    standing = new LeaningOnPlaneResidual(input_.initial_landmarks[object_index]->shape_exponents,
                                           {.height_m = options_.standing_height_sigma_m}, side);
   } else {
     standing = new UprightOnPlaneResidual(options_.standing_angle_sigma_deg * kRadPerDeg,

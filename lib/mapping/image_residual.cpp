@@ -16,7 +16,7 @@ constexpr double kMinPivotShare = 1e-13;
 // With P H P^T = L D L^T, R is sqrt(D) L^T P.
 bool ImageResidual::Evaluate(double const* const* blocks, double* residuals,
                              double** jacobians) const {
-  const RelativeObservation observation(blocks, shape_exponent_);
+  const RelativeObservation observation(blocks, shape_exponents_);
   Eigen::Map<Eigen::Matrix<double, kLandmarkDof + 1, 1>> values(residuals);
   values.setZero();
   double& rest = residuals[kLandmarkDof];

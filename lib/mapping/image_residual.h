@@ -22,14 +22,15 @@ namespace soslam {
 class ImageResidual final
     : public ceres::SizedCostFunction<kLandmarkDof + 1, kPoseSize, kLandmarkSize> {
  public:
-  ImageResidual(std::unique_ptr<const LandmarkCost> in_camera, double shape_exponent)
-      : in_camera_(std::move(in_camera)), shape_exponent_(shape_exponent) {}
+  ImageResidual(std::unique_ptr<const LandmarkCost> in_camera,
+                const ShapeExponents& shape_exponents)
+      : in_camera_(std::move(in_camera)), shape_exponents_(shape_exponents) {}
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
 
  private:
   std::unique_ptr<const LandmarkCost> in_camera_;
-  double shape_exponent_;
+  ShapeExponents shape_exponents_;
 };
 
 }  // namespace soslam

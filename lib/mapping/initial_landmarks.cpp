@@ -60,7 +60,7 @@ std::vector<std::optional<Landmark>> ChooseInitialLandmarks(const Sequence& sequ
     }
   }
   for (auto& landmark : initial_landmarks) {
-    if (landmark) landmark->shape_exponent = kEllipsoidExponent;
+    if (landmark) landmark->shape_exponents = kEllipsoidExponent;
   }
   return initial_landmarks;
 }

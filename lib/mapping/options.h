@@ -91,7 +91,7 @@ struct OptimiseOptions {
     visit.Real("odometry_translation_sigma_m", &odometry_translation_sigma_m, {1e-9, 1e9},
                "standard deviation of the odometry between two frames, per axis");
     visit.Group("Bodies of any shape (detection_model = tangency)");
-    visit.Choice("shape", &shape, kShapeSourceNames, "where the shape exponent comes from");
+    visit.Choice("shape", &shape, kShapeSourceNames, "where the shape exponents come from");
     visit.Real("detection_sigma_fraction", &detection_sigma_fraction, {1e-4, 1.0},
                "standard deviation of a detector's box edge, as a fraction of the box's "
                "width or height; at least 1 px");

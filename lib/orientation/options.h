@@ -150,7 +150,7 @@ struct ProfileOptions {
     visit.Flag("edge_alignment", &edge_alignment,
                "use the alignment of the body's edges with the image's");
     visit.Flag("texture_symmetry", &texture_symmetry, "use the symmetry of the texture");
-    visit.Choice("shape", &shape, kShapeSourceNames, "where the shape exponent comes from");
+    visit.Choice("shape", &shape, kShapeSourceNames, "where the shape exponents come from");
     upright.Describe(visit);
     edges.Describe(visit);
     texture.Describe(visit);

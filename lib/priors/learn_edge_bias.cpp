@@ -29,10 +29,10 @@ struct RowOffsets {
   std::map<std::string, int> objects_of_sequence;
 };
 
-void Add(const Sequence& sequence, const Detection& detection, double shape_exponent,
-         EdgeOffsets* offsets) {
+void Add(const Sequence& sequence, const Detection& detection,
+         const ShapeExponents& shape_exponents, EdgeOffsets* offsets) {
   Landmark in_camera = TrueLandmarkInCamera(sequence, detection).value();
-  in_camera.shape_exponent = shape_exponent;
+  in_camera.shape_exponents = shape_exponents;
   if (!IsInFront(in_camera)) return;
   const auto edges = BoxEdges(sequence.CameraOf(detection), detection.box, {}, 0.0);
   for (size_t side = 0; side < edges.size(); ++side) {
@@ -44,10 +44,10 @@ void Add(const Sequence& sequence, const Detection& detection, double shape_expo
 }
 
 EdgeOffsets OffsetsOf(const Sequence& sequence, const std::vector<int>& detections,
-                      double shape_exponent) {
+                      const ShapeExponents& shape_exponents) {
   EdgeOffsets offsets;
   for (const int index : detections) {
-    Add(sequence, sequence.detections[index], shape_exponent, &offsets);
+    Add(sequence, sequence.detections[index], shape_exponents, &offsets);
   }
   return offsets;
 }
@@ -64,7 +64,7 @@ std::map<size_t, RowOffsets> OffsetsByRow(const std::vector<Sequence>& sequences
       const auto row = row_of_name.find(NormalisedLabel(object.label));
       if (!object.ground_truth || row == row_of_name.end()) continue;
       const auto offsets =
-          OffsetsOf(sequence, by_object[i], rows.rows[row->second].prior.shape_exponent);
+          OffsetsOf(sequence, by_object[i], rows.rows[row->second].prior.shape_exponents);
       const auto is_enough = [](const auto& of_side) { return of_side.size() >= kMinEdges; };
       if (std::ranges::none_of(offsets, is_enough)) continue;
       RowOffsets& of_row = of_rows[row->second];

@@ -19,7 +19,7 @@ using Logs = std::array<std::vector<double>, kNumQuantities>;
 // All data for a row.
 struct RowData {
   Logs logs;
-  std::vector<double> shape_exponents;
+  std::vector<ShapeExponents> shape_exponents;
   std::vector<std::string> cited;  // "3 of room_a"
 
   size_t Count() const { return logs[kHeight].size(); }
@@ -137,10 +137,11 @@ class Learner {
   }
 
   // Creates a row for a label that the base table lacks.
-  SemanticRow New(const std::string& label, double shape_exponent, const RowData& data) const {
+  SemanticRow New(const std::string& label, const ShapeExponents& shape_exponents,
+                  const RowData& data) const {
     SemanticRow row;
     row.label = label;
-    row.prior.shape_exponent = shape_exponent;
+    row.prior.shape_exponents = shape_exponents;
     for (size_t k = 0; k < 2; ++k) {
       const auto axis = static_cast<Eigen::Index>(k);
       Learn(data.logs[k], Unknown(k), &row.prior.ratio[axis], &row.prior.log_sigma[axis]);
@@ -186,10 +187,13 @@ class Learner {
   }
 
   static void LearnShape(const RowData& data, ShapePrior* prior) {
-    const std::vector<double>& exponents = data.shape_exponents;
-    if (exponents.empty()) return;
-    prior->shape_exponent = Rounded(std::accumulate(exponents.begin(), exponents.end(), 0.0) /
-                                    static_cast<double>(exponents.size()));
+    const auto mean = [&](double ShapeExponents::*exponent) {
+      double sum = 0.0;
+      for (const ShapeExponents& exponents : data.shape_exponents) sum += exponents.*exponent;
+      return Rounded(sum / static_cast<double>(data.shape_exponents.size()));
+    };
+    if (data.shape_exponents.empty()) return;
+    prior->shape_exponents = {mean(&ShapeExponents::horizontal), mean(&ShapeExponents::vertical)};
   }
 
   Pooled pooled_;
@@ -208,7 +212,7 @@ Eigen::Vector3d TrueHalfAxes(const Object& object, const SemanticTable& table) {
 
 PriorSource SourceOfSequence(const Sequence& sequence, const SemanticTable& table, int min_views) {
   PriorSource source{sequence.name, {}};
-  const std::map<int, double> exponents = LearnShapeExponents(sequence, min_views);
+  const std::map<int, ShapeExponents> exponents = LearnShapeExponents(sequence, min_views);
   for (size_t i = 0; i < sequence.objects.size(); ++i) {
     const Object& object = sequence.objects[i];
     if (!object.ground_truth) continue;
@@ -257,10 +261,10 @@ SemanticRows LearnPriors(const SemanticRows& base, const std::vector<PriorSource
     learned.rows.push_back(learner.Improved(row, data[row.label]));
     data.erase(row.label);
   }
-  const double shape_exponent =
-      (base.default_row ? base.default_row->prior : ShapePrior()).shape_exponent;
+  const ShapeExponents shape_exponents =
+      (base.default_row ? base.default_row->prior : ShapePrior()).shape_exponents;
   for (const auto& [label, of_label] : data) {
-    learned.rows.push_back(learner.New(label, shape_exponent, of_label));
+    learned.rows.push_back(learner.New(label, shape_exponents, of_label));
   }
   std::ranges::sort(learned.rows, {}, &SemanticRow::label);
   LookUpTable(learned);  // throws if names are not unique

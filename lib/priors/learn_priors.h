@@ -74,7 +74,7 @@ struct LearnPriorsOptions {
     visit.Real("correlation_weight", &correlation_weight, {0.1, 1e3},
                "What the correlation over all labels counts as, in objects");
     visit.Integer("min_views", &min_views, {1, 1000000},
-                  "Boxes that an object needs for its shape exponent to be learned");
+                  "Boxes that an object needs for its shape exponents to be learned");
     visit.Group("Edges of boxes");
     visit.Flag("edge_bias", &edge_bias,
                "Learn the bias of box edges by label and side from the sequences: the table "
@@ -87,7 +87,7 @@ struct LearnPriorsOptions {
 // object, in metres, one per object; shape exponents of the objects whose boxes determine it.
 struct LabelFacts {
   std::vector<Eigen::Vector3d> half_axes;
-  std::vector<double> shape_exponents;
+  std::vector<ShapeExponents> shape_exponents;
 };
 struct PriorSource {
   std::string name;                         // as tables cite it
@@ -119,14 +119,14 @@ struct PriorError {
 // Errors for the objects with ground truth and a row (or default) in the table.
 std::vector<PriorError> PriorErrors(const Sequence& sequence, const SemanticTable& table);
 
-// The exponent in [1, 2] for which the true pose and size of an object fit its boxes best: least
+// The exponents in [1, 2] for which the true pose and size of an object fit its boxes best: least
 // Huber loss of the tangency residuals, at true camera poses if they are known. `detections` are of
 // one object, or of several of the same shape, with ground truth.
-double BestShapeExponent(const Sequence& sequence, const std::vector<int>& detections);
+ShapeExponents BestShapeExponents(const Sequence& sequence, const std::vector<int>& detections);
 
-// That exponent for each object with ground truth and at least `min_views` such boxes, by object
+// These for each object with ground truth and at least `min_views` such boxes, by object
 // index.
-std::map<int, double> LearnShapeExponents(const Sequence& sequence, int min_views);
+std::map<int, ShapeExponents> LearnShapeExponents(const Sequence& sequence, int min_views);
 
 // Learns the bias of a detector's box edges for each row of a table that has objects with ground
 // truth in the sequences. Edges that are no bounds are compared with the outline of the object at

@@ -11,12 +11,17 @@
 namespace soslam {
 namespace {
 
-constexpr double kStep = 0.01;           // finer than boxes can resolve
+constexpr int kSteps = 20;               // from 1 to 2: finer than boxes can resolve
 constexpr double kSigmaFraction = 0.02;  // of an edge, as a fraction of the side of its box
 
-double Loss(const Sequence& sequence, const Detection& detection, double shape_exponent) {
+double ExponentAt(int step) {
+  return kCuboidExponent + (kEllipsoidExponent - kCuboidExponent) * step / kSteps;
+}
+
+double Loss(const Sequence& sequence, const Detection& detection,
+            const ShapeExponents& shape_exponents) {
   Landmark in_camera = TrueLandmarkInCamera(sequence, detection).value();
-  in_camera.shape_exponent = shape_exponent;
+  in_camera.shape_exponents = shape_exponents;
   const ceres::HuberLoss huber(1.0);  // of residuals in standard deviations
   double loss = 0.0;
   for (const BoxEdge& edge :
@@ -39,32 +44,33 @@ std::vector<int> WhollyInFront(const Sequence& sequence, const std::vector<int>&
 
 }  // namespace
 
-double BestShapeExponent(const Sequence& sequence, const std::vector<int>& detections) {
-  double best = kCuboidExponent;
+ShapeExponents BestShapeExponents(const Sequence& sequence, const std::vector<int>& detections) {
+  ShapeExponents best = kCuboidExponent;
   double least_loss = std::numeric_limits<double>::infinity();
-  const int steps = static_cast<int>(std::lround((kEllipsoidExponent - kCuboidExponent) / kStep));
-  for (int i = 0; i <= steps; ++i) {
-    const double exponent = kCuboidExponent + kStep * i;
-    double loss = 0.0;
-    for (const int index : detections) {
-      loss += Loss(sequence, sequence.detections[index], exponent);
-    }
-    if (loss < least_loss) {
-      least_loss = loss;
-      best = exponent;
+  for (int i = 0; i <= kSteps; ++i) {
+    for (int j = 0; j <= kSteps; ++j) {
+      const ShapeExponents exponents(ExponentAt(i), ExponentAt(j));
+      double loss = 0.0;
+      for (const int index : detections) {
+        loss += Loss(sequence, sequence.detections[index], exponents);
+      }
+      if (loss < least_loss) {
+        least_loss = loss;
+        best = exponents;
+      }
     }
   }
   return best;
 }
 
-std::map<int, double> LearnShapeExponents(const Sequence& sequence, int min_views) {
-  std::map<int, double> exponents;
+std::map<int, ShapeExponents> LearnShapeExponents(const Sequence& sequence, int min_views) {
+  std::map<int, ShapeExponents> exponents;
   const auto by_object = DetectionsByObject(sequence);
   for (size_t i = 0; i < sequence.objects.size(); ++i) {
     if (!sequence.objects[i].ground_truth) continue;
     const std::vector<int> usable = WhollyInFront(sequence, by_object[i]);
     if (usable.size() < static_cast<size_t>(min_views)) continue;
-    exponents[static_cast<int>(i)] = BestShapeExponent(sequence, usable);
+    exponents.emplace(static_cast<int>(i), BestShapeExponents(sequence, usable));
   }
   return exponents;
 }

@@ -44,7 +44,9 @@ json PagePose(const Rigid3d& pose) {
 json PageLandmark(const Landmark& landmark_in_world) {
   return {{"pose", PagePose(landmark_in_world.frame_from_object)},
           {"half_axes", PageVector(landmark_in_world.half_axes)},
-          {"p", PageNumber(landmark_in_world.shape_exponent)}};
+          {"p",
+           {PageNumber(landmark_in_world.shape_exponents.horizontal),
+            PageNumber(landmark_in_world.shape_exponents.vertical)}}};
 }
 
 json PagePixels(const std::vector<Eigen::Vector2d>& pixels) {

@@ -166,7 +166,7 @@ nlohmann::json PageNumbers(const std::vector<double>& values);
 nlohmann::json PageVector(const Eigen::Vector3d& metres);
 // [x, y, z, qx, qy, qz, qw]
 nlohmann::json PagePose(const Rigid3d& pose);
-// {"pose": world_from_object, "half_axes": [a, b, c], "p": shape exponent}
+// {"pose": world_from_object, "half_axes": [a, b, c], "p": shape exponents}
 nlohmann::json PageLandmark(const Landmark& landmark_in_world);
 // [x, y, x, y, ...] px
 nlohmann::json PagePixels(const std::vector<Eigen::Vector2d>& pixels);

@@ -71,7 +71,7 @@ using nlohmann::json;
 
 // The cuboid around the object, as for the comparison of landmarks.
 Landmark AsCuboid(Landmark landmark) {
-  landmark.shape_exponent = kCuboidExponent;
+  landmark.shape_exponents = kCuboidExponent;
   return landmark;
 }
 

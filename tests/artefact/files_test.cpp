@@ -120,8 +120,8 @@ TEST_F(ArtefactFilesTest, WhatIsReadIsWrittenAgainBitForBit) {
   LandmarkEstimates estimates = RandomLandmarkEstimates();
   // The range of shape exponents includes its ends.
   std::vector<Hypothesis>& hypotheses = estimates.observations[0].hypotheses;
-  hypotheses.at(0).landmark_in_camera.shape_exponent = kCuboidExponent;
-  hypotheses.at(1).landmark_in_camera.shape_exponent = kEllipsoidExponent;
+  hypotheses.at(0).landmark_in_camera.shape_exponents = kCuboidExponent;
+  hypotheses.at(1).landmark_in_camera.shape_exponents = {kEllipsoidExponent, kCuboidExponent};
   WriteLandmarks(file, estimates, sequence, {});
   WriteLandmarks(again, ReadLandmarks(file, sequence), sequence, {});
   expect_same();

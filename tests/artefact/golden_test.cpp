@@ -24,7 +24,7 @@ TEST(GoldenTest, Sequence10) {
   EXPECT_EQ(sequence.rejected_detections.at("near_border"), 17);
   // What this version did not have yet.
   EXPECT_EQ(sequence.image_orientation, ImageOrientation::kStored);
-  EXPECT_EQ(sequence.objects.at(0).ground_truth->landmark_in_world.shape_exponent, 2.0);
+  EXPECT_EQ(sequence.objects.at(0).ground_truth->landmark_in_world.shape_exponents, 2.0);
   for (const Detection& detection : sequence.detections) {
     EXPECT_EQ(detection.is_bound, (std::array<bool, 4>{}));
     EXPECT_FALSE(detection.true_landmark_in_camera);
@@ -44,7 +44,7 @@ TEST(GoldenTest, Landmarks10) {
   const LandmarkEstimates estimates = ReadLandmarks(kGolden / "landmarks-1.0.json", sequence);
   ASSERT_EQ(estimates.observations.size(), 3u);
   EXPECT_EQ(estimates.observations[0].hypotheses.at(1).cost, 1.0 / 3.0);
-  EXPECT_EQ(estimates.observations[0].hypotheses[1].landmark_in_camera.shape_exponent, 2.0);
+  EXPECT_EQ(estimates.observations[0].hypotheses[1].landmark_in_camera.shape_exponents, 2.0);
   EXPECT_EQ(estimates.objects.at(2).failure, "too_few_views");
 }
 
@@ -53,7 +53,7 @@ TEST(GoldenTest, Map10) {
   const MapEstimate map = ReadMap(kGolden / "map-1.0.json", sequence);
   EXPECT_EQ(map.world_from_camera.size(), 5u);
   EXPECT_EQ(map.objects.at(0).observations, 5);
-  EXPECT_EQ(map.objects[0].landmark_in_world->shape_exponent, 2.0);
+  EXPECT_EQ(map.objects[0].landmark_in_world->shape_exponents, 2.0);
   EXPECT_EQ(map.solver.cost_per_iteration.at(1), 1.0 / 7.0);
   EXPECT_EQ(map.solver.detector_bias_px, (std::array<double, 4>{}));  // not in this version yet
 }
@@ -66,7 +66,7 @@ TEST(GoldenTest, Metrics10) {
 
 TEST(GoldenTest, Sequence11) {
   const Sequence sequence = ReadSequence(kGolden / "sequence-1.1.json");
-  EXPECT_EQ(sequence.objects.at(0).ground_truth->landmark_in_world.shape_exponent,
+  EXPECT_EQ(sequence.objects.at(0).ground_truth->landmark_in_world.shape_exponents,
             1.2026355410146854);
   ASSERT_EQ(sequence.detections.size(), 10u);
   EXPECT_EQ(sequence.detections[0].is_bound, (std::array<bool, 4>{}));
@@ -80,15 +80,15 @@ TEST(GoldenTest, Landmarks11) {
   ASSERT_EQ(estimates.observations.size(), 3u);
   const std::vector<Hypothesis>& hypotheses = estimates.observations[0].hypotheses;
   ASSERT_EQ(hypotheses.size(), 2u);
-  EXPECT_EQ(hypotheses[0].landmark_in_camera.shape_exponent, 1.0);
-  EXPECT_EQ(hypotheses[1].landmark_in_camera.shape_exponent, 1.807951443160171);
+  EXPECT_EQ(hypotheses[0].landmark_in_camera.shape_exponents, 1.0);
+  EXPECT_EQ(hypotheses[1].landmark_in_camera.shape_exponents, 1.807951443160171);
 }
 
 TEST(GoldenTest, Map11) {
   const Sequence sequence = ReadSequence(kGolden / "sequence-1.1.json");
   const MapEstimate map = ReadMap(kGolden / "map-1.1.json", sequence);
   ASSERT_EQ(map.objects.size(), 3u);
-  EXPECT_EQ(map.objects[0].landmark_in_world->shape_exponent, 1.6142579525880831);
+  EXPECT_EQ(map.objects[0].landmark_in_world->shape_exponents, 1.6142579525880831);
   EXPECT_EQ(map.solver.detector_bias_px, (std::array<double, 4>{1.5, -0.25, 1.0 / 3.0, 0.0}));
 }
 
@@ -103,8 +103,8 @@ TEST(GoldenTest, SemanticTableOfPeople) {
   const ShapePrior dining_table = table.Find("dining table").value();
   EXPECT_EQ(dining_table.ratio, Eigen::Vector2d(1.16, 2.1));
   EXPECT_EQ(dining_table.log_sigma, Eigen::Vector2d(0.17, 0.14));
-  EXPECT_EQ(dining_table.shape_exponent, 1.0);
-  EXPECT_EQ(table.Find("cup")->shape_exponent, 1.1);
+  EXPECT_EQ(dining_table.shape_exponents, 1.0);
+  EXPECT_EQ(table.Find("cup")->shape_exponents, 1.1);
   // What this version did not have yet.
   EXPECT_EQ(dining_table.log_correlation, 0.0);
   EXPECT_FALSE(dining_table.height_m);

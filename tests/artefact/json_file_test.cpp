@@ -77,7 +77,7 @@ TEST_F(JsonFileTest, HeaderNamesWhatShapedTheArtefact) {
                 kEmptyLandmarks);
   const json header = ReadArtefact(file, "landmarks").at("artefact");
   EXPECT_EQ(header.at("kind"), "landmarks");
-  EXPECT_EQ(header.at("schema_version"), json({1, 7}));
+  EXPECT_EQ(header.at("schema_version"), json({1, 8}));
   EXPECT_THAT(header.at("software").get<std::string>(), testing::StartsWith("soslam "));
   EXPECT_EQ(header.at("settings").at("yaw"), 3);
   EXPECT_EQ(header.at("inputs").at(0).at("file"), "a.txt");
@@ -101,9 +101,9 @@ TEST_F(JsonFileTest, HeadersThatAreNotOursAreRefused) {
   header["schema_version"] = {2, 0};
   EXPECT_THAT(ReadErrorWithHeader(header),
               HasSubstr("some.json: has schema version [2, 0] of kind 'landmarks'; this software "
-                        "reads up to [1, 7]"));
-  header["schema_version"] = {1, 8};
-  EXPECT_THAT(ReadErrorWithHeader(header), HasSubstr("[1, 7]"));
+                        "reads up to [1, 8]"));
+  header["schema_version"] = {1, 9};
+  EXPECT_THAT(ReadErrorWithHeader(header), HasSubstr("[1, 8]"));
   header["schema_version"] = {1, 0};
   EXPECT_EQ(ReadErrorWithHeader(header), "");
   header["schema_version"] = "1.0";

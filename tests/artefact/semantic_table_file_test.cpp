@@ -33,7 +33,17 @@ TEST_F(SemanticTableFileTest, EntriesOfARatioOnlyAreNearlyBoxesWithATypicalSprea
   const ShapePrior any = table.Find("anything").value();
   EXPECT_EQ(any.ratio, Eigen::Vector2d(2.0, 0.5));
   EXPECT_EQ(any.log_sigma, Eigen::Vector2d(0.3, 0.3));
-  EXPECT_EQ(any.shape_exponent, 1.1);
+  EXPECT_EQ(any.shape_exponents, 1.1);
+}
+
+TEST_F(SemanticTableFileTest, TheVerticalExponentIsThatOfTheSectionsUnlessGiven) {
+  json can = kRatioOnly;
+  can["shape_exponent"] = 2.0;
+  json ball = can;
+  can["vertical_exponent"] = 1.0;
+  const SemanticTable table = Read({{"labels", {{"can", can}, {"ball", ball}}}});
+  EXPECT_EQ(table.Find("can")->shape_exponents, ShapeExponents(2.0, 1.0));
+  EXPECT_EQ(table.Find("ball")->shape_exponents, 2.0);
 }
 
 TEST_F(SemanticTableFileTest, FindsLabelsByAliasHoweverTheyAreWritten) {
@@ -62,6 +72,7 @@ TEST_F(SemanticTableFileTest, ImpossibleNumbersAreRefused) {
                                                  {"b_by_c_log_sigma", 0},
                                                  {"shape_exponent", 3},
                                                  {"shape_exponent", 0.9},
+                                                 {"vertical_exponent", 2.1},
                                                  {"height_m", 0},
                                                  {"height_log_sigma", 0},
                                                  {"log_correlation", 1},
@@ -120,7 +131,7 @@ TEST_F(SemanticTableFileTest, WrittenRowsAreReadAsTheyWere) {
   EXPECT_EQ(rows.rows[0].prior.attitude, Attitude::kFree);
   EXPECT_EQ(rows.rows[0].samples, 7);
   EXPECT_EQ(rows.rows[0].source, "the test");
-  EXPECT_EQ(rows.default_row.value().prior.shape_exponent, 1.1);
+  EXPECT_EQ(rows.default_row.value().prior.shape_exponents, 1.1);
 }
 
 TEST_F(SemanticTableFileTest, ArtefactsOfAnotherKindAreRefused) {
@@ -149,7 +160,7 @@ TEST(SemanticTableTest, TheProjectsTableIsWhatWasStatedAndMore) {
     const ShapePrior prior = table.Find(row.label).value();
     EXPECT_EQ(prior.ratio, row.prior.ratio) << row.label;
     EXPECT_EQ(prior.log_sigma, row.prior.log_sigma) << row.label;
-    EXPECT_EQ(prior.shape_exponent, row.prior.shape_exponent) << row.label;
+    EXPECT_EQ(prior.shape_exponents, row.prior.shape_exponents) << row.label;
     if (row.prior.height_m) {
       EXPECT_EQ(prior.height_m->median, row.prior.height_m->median) << row.label;
     }

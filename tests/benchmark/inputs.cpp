@@ -119,7 +119,7 @@ std::vector<std::optional<ShapePrior>> TruePriors(const Sequence& sequence) {
   for (const Object& object : sequence.objects) {
     const Landmark& truth = object.ground_truth->landmark_in_world;
     priors.push_back(ShapePrior{truth.half_axes.head<2>() / truth.half_axes.z(),
-                                Eigen::Vector2d::Constant(0.1), truth.shape_exponent});
+                                Eigen::Vector2d::Constant(0.1), truth.shape_exponents});
   }
   return priors;
 }

@@ -12,8 +12,8 @@ namespace {
 constexpr LeaningSigmas kSigmas = {0.5, 0.01};
 
 // A body of any attitude whose lowest point is on the plane.
-Landmark RandomLeaning(const Plane& plane, double shape_exponent) {
-  Landmark landmark{RandomRigid(), RandomVector(0.1, 1.0), shape_exponent};
+Landmark RandomLeaning(const Plane& plane, const ShapeExponents& shape_exponents) {
+  Landmark landmark{RandomRigid(), RandomVector(0.1, 1.0), shape_exponents};
   const Eigen::Vector3d lowest = FindSupportPoint(landmark, -plane.normal).point;
   landmark.frame_from_object.translation -= plane.SignedDistance(lowest) * plane.normal;
   return landmark;

@@ -15,18 +15,18 @@
 namespace soslam {
 namespace {
 
-Landmark RandomBody(double shape_exponent) {
-  return {RandomRigid(), RandomVector(0.2, 1.0), shape_exponent};
+Landmark RandomBody(const ShapeExponents& shape_exponents) {
+  return {RandomRigid(), RandomVector(0.2, 1.0), shape_exponents};
 }
 
 // The distance of a point from a landmark in the world, for the check of Jacobians.
 class DistanceResidual final : public ceres::SizedCostFunction<1, kLandmarkSize> {
  public:
-  DistanceResidual(const Eigen::Vector3d& point, double shape_exponent)
-      : point_(point), shape_exponent_(shape_exponent) {}
+  DistanceResidual(const Eigen::Vector3d& point, const ShapeExponents& shape_exponents)
+      : point_(point), shape_exponents_(shape_exponents) {}
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     Landmark landmark = UnpackLandmark(blocks[0]);
-    landmark.shape_exponent = shape_exponent_;
+    landmark.shape_exponents = shape_exponents_;
     LandmarkJacobian1 jacobian;
     residuals[0] = SurfaceDistance(landmark, point_, &jacobian);
     if (jacobians != nullptr) WriteLandmarkJacobian<1>(blocks[0], jacobian, jacobians[0]);
@@ -35,7 +35,7 @@ class DistanceResidual final : public ceres::SizedCostFunction<1, kLandmarkSize>
 
  private:
   Eigen::Vector3d point_;
-  double shape_exponent_;
+  ShapeExponents shape_exponents_;
 };
 
 TEST(SurfaceDistanceTest, OfACuboidIsThatOfAFace) {
@@ -55,12 +55,21 @@ TEST(SurfaceDistanceTest, OfASphereIsExact) {
   }
 }
 
+TEST(SurfaceDistanceTest, OfARoundCylinderIsThatOfItsSideOrItsCap) {
+  const Landmark cylinder{{}, {0.5, 0.5, 1.0}, {kEllipsoidExponent, kCuboidExponent}};
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector3d point = RandomVector(-1.5, 1.5);
+    EXPECT_NEAR(SurfaceDistance(cylinder, point, nullptr),
+                std::max(point.head<2>().norm() - 0.5, std::abs(point.z()) - 1.0), 1e-12);
+  }
+}
+
 // Points at a small distance from where a ray meets the surface.
 TEST(SurfaceDistanceTest, IsTheDistanceNearTheSurface) {
   constexpr double kStepM = 1e-4;
   for (int i = 0; i < 100; ++i) {
-    const Landmark body = RandomBody(RandomUniform(1.2, 2.0));
-    const BodySurface surface(body.half_axes, body.shape_exponent);
+    const Landmark body = RandomBody({RandomUniform(1.2, 2.0), RandomUniform(1.2, 2.0)});
+    const BodySurface surface(body.half_axes, body.shape_exponents);
     const Eigen::Vector3d origin = 5.0 * RandomVector(-1.0, 1.0).normalized();
     const auto depth = surface.Entry(origin, -origin);
     ASSERT_TRUE(depth);
@@ -78,7 +87,7 @@ TEST(SurfaceDistanceTest, IsTheDistanceNearTheSurface) {
 
 TEST(SurfaceDistanceTest, MovesWithTheBody) {
   for (int i = 0; i < 50; ++i) {
-    const Landmark body = RandomBody(RandomUniform(1.0, 2.0));
+    const Landmark body = RandomBody({RandomUniform(1.0, 2.0), RandomUniform(1.0, 2.0)});
     const Eigen::Vector3d point = body.Centre() + RandomVector(-1.0, 1.0);
     const Rigid3d motion = RandomRigid();
     EXPECT_NEAR(SurfaceDistance(Transform(motion, body), motion * point, nullptr),
@@ -88,7 +97,9 @@ TEST(SurfaceDistanceTest, MovesWithTheBody) {
 
 TEST(SurfaceDistanceTest, JacobiansAgreeWithNumbers) {
   for (int i = 0; i < 100; ++i) {
-    const double p = i % 4 == 0 ? kCuboidExponent : RandomUniform(1.1, 2.0);
+    ShapeExponents p(RandomUniform(1.1, 2.0), RandomUniform(1.1, 2.0));
+    if (i % 4 == 0) p.vertical = kCuboidExponent;
+    if (i % 8 == 0) p.horizontal = kCuboidExponent;
     const Landmark body = RandomBody(p);
     const LandmarkBlock block = ToParameterBlock(body);
     ExpectCorrectJacobians(DistanceResidual(body.Centre() + RandomVector(-1.0, 1.0), p),

@@ -47,7 +47,7 @@ TEST(BoxEdges, PointOutOfTheBoxAndMeasurePixels) {
 
 TEST(Tangency, IsZeroForTheOutlineBoxAndGrowsByPixels) {
   const Camera camera = TestCamera();
-  for (const double p : kShapeExponents) {
+  for (const ShapeExponents& p : kShapeExponents) {
     for (int i = 0; i < 20; ++i) {
       const Landmark landmark = WithShape(RandomLandmarkInCamera(), p);
       Box box = *OutlineBox(camera, landmark);
@@ -65,7 +65,7 @@ TEST(Tangency, IsZeroForTheOutlineBoxAndGrowsByPixels) {
 // Edges far off are off by as many pixels, which they are to first order only for Tangency.
 TEST(OutlineExcess, IsHowFarTheOutlineReachesOut) {
   const Camera camera = TestCamera();
-  for (const double p : kShapeExponents) {
+  for (const ShapeExponents& p : kShapeExponents) {
     for (int i = 0; i < 20; ++i) {
       const Landmark landmark = WithShape(RandomLandmarkInCamera(), p);
       const Box outline = *OutlineBox(camera, landmark);
@@ -192,7 +192,7 @@ TEST(TangencyResidual, HasCorrectJacobiansWithoutItsCurvatureRows) {
   for (int i = 0; i < 30; ++i) {
     View view;
     // Sharper bodies have derivatives that numbers do not follow.
-    view.initial_in_camera.shape_exponent = RandomUniform(1.4, 2.0);
+    view.initial_in_camera.shape_exponents = RandomUniform(1.4, 2.0);
     const LandmarkBlock landmark = view.LandmarkInWorld();
     BoxEdge edge = RandomEdge();
     edge.is_bound = i % 2 == 0;
@@ -208,7 +208,7 @@ TEST(TangencyResidual, CurvatureRowsAddToTheInformationAlone) {
   int curved = 0;
   for (int i = 0; i < 30; ++i) {
     View view;
-    view.initial_in_camera.shape_exponent = RandomUniform(1.0, 1.9);
+    view.initial_in_camera.shape_exponents = RandomUniform(1.0, 1.9);
     const LandmarkBlock landmark = view.LandmarkInWorld();
     const BoxEdge edge = RandomEdge();
     const double* blocks[] = {view.pose.data(), landmark.data(), &view.bias_px, &view.misfit};

@@ -54,7 +54,7 @@ TEST_F(SlamSyntheticTest, AProblemIsASegment) {
   const Landmark& truth = sequence.objects[0].ground_truth->landmark_in_world;
   EXPECT_EQ(truth.Centre(), Eigen::Vector3d(1, 2, 3));
   EXPECT_EQ(truth.half_axes, Eigen::Vector3d(0.1, 0.2, 0.3));
-  EXPECT_EQ(truth.shape_exponent, kEllipsoidExponent);
+  EXPECT_EQ(truth.shape_exponents, kEllipsoidExponent);
   EXPECT_NEAR(truth.frame_from_object.rotation.angularDistance(
                   Eigen::Quaterniond(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()))),
               0.0, 1e-12);

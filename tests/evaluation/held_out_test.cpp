@@ -18,7 +18,7 @@ class HeldOutTest : public testing::Test {
       ObjectEstimate estimate;
       estimate.object_index = static_cast<int>(i);
       estimate.landmark_in_world = sequence_.objects[i].ground_truth->landmark_in_world;
-      estimate.landmark_in_world->shape_exponent = kCuboidExponent;
+      estimate.landmark_in_world->shape_exponents = kCuboidExponent;
       estimates_.push_back(estimate);
     }
     for (const HeldOutFrame& held_out : sequence_.held_out) {

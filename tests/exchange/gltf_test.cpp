@@ -19,12 +19,16 @@
 namespace soslam {
 namespace {
 
-// Volume of ||(x / a, y / b, z / c)||_q <= 1 with 1 / p + 1 / q = 1 (Dirichlet's integral); p = 1
-// gives 8 a b c, p = 2 gives 4 / 3 pi a b c.
-double BodyVolume(const Eigen::Vector3d& half_axes, double shape_exponent) {
-  const double inverse_q = 1.0 - 1.0 / shape_exponent;
-  return 8.0 * half_axes.prod() * std::pow(std::tgamma(1.0 + inverse_q), 3) /
-         std::tgamma(1.0 + 3.0 * inverse_q);
+// Volume of || ( ||(x / a, y / b)||_q, z / c ) ||_r <= 1 with the dual exponents (Dirichlet's
+// integrals): 8 a b c for the cuboid, 4 / 3 pi a b c for the ellipsoid, 2 pi a b c for the
+// cylinder.
+double BodyVolume(const Eigen::Vector3d& half_axes, const ShapeExponents& shape_exponents) {
+  const double q = 1.0 - 1.0 / shape_exponents.horizontal;  // their inverses
+  const double r = 1.0 - 1.0 / shape_exponents.vertical;
+  const double section = std::pow(std::tgamma(1.0 + q), 2) / std::tgamma(1.0 + 2.0 * q);
+  const double sections =
+      std::tgamma(1.0 + r) * std::tgamma(1.0 + 2.0 * r) / std::tgamma(1.0 + 3.0 * r);
+  return 8.0 * half_axes.prod() * section * sections;
 }
 
 // Positive where the triangles are counter-clockwise seen from outside.
@@ -82,7 +86,7 @@ TEST_F(GltfTest, NodesAreLandmarksWithTheirBodies) {
     EXPECT_EQ(document.Rotation(node).coeffs(), landmark.frame_from_object.rotation.coeffs());
     const TriangleMesh mesh = document.Mesh(node);
     ExpectClosed(mesh);
-    EXPECT_NEAR(SignedVolume(mesh) / BodyVolume(landmark.half_axes, landmark.shape_exponent), 1.0,
+    EXPECT_NEAR(SignedVolume(mesh) / BodyVolume(landmark.half_axes, landmark.shape_exponents), 1.0,
                 0.01);
   }
   EXPECT_EQ(document.Mesh(Node(document, 0)).triangles.size(), 12u);
@@ -96,6 +100,7 @@ TEST_F(GltfTest, ExtrasSayWhatTheMapKnows) {
   EXPECT_EQ(extras.at("label"), "Dining_Table");
   EXPECT_EQ(extras.at("observations"), 12);
   EXPECT_EQ(extras.at("shape_exponent"), 1.0);
+  EXPECT_EQ(extras.at("vertical_exponent"), 1.0);
   EXPECT_EQ(extras.at("half_axes").at(1), object.estimate.landmark_in_world->half_axes.y());
   EXPECT_NEAR(extras.at("yaw_deg").get<double>(), YawOf(object) * kDegPerRad, 1e-9);
   EXPECT_EQ(extras.at("covariance").size(), 9u);
@@ -247,7 +252,7 @@ TEST(PlyTest, BodiesAreClosedInTheirPlaces) {
   for (const WorldObject& object : world.objects) {
     if (!object.estimate.landmark_in_world) continue;
     const Landmark& landmark = *object.estimate.landmark_in_world;
-    const TriangleMesh body = BodyMesh(landmark.half_axes, landmark.shape_exponent);
+    const TriangleMesh body = BodyMesh(landmark.half_axes, landmark.shape_exponents);
     const auto first = static_cast<std::uint32_t>(vertices.size());
     for (const Eigen::Vector3d& vertex : body.vertices) {
       vertices.push_back(landmark.frame_from_object * vertex);
@@ -264,7 +269,7 @@ TEST(PlyTest, ColoursGoByLabel) {
   World world = ExportedWorld();
   world.objects[2].label = "cup";
   for (WorldObject& object : world.objects) {  // boxes of eight vertices
-    if (object.estimate.landmark_in_world) object.estimate.landmark_in_world->shape_exponent = 1.0;
+    if (object.estimate.landmark_in_world) object.estimate.landmark_in_world->shape_exponents = 1.0;
   }
   const PlyFile file = ParsePly(PlyText(world, ColoursOfLabels({world})));
   ASSERT_EQ(file.colours.size(), 24u);

@@ -104,7 +104,7 @@ TEST_F(WorldTest, TruthHasWhatIsKnown) {
   const World known = WorldsOfTruth(sequence_)[0];
   ASSERT_THAT(ObjectIds(known), ElementsAre(5, 6));
   EXPECT_EQ(known.objects[0].estimate.landmark_in_world->half_axes, truth.half_axes);
-  EXPECT_EQ(known.objects[0].estimate.landmark_in_world->shape_exponent, kCuboidExponent);
+  EXPECT_EQ(known.objects[0].estimate.landmark_in_world->shape_exponents, kCuboidExponent);
   EXPECT_NEAR(known.objects[0].support_normal.dot(truth.frame_from_object.rotation *
                                                   Eigen::Vector3d::UnitZ()),
               1.0, 1e-12);

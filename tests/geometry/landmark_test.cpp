@@ -51,7 +51,7 @@ TEST(Landmark, AHyperboloidIsNotProper) {
 }
 
 TEST(FindSupportPoint, MovesWithTheLandmark) {
-  for (const double p : kShapeExponents) {
+  for (const ShapeExponents& p : kShapeExponents) {
     for (int i = 0; i < 20; ++i) {
       const Landmark landmark = WithShape({RandomRigid(), RandomVector(0.1, 2.0)}, p);
       const Eigen::Vector3d direction = RandomVector(-2, 2);
@@ -68,7 +68,7 @@ TEST(FindSupportPoint, MovesWithTheLandmark) {
 }
 
 TEST(OutlineBox, IsTheTightBoxOfTheProjectedSurface) {
-  for (const double p : kShapeExponents) {
+  for (const ShapeExponents& p : kShapeExponents) {
     SCOPED_TRACE(p);
     for (int i = 0; i < 5; ++i) {
       const Landmark landmark = WithShape(RandomLandmarkInCamera(), p);
@@ -122,7 +122,7 @@ TEST(OutlineBox, OfTheEllipsoidIsThatOfTheDualConic) {
 
 TEST(FindSilhouettePoint, ReachesFarthestInItsDirection) {
   const Camera camera = TestCamera();
-  for (const double p : kShapeExponents) {
+  for (const ShapeExponents& p : kShapeExponents) {
     const Landmark landmark = WithShape(RandomLandmarkInCamera(), p);
     for (int i = 0; i < 20; ++i) {
       const double angle = RandomUniform(-3, 3);
@@ -143,7 +143,7 @@ TEST(FindSilhouettePoint, ReachesFarthestInItsDirection) {
 }
 
 TEST(OutlineBox, NeedsTheWholeLandmarkInFront) {
-  for (const double p : kShapeExponents) {
+  for (const ShapeExponents& p : kShapeExponents) {
     // An edge of the cuboid, in the camera's plane, reaches farther by the rounding.
     Landmark landmark = WithShape({Rigid3d(), {0.5, 0.5, 0.5}}, p);
     for (const double depth : {-2.0, 0.0, 0.4, 0.5}) {

@@ -8,13 +8,15 @@
 namespace soslam {
 namespace {
 
-constexpr std::array kTestedExponents = {kCuboidExponent, 1.1, 1.5, kEllipsoidExponent};
+constexpr std::array<ShapeExponents, 6> kTestedExponents = {
+    kCuboidExponent,         1.1, 1.5, kEllipsoidExponent, ShapeExponents(2.0, 1.0),
+    ShapeExponents(1.6, 1.2)};
 
 // The body around the optical axis, so that the sampled pixels hit it.
-Landmark CentralLandmark(double shape_exponent = kEllipsoidExponent) {
+Landmark CentralLandmark(const ShapeExponents& shape_exponents = kEllipsoidExponent) {
   return {{RandomRotation(), Eigen::Vector3d(0, 0, 3) + RandomVector(-0.05, 0.05)},
           RandomVector(0.5, 0.9),
-          shape_exponent};
+          shape_exponents};
 }
 
 Eigen::Vector2d RandomPixel() { return {RandomUniform(295, 345), RandomUniform(220, 265)}; }
@@ -34,7 +36,7 @@ void ExpectJacobian(const Eigen::MatrixXd& analytic, const Landmark& landmark,
 
 TEST(VisibleSurface, PointIsOnTheSurfaceOnTheRayAndVisible) {
   for (int i = 0; i < 100; ++i) {
-    const double p = kTestedExponents[static_cast<size_t>(i) % kTestedExponents.size()];
+    const ShapeExponents p = kTestedExponents[static_cast<size_t>(i) % kTestedExponents.size()];
     const Landmark landmark = CentralLandmark(p);
     const VisibleSurface surface(TestCamera(), landmark);
     const Eigen::Vector2d pixel = RandomPixel();
@@ -91,7 +93,7 @@ TEST(VisibleSurface, TangentPlaneAgreesAtTheContactAndToFirstOrderAround) {
 
 TEST(VisibleSurface, JacobiansAgreeWithNumbers) {
   for (int i = 0; i < 80; ++i) {
-    const double p = kTestedExponents[static_cast<size_t>(i) % kTestedExponents.size()];
+    const ShapeExponents p = kTestedExponents[static_cast<size_t>(i) % kTestedExponents.size()];
     SCOPED_TRACE(p);
     const Landmark landmark = CentralLandmark(p);
     const Eigen::Vector2d pixel = RandomPixel();

@@ -10,19 +10,22 @@
 namespace soslam {
 namespace {
 
-// Half axes, an exponent (each of kShapeExponents, then any) and a direction.
+// Half axes, exponents (each of kShapeExponents, then any) and a direction.
 struct RandomCase {
   explicit RandomCase(size_t i)
-      : p(i < kShapeExponents.size() ? kShapeExponents[i] : RandomUniform(1.0, 2.0)) {}
+      : p(i < kShapeExponents.size()
+              ? kShapeExponents[i]
+              : ShapeExponents(RandomUniform(1.0, 2.0), RandomUniform(1.0, 2.0))) {}
 
-  double p;
+  ShapeExponents p;
   Eigen::Vector3d half_axes = RandomVector(0.1, 1.0);
   Eigen::Vector3d direction = RandomUniform(0.1, 3.0) * RandomDirection();
 };
 
 constexpr size_t kCases = 300;
 
-double Extent(const Eigen::Vector3d& half_axes, double p, const Eigen::Vector3d& direction) {
+double Extent(const Eigen::Vector3d& half_axes, const ShapeExponents& p,
+              const Eigen::Vector3d& direction) {
   return SupportFunction(half_axes, p, direction).extent;
 }
 

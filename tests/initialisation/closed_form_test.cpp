@@ -25,7 +25,7 @@ TEST(ClosedForm, HasNoneWhereARepetitionIsNotInFront) {
 }
 
 TEST(SolveAtYaw, RecoversTheBodyOfAnExactBoxAtItsYaw) {
-  for (const double p : kShapeExponents) {
+  for (const ShapeExponents& p : kShapeExponents) {
     for (int i = 0; i < 50; ++i) {
       const StandingBody body(p);
       const auto landmark = SolveAtYaw(body.observation, body.Yaw());
@@ -47,7 +47,7 @@ TEST(SolveAtYaw, StandsOnThePlaneAtTheYawWithThePriorsRatio) {
     EXPECT_NEAR(body.plane.SignedDistance(landmark->Centre()), landmark->half_axes.z(), 1e-9);
     const Eigen::Vector2d ratio = landmark->half_axes.head<2>() / landmark->half_axes.z();
     EXPECT_LT((ratio - body.observation.prior.ratio).norm(), 1e-9);
-    EXPECT_EQ(landmark->shape_exponent, body.truth.shape_exponent);
+    EXPECT_EQ(landmark->shape_exponents, body.truth.shape_exponents);
   }
 }
 
@@ -116,7 +116,7 @@ Box WithEdgeMoved(Box box, size_t edge, double fraction) {
 // Boxes of which an edge is a bound: a nearer object or the image border cuts it off.
 
 TEST(SolveAtYaw, RecoversABodyThatABoundCutsFromTheOtherThreeEdges) {
-  for (const double p : kShapeExponents) {
+  for (const ShapeExponents& p : kShapeExponents) {
     for (size_t edge = 0; edge < 4; ++edge) {
       for (int i = 0; i < 10; ++i) {
         const StandingBody body(p);

@@ -61,7 +61,7 @@ void ExpectSameCuboid(const Landmark& found, const Landmark& truth) {
   EXPECT_LT((found.half_axes - truth.half_axes).norm(), 1e-6 * size);
   EXPECT_LT(found.frame_from_object.rotation.angularDistance(truth.frame_from_object.rotation),
             1e-6);
-  EXPECT_EQ(found.shape_exponent, kCuboidExponent);
+  EXPECT_EQ(found.shape_exponents, kCuboidExponent);
   const auto found_corners = CornersOf(found), true_corners = CornersOf(truth);
   for (size_t i = 0; i < true_corners.size(); ++i) {
     EXPECT_LT(

@@ -25,14 +25,14 @@ Landmark DisturbedFootAndSize(const Landmark& landmark, const Plane& plane) {
   UprightVector parameters = UprightGround(plane).ParametersOf(landmark);
   parameters.segment<2>(1) += 0.2 * RandomVector(-1, 1).head<2>();
   parameters.tail<3>() += RandomVector(-0.2, 0.2);
-  return UprightGround(plane).LandmarkAt(parameters, landmark.shape_exponent);
+  return UprightGround(plane).LandmarkAt(parameters, landmark.shape_exponents);
 }
 
 // The solver stops where a step would gain less than a millionth of a squared standard deviation.
 constexpr double kCostTolerance = 1e-6;
 
 TEST(FitUpright, FindsTheBodyOfAnExactBoxAtItsYaw) {
-  for (const double p : kShapeExponents) {
+  for (const ShapeExponents& p : kShapeExponents) {
     for (int i = 0; i < 20; ++i) {
       const StandingBody body(p);
       const Landmark start = DisturbedFootAndSize(body.truth, body.plane);
@@ -58,7 +58,7 @@ TEST(FitUpright, LowersTheCostThatItReportsAndKeepsWhatItIsTold) {
       const Landmark& landmark = solution->landmark;
       EXPECT_NEAR(solution->cost, TotalCost(terms, landmark), 1e-9 * (1.0 + solution->cost));
       EXPECT_LE(solution->cost, TotalCost(terms, start));
-      EXPECT_EQ(landmark.shape_exponent, start.shape_exponent);
+      EXPECT_EQ(landmark.shape_exponents, start.shape_exponents);
       EXPECT_NEAR(body.plane.SignedDistance(landmark.Centre()), landmark.half_axes.z(), 1e-9);
       if (yaw_is_free) continue;
       EXPECT_LT(AngleBetweenFronts(landmark, start), 1e-9);

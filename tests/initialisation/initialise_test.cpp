@@ -20,7 +20,7 @@ Sequence Bodies() {
   Sequence sequence = SyntheticSequence(scene, false);
   for (size_t i = 0; i < scene.objects.size(); ++i) {
     if (scene.objects[i].shape != Shape::kBox) continue;
-    sequence.objects[i].ground_truth->landmark_in_world.shape_exponent = kCuboidExponent;
+    sequence.objects[i].ground_truth->landmark_in_world.shape_exponents = kCuboidExponent;
   }
   sequence.planes.front().scene_axis_in_world = Eigen::Vector3d::UnitX();
   return sequence;
@@ -60,7 +60,7 @@ TEST(InitialiseUpright, HasUprightHypothesesInTheOrderOfTheirCosts) {
     for (const Hypothesis& hypothesis : estimate.hypotheses) {
       const Landmark& landmark = hypothesis.landmark_in_camera;
       EXPECT_GE(hypothesis.cost, 0.0);
-      EXPECT_EQ(landmark.shape_exponent, prior.shape_exponent);
+      EXPECT_EQ(landmark.shape_exponents, prior.shape_exponents);
       EXPECT_TRUE(IsInFront(landmark));
       EXPECT_NEAR(plane.SignedDistance(landmark.Centre()), landmark.half_axes.z(), 1e-9);
       EXPECT_LT(

@@ -23,14 +23,14 @@ namespace {
 // A term as a residual of one landmark block, whose shape exponent is fixed.
 class TermResidual final : public ceres::CostFunction {
  public:
-  TermResidual(const LandmarkTerm& term, double shape_exponent)
-      : term_(term), shape_exponent_(shape_exponent) {
+  TermResidual(const LandmarkTerm& term, const ShapeExponents& shape_exponents)
+      : term_(term), shape_exponents_(shape_exponents) {
     set_num_residuals(term.NumResiduals());
     mutable_parameter_block_sizes()->push_back(kLandmarkSize);
   }
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
-    const Landmark landmark = WithShape(UnpackLandmark(blocks[0]), shape_exponent_);
+    const Landmark landmark = WithShape(UnpackLandmark(blocks[0]), shape_exponents_);
     const bool wanted = jacobians != nullptr && jacobians[0] != nullptr;
     LandmarkTerm::Jacobian jacobian(num_residuals(), kLandmarkDof);
     // What a term leaves unwritten shows.
@@ -43,12 +43,12 @@ class TermResidual final : public ceres::CostFunction {
 
  private:
   const LandmarkTerm& term_;
-  double shape_exponent_;
+  ShapeExponents shape_exponents_;
 };
 
 void ExpectCorrectTermJacobian(const LandmarkTerm& term, const Landmark& landmark) {
   const LandmarkBlock block = ToParameterBlock(landmark);
-  ExpectCorrectJacobians(TermResidual(term, landmark.shape_exponent), {block.data()});
+  ExpectCorrectJacobians(TermResidual(term, landmark.shape_exponents), {block.data()});
 
   Eigen::VectorXd residuals(term.NumResiduals());
   LandmarkTerm::Jacobian jacobian(term.NumResiduals(), kLandmarkDof);
@@ -80,12 +80,12 @@ bool AreOffTheKinks(const std::array<BoxEdge, 4>& edges, const Landmark& landmar
     if (edge.is_bound && std::abs(outside) < 0.1) return false;
     const Eigen::Vector3d in_object =
         landmark.frame_from_object.rotation.conjugate() * edge.plane.normalized();
-    return landmark.shape_exponent == kEllipsoidExponent || in_object.cwiseAbs().minCoeff() > 0.1;
+    return landmark.shape_exponents == kEllipsoidExponent || in_object.cwiseAbs().minCoeff() > 0.1;
   });
 }
 
 TEST(BoxTerm, JacobianAgreesWithNumbers) {
-  for (const double p : kShapeExponents) {
+  for (const ShapeExponents& p : kShapeExponents) {
     SCOPED_TRACE(p);
     int checked = 0;
     while (checked < 20) {

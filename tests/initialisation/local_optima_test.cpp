@@ -31,7 +31,7 @@ TEST(LocalOptima, HaveTheTrueBodyAmongThem) {
   int bodies = 0;
   int found = 0;
   int found_nearby = 0;
-  for (const double p : kShapeExponents) {
+  for (const ShapeExponents& p : kShapeExponents) {
     for (int i = 0; i < 20; ++i) {
       const StandingBody body(p);
       const auto optima = Optima(body.observation);
@@ -68,7 +68,7 @@ Landmark RandomStart(const UprightObservation& observation) {
   UprightVector parameters = UprightGround(observation.plane_in_camera).ParametersOf(at_yaw);
   parameters.segment<2>(1) += 0.5 * at_yaw.half_axes.maxCoeff() * RandomVector(-1, 1).head<2>();
   parameters.tail<3>() += RandomVector(-0.3, 0.3);
-  return UprightGround(observation.plane_in_camera).LandmarkAt(parameters, at_yaw.shape_exponent);
+  return UprightGround(observation.plane_in_camera).LandmarkAt(parameters, at_yaw.shape_exponents);
 }
 
 TEST(LocalOptima, NoneOfManyRandomStartsIsBetter) {

@@ -17,9 +17,9 @@ namespace {
 
 constexpr double kSigmaFraction = 0.02;
 
-Landmark RandomBodyOnFloor(double shape_exponent) {
+Landmark RandomBodyOnFloor(const ShapeExponents& shape_exponents) {
   Landmark body;
-  body.shape_exponent = shape_exponent;
+  body.shape_exponents = shape_exponents;
   body.half_axes = RandomVector(0.2, 0.6);
   body.frame_from_object = {
       UprightRotation(Eigen::Vector3d::UnitZ(), RandomUniform(-3, 3)),
@@ -31,13 +31,14 @@ std::vector<Rigid3d> Arc(int views) { return CamerasOnArc(views, 1.5); }
 
 // An upright body on the floor, seen with exact boxes, and what is known of it.
 struct World {
-  World(double shape_exponent, const std::vector<Rigid3d>& world_from_camera)
-      : truth(RandomBodyOnFloor(shape_exponent)), sequence(ViewsOfBody(truth, world_from_camera)) {}
+  World(const ShapeExponents& shape_exponents, const std::vector<Rigid3d>& world_from_camera)
+      : truth(RandomBodyOnFloor(shape_exponents)),
+        sequence(ViewsOfBody(truth, world_from_camera)) {}
 
   ShapePrior Prior(double log_sigma) const {
     return {truth.half_axes.head<2>() / truth.half_axes.z(),
             {log_sigma, log_sigma},
-            truth.shape_exponent};
+            truth.shape_exponents};
   }
   MultiViewObservation Observation(const std::optional<ShapePrior>& prior) const {
     return MakeMultiViewObservation(sequence, DetectionsByObject(sequence)[0], prior,
@@ -52,7 +53,7 @@ struct World {
 void ExpectSame(const Landmark& found, const Landmark& expected, double tolerance) {
   EXPECT_LT((found.Centre() - expected.Centre()).norm(), tolerance);
   EXPECT_LT((found.half_axes - expected.half_axes).norm(), tolerance);
-  EXPECT_EQ(found.shape_exponent, expected.shape_exponent);
+  EXPECT_EQ(found.shape_exponents, expected.shape_exponents);
 }
 
 // The plane is given one metre too low.
@@ -107,7 +108,7 @@ TEST(SweepViews, TurnsAlongWithTheWorld) {
 }
 
 TEST(SolveViewsAtYaw, RecoversTheBodyFromExactBoxes) {
-  for (const double p : kShapeExponents) {
+  for (const ShapeExponents& p : kShapeExponents) {
     SCOPED_TRACE(p);
     for (int i = 0; i < 20; ++i) {
       World world(p, Arc(6));

@@ -12,8 +12,8 @@
 namespace soslam {
 namespace {
 
-Landmark BodyInCamera(double shape_exponent) {
-  Landmark body{RandomRigid(), RandomVector(0.3, 0.8), shape_exponent};
+Landmark BodyInCamera(const ShapeExponents& shape_exponents) {
+  Landmark body{RandomRigid(), RandomVector(0.3, 0.8), shape_exponents};
   body.frame_from_object.translation = {0.2, -0.1, 4.0};
   return body;
 }

@@ -26,12 +26,12 @@ const ShapePrior kDefault{{1.0, 2.0}, {0.5, 0.6}, 1.1};
 const SemanticTable kCupsOnly{{{"cup", kCup}}, {}};
 const SemanticTable kCupsAndDefault{{{"cup", kCup}}, kDefault};
 
-MATCHER_P3(IsPrior, ratio, log_sigma, shape_exponent, "") {
+MATCHER_P3(IsPrior, ratio, log_sigma, shape_exponents, "") {
   return arg && arg->ratio == ratio && arg->log_sigma == log_sigma &&
-         arg->shape_exponent == shape_exponent;
+         arg->shape_exponents == shape_exponents;
 }
 testing::Matcher<const std::optional<ShapePrior>&> Is(const ShapePrior& prior) {
-  return IsPrior(prior.ratio, prior.log_sigma, prior.shape_exponent);
+  return IsPrior(prior.ratio, prior.log_sigma, prior.shape_exponents);
 }
 
 using testing::ElementsAre;
@@ -65,6 +65,14 @@ double NormalisedSquared(const ShapePrior& prior, const Eigen::Vector3d& half_ax
   const Eigen::Vector2d sigmas = off.cwiseQuotient(prior.log_sigma);
   const double r = prior.log_correlation;
   return (sigmas.squaredNorm() - 2.0 * r * sigmas.prod()) / (1.0 - r * r);
+}
+
+// A cylinder that lies has no vertical axis to have other exponents about.
+TEST(OnFace, ABodyThatLiesHasOneExponent) {
+  ShapePrior can = kCup;
+  can.shape_exponents = {2.0, 1.0};
+  EXPECT_EQ(OnFace(can, RestingFace::kBottom).shape_exponents, can.shape_exponents);
+  EXPECT_EQ(OnFace(can, RestingFace::kBack).shape_exponents, 1.5);
 }
 
 TEST(OnFace, ABodyIsAsLikelyHoweverItIsLaid) {
@@ -110,7 +118,7 @@ TEST(ObjectPriors, AreOfTheObjectsFrame) {
 
 TEST(ObjectPriors, UnitKeepsSpreadAndShapeOfTheLabel) {
   const Eigen::Vector2d unit = Eigen::Vector2d::Ones();
-  const ShapePrior cup{unit, kCup.log_sigma, kCup.shape_exponent};
+  const ShapePrior cup{unit, kCup.log_sigma, kCup.shape_exponents};
   EXPECT_THAT(ObjectPriors(CupCupWhisk(), kCupsOnly, RatioPrior::kUnit),
               ElementsAre(Is(cup), Is(cup), Is(ShapePrior())));
   EXPECT_THAT(ObjectPriors(CupCupWhisk(), kCupsAndDefault, RatioPrior::kUnit),
@@ -120,9 +128,9 @@ TEST(ObjectPriors, UnitKeepsSpreadAndShapeOfTheLabel) {
 TEST(ObjectPriors, GroundTruthIsSharpAndKeepsTheShapeOfTheLabel) {
   const Eigen::Vector2d sharp = Eigen::Vector2d::Constant(kTrueRatioLogSigma);
   const ShapePrior cup{kTrueRatio, sharp, 1.4};
-  EXPECT_THAT(
-      ObjectPriors(CupCupWhisk(), kCupsOnly, RatioPrior::kGroundTruth),
-      ElementsAre(Is(cup), Eq(std::nullopt), Is({kTrueRatio, sharp, ShapePrior().shape_exponent})));
+  EXPECT_THAT(ObjectPriors(CupCupWhisk(), kCupsOnly, RatioPrior::kGroundTruth),
+              ElementsAre(Is(cup), Eq(std::nullopt),
+                          Is({kTrueRatio, sharp, ShapePrior().shape_exponents})));
   EXPECT_THAT(ObjectPriors(CupCupWhisk(), kCupsAndDefault, RatioPrior::kGroundTruth),
               ElementsAre(Is(cup), Eq(std::nullopt), Is({kTrueRatio, sharp, 1.1})));
 }
@@ -133,7 +141,7 @@ TEST(ObjectPriors, ShapesCanBeTheSameForAll) {
     const auto priors = ObjectPriors(CupCupWhisk(), kCupsAndDefault, RatioPrior::kTable, shape);
     const auto of_table = ObjectPriors(CupCupWhisk(), kCupsAndDefault, RatioPrior::kTable);
     for (size_t i = 0; i < priors.size(); ++i) {
-      EXPECT_EQ(priors[i]->shape_exponent, exponent);
+      EXPECT_EQ(priors[i]->shape_exponents, exponent);
       EXPECT_EQ(priors[i]->ratio, of_table[i]->ratio);
       EXPECT_EQ(priors[i]->log_sigma, of_table[i]->log_sigma);
     }
@@ -182,7 +190,7 @@ TEST(MixtureTest, HasTheMomentsOfItsLabels) {
   EXPECT_NEAR(prior.log_sigma.y(), 0.2, 1e-12);
   const double covariance = 0.5 * (0.5 * 0.1 * 0.2 - 0.5 * 0.3 * 0.2);
   EXPECT_NEAR(prior.log_correlation * prior.log_sigma.prod(), covariance, 1e-12);
-  EXPECT_NEAR(prior.shape_exponent, 1.5, 1e-12);
+  EXPECT_EQ(prior.shape_exponents, 1.5);
   EXPECT_NEAR(prior.height_m->median, 0.2, 1e-12);
   EXPECT_NEAR(prior.height_m->log_sigma, std::sqrt(0.05 + half_apart * half_apart), 1e-12);
 }

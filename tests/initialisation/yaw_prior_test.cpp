@@ -40,7 +40,7 @@ Sequence Drive(double step, const PlaceOf& place_of) {
     const Place place = place_of(i);
     Landmark landmark;
     landmark.half_axes = {1.875, 0.825, 0.75};
-    landmark.shape_exponent = kCuboidExponent;
+    landmark.shape_exponents = kCuboidExponent;
     landmark.frame_from_object = {UprightRotation(ground.normal, place.yaw),
                                   {place.x, 1.6 - landmark.half_axes.z(), place.z}};
     const Landmark in_camera = Transform(frame.world_from_camera.Inverse(), landmark);

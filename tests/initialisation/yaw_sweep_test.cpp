@@ -52,7 +52,7 @@ constexpr double kStep = 3.0 * kRadPerDeg;
 
 Landmark LandmarkOf(const UprightObservation& observation, const UprightFit& fit) {
   return UprightGround(observation.plane_in_camera)
-      .LandmarkAt(fit.parameters, observation.prior.shape_exponent);
+      .LandmarkAt(fit.parameters, observation.prior.shape_exponents);
 }
 
 TEST(SweepYaw, CoversHalfATurnWithLandmarksAtTheirYaws) {
@@ -71,7 +71,7 @@ TEST(SweepYaw, CoversHalfATurnWithLandmarksAtTheirYaws) {
       const double yaw = Yaw(body.plane.normal, landmark.frame_from_object.rotation);
       EXPECT_NEAR(YawDifferenceModuloPi(yaw, sweep.yaw[i]), 0.0, 1e-9);
       EXPECT_NEAR(body.plane.SignedDistance(landmark.Centre()), landmark.half_axes.z(), 1e-9);
-      EXPECT_EQ(landmark.shape_exponent, 1.5);
+      EXPECT_EQ(landmark.shape_exponents, 1.5);
       EXPECT_TRUE(IsInFront(landmark));
     }
   }

@@ -41,9 +41,9 @@ void ExpectAround(const cv::Rect& drawn, const Box& box, int factor = 1) {
   EXPECT_NEAR(drawn.y + drawn.height - 1, place(box.y_max), kTolerancePx);
 }
 
-Landmark LandmarkInView(double shape_exponent) {
+Landmark LandmarkInView(const ShapeExponents& shape_exponents) {
   Landmark landmark{{ExpRotation({0.3, -0.7, 0.4}), {0.1, -0.2, 4.0}}, {0.5, 0.3, 0.7}};
-  landmark.shape_exponent = shape_exponent;
+  landmark.shape_exponents = shape_exponents;
   return landmark;
 }
 

@@ -39,7 +39,7 @@ struct Views {
 
 Landmark LandmarkOf(const Body& body) {
   Landmark landmark;
-  landmark.shape_exponent = kCuboidExponent;
+  landmark.shape_exponents = kCuboidExponent;
   landmark.rests_on = body.rests_on;
   landmark.half_axes = HalfAxesOnFace(body.own_half_axes, body.rests_on);
   landmark.frame_from_object.rotation =
@@ -84,7 +84,7 @@ ShapePrior PriorOf(const Eigen::Vector3d& own_half_axes, double log_sigma, Attit
   ShapePrior prior;
   prior.ratio = own_half_axes.head<2>() / own_half_axes.z();
   prior.log_sigma = {log_sigma, log_sigma};
-  prior.shape_exponent = kCuboidExponent;
+  prior.shape_exponents = kCuboidExponent;
   prior.attitude = attitude;
   return prior;
 }

@@ -54,7 +54,7 @@ using EdgeImages = std::map<int, std::shared_ptr<const EdgeImage>>;
 // What the errors are, and what the back end takes them for.
 struct Case {
   int scenes = 500;
-  double shape_exponent = kCuboidExponent;
+  ShapeExponents shape_exponents = kCuboidExponent;
   double assumed_exponent = kCuboidExponent;
   // Ranges of a / c and b / c: clearly longer than deep, so that one or two views determine the
   // yaw.
@@ -71,12 +71,12 @@ struct Case {
 
 Truth RandomTruth(const Case& c, const OptimiseOptions& options) {
   Truth truth;
-  truth.prior.shape_exponent = c.assumed_exponent;
+  truth.prior.shape_exponents = c.assumed_exponent;
   truth.prior.log_sigma = {c.ratio_log_sigma, c.ratio_log_sigma};
   truth.prior.ratio = {RandomUniform(c.ratio_range[0], c.ratio_range[1]),
                        RandomUniform(c.ratio_range[2], c.ratio_range[3])};
   Landmark& landmark = truth.landmark_in_world;
-  landmark.shape_exponent = c.shape_exponent;
+  landmark.shape_exponents = c.shape_exponents;
   landmark.half_axes.z() = RandomUniform(0.3, 0.6);
   for (int i = 0; i < 2; ++i) {
     landmark.half_axes[i] =
@@ -133,7 +133,7 @@ Nees MeanNees(const Case& c) {
     const Truth truth = RandomTruth(c, c.actual);
     const Sequence sequence = Observe(truth, c.actual);
     Landmark start = truth.landmark_in_world;
-    start.shape_exponent = c.assumed_exponent;
+    start.shape_exponents = c.assumed_exponent;
     BackEndInput input{sequence, {start}, {truth.prior}, {}, {}};
     if (c.edge_images) input.edge_images = c.edge_images(truth);
     if (c.points) input.points = {c.points(truth)};
@@ -179,7 +179,7 @@ TEST(Calibration, CovariancesAreHonestWhereTheModelHolds) {
   for (const double p : {1.0, 1.3, 2.0}) {
     SCOPED_TRACE(p);
     Case c;
-    c.shape_exponent = c.assumed_exponent = p;
+    c.shape_exponents = c.assumed_exponent = p;
     ExpectHonest(MeanNees(c), c.scenes);
   }
 }
@@ -240,7 +240,7 @@ TEST(Calibration, IsCautiousWhereErrorsAreIndependentButTakenForShared) {
 
 TEST(Calibration, IsOverconfidentForAWrongShapeButLessWithSharedErrors) {
   Case c;
-  c.shape_exponent = 1.3;  // and taken for a cuboid
+  c.shape_exponents = 1.3;  // and taken for a cuboid
   const Nees independent = MeanNees(c);
   c.assumed.view_correlation_deg = OptimiseOptions().view_correlation_deg;
   const Nees shared = MeanNees(c);
@@ -252,7 +252,7 @@ TEST(Calibration, IsOverconfidentForAWrongShapeButLessWithSharedErrors) {
 
 TEST(Calibration, IsOverconfidentOfTheYawOfARoundBody) {
   Case c;
-  c.shape_exponent = c.assumed_exponent = kEllipsoidExponent;
+  c.shape_exponents = c.assumed_exponent = kEllipsoidExponent;
   c.ratio_range = {0.9, 1.1, 0.9, 1.1};
   const Nees nees = MeanNees(c);
   ExpectWithin99Percent(nees.centre, 3 * c.scenes, "centre");

@@ -42,7 +42,7 @@ TEST_F(UprightStarts, AreTheYawThatAllViewsAgreeOn) {
     const auto initial_landmarks = Choose();
     for (size_t i = 0; i < initial_landmarks.size(); ++i) {
       ASSERT_TRUE(initial_landmarks[i]);
-      EXPECT_EQ(initial_landmarks[i]->shape_exponent, kCuboidExponent);
+      EXPECT_EQ(initial_landmarks[i]->shape_exponents, kCuboidExponent);
       EXPECT_GT(BoxIou(*initial_landmarks[i], sequence_.objects[i].ground_truth->landmark_in_world),
                 0.98)
           << "object " << i << ", edges " << edges;

@@ -80,7 +80,7 @@ TEST(TangencyBackEnd, CostsNearlyNothingAtTheTruth) {
   EXPECT_TRUE(map.solver.gated.empty());
   EXPECT_EQ(map.solver.detector_bias_px, (std::array<double, 4>{}));
   for (const ObjectEstimate& object : map.objects) {
-    EXPECT_EQ(object.landmark_in_world->shape_exponent, kCuboidExponent);
+    EXPECT_EQ(object.landmark_in_world->shape_exponents, kCuboidExponent);
   }
 }
 

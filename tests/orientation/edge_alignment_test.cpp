@@ -167,7 +167,7 @@ std::shared_ptr<const EdgeImage> ImageOf(const EdgeMaps& maps) {
 RandomView CuboidView() {
   for (;;) {
     RandomView view;
-    view.landmark_in_world.shape_exponent = kCuboidExponent;
+    view.landmark_in_world.shape_exponents = kCuboidExponent;
     const auto box = OutlineBox(TestCamera(), view.LandmarkInCamera());
     if (box && DistanceToBorder(*box, 640, 480) > 2.0) return view;
   }

@@ -14,10 +14,10 @@ constexpr double kSpacing = 4.0;
 
 // A body that a camera sees in the middle of its image, from that place in the object frame.
 Landmark SeenFrom(const Eigen::Vector3d& camera_in_object, const Eigen::Vector3d& half_axes,
-                  double shape_exponent) {
+                  const ShapeExponents& shape_exponents) {
   const Eigen::Quaterniond rotation = RotationBetween(
       camera_in_object, -Eigen::Vector3d::UnitZ());  // of the object, into the camera frame
-  return {{rotation, {0.0, 0.0, camera_in_object.norm()}}, half_axes, shape_exponent};
+  return {{rotation, {0.0, 0.0, camera_in_object.norm()}}, half_axes, shape_exponents};
 }
 
 // Signs of the two coordinates that are fixed along an edge, 0 for the one that runs.
@@ -81,9 +81,9 @@ TEST(VisibleModelPoints, OfAnEllipsoidLieOnItsOutline) {
 }
 
 TEST(VisibleModelPoints, NoneOfABodyThatReachesBehindTheCamera) {
-  for (const double shape_exponent : {kCuboidExponent, kEllipsoidExponent}) {
+  for (const double shape_exponents : {kCuboidExponent, kEllipsoidExponent}) {
     for (const double depth : {0.4, -3.0}) {  // half axis 0.5: around the camera, and behind it
-      const Landmark landmark{{{1, 0, 0, 0}, {1.0, 0.0, depth}}, {0.5, 0.5, 0.5}, shape_exponent};
+      const Landmark landmark{{{1, 0, 0, 0}, {1.0, 0.0, depth}}, {0.5, 0.5, 0.5}, shape_exponents};
       EXPECT_TRUE(VisibleModelPoints(TestCamera(), landmark, kSpacing).empty());
     }
   }

@@ -101,7 +101,7 @@ class RefineBoxes : public testing::Test {
     ASSERT_EQ(refined.estimate.failure, "");
     EXPECT_EQ(refined.estimate.detection_index, index);
     const Landmark& found = refined.estimate.hypotheses.front().landmark_in_camera;
-    EXPECT_EQ(found.shape_exponent, kCuboidExponent);
+    EXPECT_EQ(found.shape_exponents, kCuboidExponent);
     EXPECT_LT(std::abs(YawError(refined)), max_yaw_error);
     EXPECT_GT(BoxIou(found, TrueLandmark(DetectionAt(index))), min_iou);
   }

@@ -43,12 +43,12 @@ TEST(TextureAsymmetry, IsZeroForAUniformTextureAndWholeWhereNothingIsMirrored) {
 }
 
 // The body's front face towards the camera, 2.5 m away.
-Landmark FacingCube(double shape_exponent) {
+Landmark FacingCube(const ShapeExponents& shape_exponents) {
   Eigen::Matrix3d axes;  // x towards the camera, z up
   axes.col(0) = -Eigen::Vector3d::UnitZ();
   axes.col(2) = -Eigen::Vector3d::UnitY();
   axes.col(1) = axes.col(2).cross(axes.col(0));
-  return {{Eigen::Quaterniond(axes), {0, 0, 3}}, {0.5, 0.5, 0.5}, shape_exponent};
+  return {{Eigen::Quaterniond(axes), {0, 0, 3}}, {0.5, 0.5, 0.5}, shape_exponents};
 }
 
 // Two grey halves that meet in the middle of the image: every pair differs by all of the range.

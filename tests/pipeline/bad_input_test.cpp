@@ -165,7 +165,7 @@ const std::vector<RefusedInput> kRefusedInputs = {
     Refused("SequenceNewer", "initialise",
             InArtefact("sequence.json",
                        Text("\"schema_version\": [\n   1,", "\"schema_version\": [\n   2,")),
-            {"sequence.json", "schema version [2, 7]", "[1, 7]"}),
+            {"sequence.json", "schema version [2, 8]", "[1, 8]"}),
     Refused("ArtefactOfAnotherKind", "optimise",
             [](const StageChain& chain) {
               fs::copy_file(chain.Artefact("sequence.json"), chain.Artefact("refined.json"),

@@ -36,7 +36,7 @@ Sequence BiasedObjects(const std::string& label, int objects, int views, const E
 
 SemanticRows Things() {
   ShapePrior prior;
-  prior.shape_exponent = kShapeExponent;
+  prior.shape_exponents = kShapeExponent;
   return {"", {}, {{"cup", {}, prior, 0, "guess"}, {"thing", {"object"}, prior, 0, "guess"}}};
 }
 

@@ -43,7 +43,7 @@ TEST(LearnPriors, KeptRowsGainSizeAndNothingElse) {
   const SemanticRow& cup = learned.rows[0];
   EXPECT_EQ(cup.prior.ratio, Eigen::Vector2d(1.0, 1.0));
   EXPECT_EQ(cup.prior.log_sigma, Eigen::Vector2d(0.3, 0.3));
-  EXPECT_EQ(cup.prior.shape_exponent, 1.4);
+  EXPECT_EQ(cup.prior.shape_exponents, 1.4);
   EXPECT_EQ(cup.samples, 0);
   EXPECT_NEAR(cup.prior.height_m.value().median, 2.0, 1e-4);
   // One object: the typical spread 0.3, and what the median may be off by.
@@ -87,7 +87,7 @@ TEST(LearnPriors, LabelsThatTheBaseLacksBecomeRows) {
     ASSERT_EQ(learned.rows.size(), 2u);
     EXPECT_EQ(learned.rows[0].label, "bowl");
     EXPECT_NEAR(std::log(learned.rows[0].prior.ratio.x()), 0.6, 1e-4);
-    EXPECT_EQ(learned.rows[0].prior.shape_exponent, 1.2);  // the default's
+    EXPECT_EQ(learned.rows[0].prior.shape_exponents, 1.2);  // the default's
     EXPECT_EQ(learned.rows[0].samples, 2);
     EXPECT_THAT(learned.rows[0].source, HasSubstr("2 of the test"));
   }
@@ -95,10 +95,12 @@ TEST(LearnPriors, LabelsThatTheBaseLacksBecomeRows) {
 
 TEST(LearnPriors, ShapeExponentsAreTheirMean) {
   PriorSource source = Things("cup", {{0.0, 0.0}, {0.0, 0.0}});
-  source.facts["cup"].shape_exponents = {1.5, 1.8};
-  EXPECT_NEAR(LearnPriors(OneCup(), {source}, LearnPriorsOptions()).rows[0].prior.shape_exponent,
-              1.65, 1e-9);
-  EXPECT_EQ(LearnPriors(OneCup(), {source}, Keep()).rows[0].prior.shape_exponent, 1.4);
+  source.facts["cup"].shape_exponents = {{1.5, 1.0}, {1.8, 1.2}};
+  const ShapeExponents learned =
+      LearnPriors(OneCup(), {source}, LearnPriorsOptions()).rows[0].prior.shape_exponents;
+  EXPECT_NEAR(learned.horizontal, 1.65, 1e-9);
+  EXPECT_NEAR(learned.vertical, 1.1, 1e-9);
+  EXPECT_EQ(LearnPriors(OneCup(), {source}, Keep()).rows[0].prior.shape_exponents, 1.4);
 }
 
 TEST(LearnPriors, CorrelationOfAllLabelsIsEverybodysUntilTheyShowTheirOwn) {

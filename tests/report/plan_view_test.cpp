@@ -21,8 +21,8 @@ const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();
 const PlanAxes kAxes = {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY()};
 
 Landmark Upright(const Eigen::Vector3d& centre, const Eigen::Vector3d& half_axes, double yaw,
-                 double shape_exponent) {
-  return {{UprightRotation(kUp, yaw), centre}, half_axes, shape_exponent};
+                 const ShapeExponents& shape_exponents) {
+  return {{UprightRotation(kUp, yaw), centre}, half_axes, shape_exponents};
 }
 
 double DistanceTo(const std::vector<Eigen::Vector2d>& outline, const Eigen::Vector2d& point) {

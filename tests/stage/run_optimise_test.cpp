@@ -93,7 +93,7 @@ TEST_F(RunOptimiseTest, ShapeIsTheTablesOrTheOptions) {
       const MapEstimate map = Run();
       SCOPED_TRACE(testing::Message() << "of table " << of_table << ", expected " << expected);
       for (const ObjectEstimate& object : map.objects) {
-        EXPECT_EQ(object.landmark_in_world->shape_exponent, expected);
+        EXPECT_EQ(object.landmark_in_world->shape_exponents, expected);
       }
       // The boxes are those of cuboids.
       if (expected == kCuboidExponent) {

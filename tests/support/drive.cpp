@@ -49,7 +49,7 @@ Landmark TrueLandmark(int index, double first_x, Noise* noise) {
       UprightRotation(Eigen::Vector3d::UnitZ(), noise->Uniform(0.0, std::numbers::pi)),
       {first_x + kFirstDepth, (index % 2 == 0 ? 1.0 : -1.0) * noise->Uniform(0.8, 1.5),
        landmark.half_axes.z()}};
-  landmark.shape_exponent = kShapeExponents[index % 3];
+  landmark.shape_exponents = kShapeExponents[index % 3];
   return landmark;
 }
 
@@ -110,7 +110,7 @@ Drive::Drive(int frames, int objects, double turn_sigma_rad) {
     priors.push_back(
         ShapePrior{(truth.half_axes.head<2>() / truth.half_axes.z())
                        .cwiseProduct(noise.NormalVector(0.2).head<2>().array().exp().matrix()),
-                   Eigen::Vector2d::Constant(0.2), truth.shape_exponent});
+                   Eigen::Vector2d::Constant(0.2), truth.shape_exponents});
     initial_landmarks.push_back(Disturbed(truth, sequence.frames[first + kDriveViews / 2], &noise));
   }
   std::ranges::stable_sort(sequence.detections, [](const auto& a, const auto& b) {

@@ -15,20 +15,20 @@ inline WorldObject ExportedObject(int id, const std::string& label, const Landma
   return object;
 }
 
-// A cuboid with a covariance, an ellipsoid, a superquadric whose label wants quoting, and an object
+// A cuboid with a covariance, an ellipsoid, a cylinder whose label wants quoting, and an object
 // without a landmark. The first two frames look at them; the last one, which has no image, looks
 // away.
 inline World ExportedWorld() {
-  const auto landmark = [](double shape_exponent) {
+  const auto landmark = [](const ShapeExponents& shape_exponents) {
     Landmark body = RandomLandmarkInCamera();
-    body.shape_exponent = shape_exponent;
+    body.shape_exponents = shape_exponents;
     return body;
   };
   World world;
   world.segment = 4;
   world.objects = {ExportedObject(2, "Dining_Table", landmark(kCuboidExponent)),
                    ExportedObject(3, "cup", landmark(kEllipsoidExponent)),
-                   ExportedObject(5, "a \"b\", c", landmark(1.25)),
+                   ExportedObject(5, "a \"b\", c", landmark({2.0, 1.0})),
                    {8, "cup", 4, Eigen::Vector3d::UnitZ(), 0.5, {}}};
   const Covariance9 root = Covariance9::Random();
   world.objects[0].estimate.covariance = 1e-2 * root * root.transpose();

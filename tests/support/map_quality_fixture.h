@@ -73,7 +73,7 @@ class MapQualityTest : public testing::Test {
   Box BoxOf(const Landmark& landmark, int frame) const {
     Landmark in_camera =
         Transform(sequence_.frames[frame].true_world_from_camera->Inverse(), landmark);
-    in_camera.shape_exponent = kCuboidExponent;
+    in_camera.shape_exponents = kCuboidExponent;
     return OutlineBox(sequence_.camera, in_camera).value();
   }
   // Boxes of a true object become those of an object, in frames from first to before last.

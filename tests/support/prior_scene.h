@@ -81,9 +81,9 @@ class PriorSceneBuilder {
             half * prior.ratio.y() * std::exp(prior.log_sigma.y() * second), half};
   }
 
-  static Shape ShapeOf(double exponent) {
-    if (exponent < 1.25) return Shape::kBox;
-    return exponent < 1.7 ? Shape::kCylinder : Shape::kEllipsoid;
+  static Shape ShapeOf(const ShapeExponents& exponents) {
+    if (exponents.horizontal < 1.7) return Shape::kBox;
+    return exponents.vertical < 1.7 ? Shape::kCylinder : Shape::kEllipsoid;
   }
 
   // False if there is no room.
@@ -107,7 +107,7 @@ class PriorSceneBuilder {
       landmark.frame_from_object.translation << at, plane_height + half_axes.z();
       landmark.half_axes = half_axes;
       const ShapePrior prior = *table_.Find(label);
-      bodies_.push_back({ShapeOf(prior.shape_exponent), landmark});
+      bodies_.push_back({ShapeOf(prior.shape_exponents), landmark});
       body_labels_.push_back(label);
       return true;
     }

@@ -39,7 +39,7 @@ Sequence RolledByAQuarter(Sequence sequence) {
 Sequence CuboidSequence(int objects, int frames) {
   Sequence sequence = SyntheticSequence(RandomScene(5, objects, frames, {Shape::kBox}), false);
   for (Object& object : sequence.objects) {
-    object.ground_truth->landmark_in_world.shape_exponent = kCuboidExponent;
+    object.ground_truth->landmark_in_world.shape_exponents = kCuboidExponent;
   }
   return sequence;
 }

@@ -1,44 +1,75 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <ostream>
 
 #include "geometry/landmark.h"
 #include "support/random.h"
 
 namespace soslam {
 
-// The cuboid, the ellipsoid, and bodies in between; 1.02 has almost the edges of a cuboid.
-inline constexpr std::array kShapeExponents = {kCuboidExponent, 1.02, 1.1, 1.5, kEllipsoidExponent};
+// The cuboid, the ellipsoid, and bodies in between; 1.02 has almost the edges of a cuboid. Then
+// bodies about a vertical axis: a cylinder, one with rounded rims, and any.
+inline constexpr std::array kShapeExponents = {ShapeExponents(kCuboidExponent),
+                                               ShapeExponents(1.02),
+                                               ShapeExponents(1.1),
+                                               ShapeExponents(1.5),
+                                               ShapeExponents(kEllipsoidExponent),
+                                               ShapeExponents(2.0, 1.0),
+                                               ShapeExponents(2.0, 1.1),
+                                               ShapeExponents(1.3, 1.7)};
 
-inline Landmark WithShape(Landmark landmark, double shape_exponent) {
-  landmark.shape_exponent = shape_exponent;
+inline std::ostream& operator<<(std::ostream& stream, const ShapeExponents& exponents) {
+  return stream << exponents.horizontal << ", " << exponents.vertical;
+}
+
+inline double SmallerExponent(const ShapeExponents& exponents) {
+  return std::min(exponents.horizontal, exponents.vertical);
+}
+
+inline Landmark WithShape(Landmark landmark, const ShapeExponents& exponents) {
+  landmark.shape_exponents = exponents;
   return landmark;
 }
 
 inline Eigen::Vector3d RandomDirection() { return RandomRotation() * Eigen::Vector3d::UnitX(); }
 
-// || (x / a, y / b, z / c) ||_q, 1 / p + 1 / q = 1: 1 on the surface, less inside.
-inline double SurfaceNorm(const Eigen::Vector3d& half_axes, double shape_exponent,
+// || (x, y) ||_q for the exponent p, 1 / p + 1 / q = 1.
+inline double DualNorm(double x, double y, double p) {
+  if (p == kCuboidExponent) return std::max(std::abs(x), std::abs(y));
+  const double q = p / (p - 1.0);
+  return std::pow(std::pow(std::abs(x), q) + std::pow(std::abs(y), q), 1.0 / q);
+}
+
+// || ( || (x / a, y / b) ||, z / c ) || by the dual exponents: 1 on the surface, less inside.
+inline double SurfaceNorm(const Eigen::Vector3d& half_axes, const ShapeExponents& exponents,
                           const Eigen::Vector3d& point_in_object) {
-  const Eigen::Array3d x = point_in_object.cwiseQuotient(half_axes).cwiseAbs();
-  if (shape_exponent == kCuboidExponent) return x.maxCoeff();
-  const double q = shape_exponent / (shape_exponent - 1.0);
-  return x.maxCoeff() * std::pow((x / x.maxCoeff()).pow(q).sum(), 1.0 / q);
+  const Eigen::Vector3d x = point_in_object.cwiseQuotient(half_axes);
+  return DualNorm(DualNorm(x.x(), x.y(), exponents.horizontal), x.z(), exponents.vertical);
 }
 
 // A surface point in the object frame, the likelier the more its surroundings bend: for the cuboid,
 // always a corner.
-inline Eigen::Vector3d RandomSurfacePoint(const Eigen::Vector3d& half_axes, double shape_exponent) {
-  const Eigen::Array3d w = RandomDirection();
-  const double exponent = 2.0 * (shape_exponent - 1.0) / shape_exponent;
-  return half_axes.array() * w.abs().pow(exponent) * w.sign();
+inline Eigen::Vector3d RandomSurfacePoint(const Eigen::Vector3d& half_axes,
+                                          const ShapeExponents& exponents) {
+  const auto power = [](double x, double p) {
+    return std::copysign(std::pow(std::abs(x), 2.0 * (p - 1.0) / p), x);
+  };
+  const double latitude = std::asin(RandomDirection().z());
+  const double longitude = RandomUniform(0.0, 2.0 * std::numbers::pi);
+  const double rim = power(std::cos(latitude), exponents.vertical);
+  return {half_axes.x() * rim * power(std::cos(longitude), exponents.horizontal),
+          half_axes.y() * rim * power(std::sin(longitude), exponents.horizontal),
+          half_axes.z() * power(std::sin(latitude), exponents.vertical)};
 }
 
 inline Eigen::Vector3d RandomSurfacePoint(const Landmark& landmark) {
   return landmark.frame_from_object *
-         RandomSurfacePoint(landmark.half_axes, landmark.shape_exponent);
+         RandomSurfacePoint(landmark.half_axes, landmark.shape_exponents);
 }
 
 }  // namespace soslam

@@ -34,12 +34,12 @@ inline Plane RandomFloor() {
 inline constexpr double kMinBoxSidePx = 40.0;
 
 // A body that stands on the floor at any yaw, near enough for a box of kMinBoxSidePx.
-inline Landmark RandomUprightBody(const Plane& floor, double shape_exponent) {
+inline Landmark RandomUprightBody(const Plane& floor, const ShapeExponents& shape_exponents) {
   for (;;) {
     Landmark landmark =
         StandingCuboid(TestCamera(), floor, {RandomUniform(150, 490), RandomUniform(250, 440)},
                        RandomYaw(), RandomVector(0.15, 0.6));
-    landmark.shape_exponent = shape_exponent;
+    landmark.shape_exponents = shape_exponents;
     const auto box = OutlineBox(TestCamera(), landmark);
     if (landmark.Centre().z() > 0.0 && box && box->Width() > kMinBoxSidePx &&
         box->Height() > kMinBoxSidePx) {
@@ -50,7 +50,7 @@ inline Landmark RandomUprightBody(const Plane& floor, double shape_exponent) {
 
 inline ShapePrior PriorOf(const Landmark& landmark, double log_sigma) {
   return {landmark.half_axes.head<2>() / landmark.half_axes.z(),
-          Eigen::Vector2d::Constant(log_sigma), landmark.shape_exponent};
+          Eigen::Vector2d::Constant(log_sigma), landmark.shape_exponents};
 }
 
 inline UprightObservation ObservationOf(const Box& box, const std::array<bool, 4>& is_bound,
@@ -67,9 +67,9 @@ inline UprightObservation ObservationOf(const Box& box, const std::array<bool, 4
 
 // A body, and the observation of it by one exact box and its true ratio.
 struct StandingBody {
-  explicit StandingBody(double shape_exponent, double ratio_log_sigma = 0.05)
+  explicit StandingBody(const ShapeExponents& shape_exponents, double ratio_log_sigma = 0.05)
       : plane(RandomFloor()),
-        truth(RandomUprightBody(plane, shape_exponent)),
+        truth(RandomUprightBody(plane, shape_exponents)),
         box(*OutlineBox(TestCamera(), truth)),
         observation(ObservationOf(box, {}, plane, PriorOf(truth, ratio_log_sigma))) {}
 
@@ -92,7 +92,7 @@ inline std::optional<Landmark> SolveAtYaw(const UprightObservation& observation,
   const auto solution = ClosedForm(observation).At(yaw);
   if (!solution) return std::nullopt;
   return UprightGround(observation.plane_in_camera)
-      .LandmarkAt(solution->parameters, observation.prior.shape_exponent);
+      .LandmarkAt(solution->parameters, observation.prior.shape_exponents);
 }
 
 // Each edge moved by up to `fraction` of the box's width or height.
@@ -126,13 +126,13 @@ inline testing::AssertionResult IsSameBody(const Landmark& found, const Landmark
   const double half_axes = (found.half_axes - expected.half_axes).norm() / size;
   const double front = AngleBetweenFronts(found, expected);
   if (centre <= tolerance && half_axes <= tolerance && front <= tolerance &&
-      found.shape_exponent == expected.shape_exponent) {
+      found.shape_exponents == expected.shape_exponents) {
     return testing::AssertionSuccess();
   }
   return testing::AssertionFailure()
          << "differ by (fractions of the size) centre " << centre << ", half axes " << half_axes
-         << ", front " << front << " rad; shape exponents " << found.shape_exponent << " and "
-         << expected.shape_exponent;
+         << ", front " << front << " rad; shape exponents " << found.shape_exponents << " and "
+         << expected.shape_exponents;
 }
 
 }  // namespace soslam

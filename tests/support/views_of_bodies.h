@@ -11,7 +11,7 @@ namespace soslam {
 // Adds an object with ground truth and views of it somewhere on the ground, whose boxes follow from
 // its outlines. Each frame has its own world, whose origin is the body.
 inline void AddViewsOfBody(const std::string& label, const Eigen::Vector3d& half_axes,
-                           double shape_exponent, int views,
+                           const ShapeExponents& shape_exponents, int views,
                            const std::function<Box(const Box& outline)>& box_of,
                            Sequence* sequence) {
   GroundTruth truth;
@@ -20,7 +20,7 @@ inline void AddViewsOfBody(const std::string& label, const Eigen::Vector3d& half
   sequence->objects.push_back({object, label, 0, truth});
   sequence->camera = TestCamera();
   for (int view = 0; view < views;) {
-    Landmark in_camera = RandomUprightBody(RandomFloor(), shape_exponent);
+    Landmark in_camera = RandomUprightBody(RandomFloor(), shape_exponents);
     in_camera.half_axes = half_axes;
     const auto outline = OutlineBox(TestCamera(), in_camera);
     if (!outline) continue;

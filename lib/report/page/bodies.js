@@ -1,19 +1,25 @@
 "use strict";
 // Meshes and lines of the map in three dimensions, for three.js, in the world's own frame.
 
-// A body whose support function is ||(a n1, b n2, c n3)||_p is the unit ball of the norm with the
-// exponent q, 1/p + 1/q = 1, scaled by its half axes.
+// A body whose support function is || ( ||(a n1, b n2)||_p, c n3 ) ||_r, landmark.p = [p, r], is the
+// unit ball of such a norm with the exponents of 1/p + 1/q = 1, scaled by its half axes. Points of a
+// cube are moved onto it: first in their horizontal section, then between axis and rim.
 function bodyGeometry(landmark) {
   const [a, b, c] = landmark.half_axes;
-  if (landmark.p <= 1.001) return new THREE.BoxBufferGeometry(2 * a, 2 * b, 2 * c);
-  const q = landmark.p / (landmark.p - 1);
+  if (Math.max(...landmark.p) <= 1.001) return new THREE.BoxBufferGeometry(2 * a, 2 * b, 2 * c);
+  const norm = (x, y, p) => {
+    const [small, large] = [Math.abs(x), Math.abs(y)].sort((one, other) => one - other);
+    const q = p / (p - 1);
+    return p <= 1.001 || large === 0 ? large : large * Math.pow(1 + Math.pow(small / large, q), 1 / q);
+  };
   const geometry = new THREE.BoxBufferGeometry(2, 2, 2, 14, 14, 14);
   const positions = geometry.attributes.position;
   for (let i = 0; i < positions.count; ++i) {
-    const d = [positions.getX(i), positions.getY(i), positions.getZ(i)];
-    const size = Math.hypot(...d);
-    const norm = Math.pow(d.reduce((sum, part) => sum + Math.pow(Math.abs(part) / size, q), 0), 1 / q);
-    positions.setXYZ(i, a * d[0] / size / norm, b * d[1] / size / norm, c * d[2] / size / norm);
+    const [x, y, z] = [positions.getX(i), positions.getY(i), positions.getZ(i)];
+    const rim = Math.max(Math.abs(x), Math.abs(y));
+    const size = norm(rim, z, landmark.p[1]);
+    const section = rim === 0 ? 0 : rim / norm(x, y, landmark.p[0]) / size;
+    positions.setXYZ(i, a * x * section, b * y * section, c * z / size);
   }
   geometry.computeVertexNormals();
   return geometry;

@@ -10,25 +10,25 @@ function objectNumbers(page, variant, index) {
   const object = page.sequences[variant.sequence].objects[index];
   const estimate = variant.objects[index];
   const metrics = metricsOfObject(page, variant, index);
-  const triple = (values, decimals) => values.map((value) => number(value, decimals)).join(", ");
+  const list = (values, decimals) => values.map((value) => number(value, decimals)).join(", ");
   const rows = [["variant", variant.name], ["observations", String(estimate.observations)]];
   if (estimate.landmark) {
-    rows.push(["centre, m", triple(estimate.landmark.pose.slice(0, 3), 2)]);
-    rows.push(["half axes, m", triple(estimate.landmark.half_axes, 2)]);
-    rows.push(["shape exponent", number(estimate.landmark.p, 2)]);
+    rows.push(["centre, m", list(estimate.landmark.pose.slice(0, 3), 2)]);
+    rows.push(["half axes, m", list(estimate.landmark.half_axes, 2)]);
+    rows.push(["shape exponents", list(estimate.landmark.p, 2)]);
   } else {
     rows.push(["no landmark", estimate.failure]);
   }
   if (object.labels !== object.label) rows.push(["label", object.labels]);
   if (estimate.sigma_centre) {
-    rows.push(["sigma of centre, m", triple(estimate.sigma_centre, 3)]);
-    rows.push(["sigma of half axes, %", triple(estimate.sigma_log_half_axes.map((value) => 100 * value), 1)]);
+    rows.push(["sigma of centre, m", list(estimate.sigma_centre, 3)]);
+    rows.push(["sigma of half axes, %", list(estimate.sigma_log_half_axes.map((value) => 100 * value), 1)]);
     rows.push(["sigma of yaw, °", number(estimate.sigma_yaw_deg, 2)]);
   }
   if (estimate.points) {
     rows.push(["points", `${estimate.points.count}, of which ${number(estimate.points.of_object, 0)} are of it`]);
   }
-  if (object.truth) rows.push(["true half axes, m", triple(object.truth.half_axes, 2)]);
+  if (object.truth) rows.push(["true half axes, m", list(object.truth.half_axes, 2)]);
   if (metrics && page.has_true_objects) {
     rows.push(["IoU", number(metrics.iou, 3)], ["Rot, °", number(metrics.rotation_deg, 2)],
       ["yaw error, °", number(metrics.yaw_error_deg, 2)], ["centre error, m", number(metrics.centre_m, 3)]);

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "geometry/superquadric_norm.h"
+
+#include <gtest/gtest.h>
+
+#include "support/shape_exponents.h"
+
+namespace soslam {
+namespace {
+
+constexpr int kCases = 200;
+
+// Exponents of support functions and of surfaces, from 1 to infinity.
+std::vector<ShapeExponents> AllExponents() {
+  std::vector<ShapeExponents> all(kShapeExponents.begin(), kShapeExponents.end());
+  for (const ShapeExponents& p : kShapeExponents) all.push_back(DualExponents(p));
+  return all;
+}
+
+double Norm(const Eigen::Array3d& u, const ShapeExponents& p) {
+  return SuperquadricNorm(u, p).value;
+}
+
+TEST(SuperquadricNorm, IsANorm) {
+  for (const ShapeExponents& p : AllExponents()) {
+    for (int i = 0; i < kCases; ++i) {
+      const Eigen::Array3d u = RandomVector(-1.0, 1.0), v = RandomVector(-1.0, 1.0);
+      const double factor = RandomUniform(-3.0, 3.0);
+      EXPECT_GT(Norm(u, p), 0.0) << p;
+      EXPECT_NEAR(Norm(factor * u, p), std::abs(factor) * Norm(u, p), 1e-12) << p;
+      EXPECT_LE(Norm(u + v, p), Norm(u, p) + Norm(v, p) + 1e-12) << p;
+    }
+  }
+}
+
+TEST(SuperquadricNorm, OfOneExponentIsThePNorm) {
+  for (int i = 0; i < kCases; ++i) {
+    const Eigen::Array3d u = RandomVector(-1.0, 1.0);
+    const double p = RandomUniform(1.0, 12.0);
+    EXPECT_NEAR(Norm(u, p), std::pow(u.abs().pow(p).sum(), 1.0 / p), 1e-12);
+    EXPECT_NEAR(Norm(u, DualExponents(kCuboidExponent)), u.abs().maxCoeff(), 1e-12);
+  }
+}
+
+// Hoelder's inequality: u . v is at most the product of the norms of dual exponents, and reaches it
+// for some v.
+TEST(SuperquadricNorm, IsDualToThatOfTheDualExponents) {
+  for (const ShapeExponents& p : kShapeExponents) {
+    for (int i = 0; i < kCases; ++i) {
+      const Eigen::Array3d u = RandomVector(-1.0, 1.0), v = RandomVector(-1.0, 1.0);
+      EXPECT_LE((u * v).sum(), Norm(u, p) * Norm(v, DualExponents(p)) + 1e-12) << p;
+      const auto [value, slopes] = SuperquadricNorm(u, p);
+      EXPECT_NEAR(Norm(slopes, DualExponents(p)), 1.0, 1e-9) << p;
+      EXPECT_NEAR((u * slopes).sum(), value, 1e-12) << p;
+    }
+  }
+}
+
+TEST(SuperquadricNorm, DerivativesAgreeWithNumbers) {
+  constexpr double kStep = 1e-6;
+  for (const ShapeExponents& p : AllExponents()) {
+    for (int i = 0; i < kCases; ++i) {
+      Eigen::Array3d u = RandomVector(-1.0, 1.0);
+      u = u.sign() * (0.1 + u.abs());  // off the kinks
+      Eigen::Matrix3d hessian;
+      const auto [value, slopes] = SuperquadricNorm(u, p, &hessian);
+      for (int k = 0; k < 3; ++k) {
+        const Eigen::Array3d step = kStep * Eigen::Vector3d::Unit(k).array();
+        const NormValue after = SuperquadricNorm(u + step, p);
+        const NormValue before = SuperquadricNorm(u - step, p);
+        EXPECT_NEAR(slopes[k], (after.value - before.value) / (2 * kStep), 1e-7) << p;
+        const Eigen::Array3d numeric = (after.slopes - before.slopes) / (2 * kStep);
+        EXPECT_LT((hessian.col(k) - numeric.matrix()).norm(), 1e-5 * (1.0 + hessian.norm())) << p;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace soslam
