@@ -10,9 +10,9 @@ namespace soslam {
 namespace {
 
 constexpr double kNearCentre = 1e-9;
-// The largest dual exponent of the sections of a body without flat caps. With an infinite one the
-// distance would jump where the sections' sides meet.
-constexpr double kSharpestSection = 40.0;
+// Stands for the infinite dual exponent of rectangular sections without flat caps: the distance
+// would jump where the sections' sides meet.
+constexpr double kSharpSection = 40.0;
 
 // In the object's frame.
 struct Distance {
@@ -57,7 +57,7 @@ Distance DistanceInObject(const Landmark& landmark, const Eigen::Vector3d& x) {
   const Eigen::Vector3d& half_axes = landmark.half_axes;
   ShapeExponents dual = DualExponents(landmark.shape_exponents);
   if (!std::isinf(dual.vertical)) {
-    dual.horizontal = std::min(dual.horizontal, kSharpestSection);
+    if (std::isinf(dual.horizontal)) dual.horizontal = kSharpSection;
     return FirstOrderDistance(half_axes, dual, x);
   }
   const Distance side =

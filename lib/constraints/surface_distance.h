@@ -12,7 +12,8 @@ namespace soslam {
 // Flat faces (all of the cuboid's, the caps of bodies with a vertical exponent of 1): |x_i| - a_i.
 // Curved sides: the distance to first order, (F - 1) / |dF / dx|, with the body F <= 1 of
 // BodySurface; exact on the surface, to second order near it, and for spheres anywhere. A body with
-// both has the larger of the two. Exact inside and in front of a face; an underestimate beyond
+// both has the larger of the two. Rectangular sections without flat caps are rounded, by 2 % of the
+// size at their corners. Exact inside and in front of a face; an underestimate beyond
 // edges and corners.
 //
 // It is continuous but at the centre (the axis, for a body with caps), where F has no gradient:

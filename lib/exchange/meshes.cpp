@@ -22,8 +22,9 @@ class SurfaceGrid {
 
   SurfaceGrid(const Eigen::Vector3d& half_axes, const ShapeExponents& exponents)
       : half_axes_(half_axes), dual_(DualExponents(exponents)) {
-    const double round = std::isinf(dual_.horizontal) ? dual_.vertical : dual_.horizontal;
-    for (const size_t axis : {0, 1, 2}) lines_[axis] = LinesFor(axis < 2 ? round : dual_.vertical);
+    const double roundest = std::min(dual_.horizontal, dual_.vertical);
+    for (const size_t axis : {0, 1, 2})
+      lines_[axis] = LinesFor(axis < 2 ? roundest : dual_.vertical);
   }
 
   int Cells(size_t axis) const { return static_cast<int>(lines_[axis].size()) - 1; }

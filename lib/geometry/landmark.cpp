@@ -54,6 +54,7 @@ Landmark InOwnAxes(const Landmark& landmark) {
       (landmark.frame_from_object.rotation * Eigen::Quaterniond(own_from_object).conjugate())
           .normalized();
   own.half_axes = own_from_object.cwiseAbs() * landmark.half_axes;
+  own.shape_exponents = landmark.shape_exponents.Mean();
   own.rests_on = RestingFace::kBottom;
   return own;
 }

@@ -75,10 +75,10 @@ ShapeExponents DualExponents(const ShapeExponents& exponents) {
 
 NormValue SuperquadricNorm(const Eigen::Array3d& u, const ShapeExponents& exponents,
                            Eigen::Matrix3d* hessian) {
-  const auto [p, q] = exponents;
+  const auto [of_sections, of_curve] = exponents;
   const Eigen::Array3d size = u.abs();
-  const PairNorm section = NormOfPair(size.x(), size.y(), p);
-  const PairNorm norm = NormOfPair(section.value, size.z(), q);
+  const PairNorm section = NormOfPair(size.x(), size.y(), of_sections);
+  const PairNorm norm = NormOfPair(section.value, size.z(), of_curve);
   const Eigen::Vector3d section_slopes(std::copysign(section.d_x, u.x()),
                                        std::copysign(section.d_y, u.y()), 0.0);
   const Eigen::Vector3d slopes =
@@ -91,15 +91,15 @@ NormValue SuperquadricNorm(const Eigen::Array3d& u, const ShapeExponents& expone
     hessian->setZero();
     if (section.value > 0.0) {
       *hessian -= section_slopes * section_slopes.transpose();
-      (*hessian)(0, 0) += CurvatureAlong(size.x(), section.value, p);
-      (*hessian)(1, 1) += CurvatureAlong(size.y(), section.value, p);
-      *hessian *= norm.d_x * Curvature(p) / section.value;
+      (*hessian)(0, 0) += CurvatureAlong(size.x(), section.value, of_sections);
+      (*hessian)(1, 1) += CurvatureAlong(size.y(), section.value, of_sections);
+      *hessian *= norm.d_x * Curvature(of_sections) / section.value;
     }
     Eigen::Matrix3d outer = -slopes * slopes.transpose();
-    outer +=
-        CurvatureAlong(section.value, norm.value, q) * section_slopes * section_slopes.transpose();
-    outer(2, 2) += CurvatureAlong(size.z(), norm.value, q);
-    *hessian += Curvature(q) / norm.value * outer;
+    outer += CurvatureAlong(section.value, norm.value, of_curve) * section_slopes *
+             section_slopes.transpose();
+    outer(2, 2) += CurvatureAlong(size.z(), norm.value, of_curve);
+    *hessian += Curvature(of_curve) / norm.value * outer;
   }
   return {norm.value, slopes};
 }

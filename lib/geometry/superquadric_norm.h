@@ -20,6 +20,8 @@ struct ShapeExponents {
 
   // False for bodies that are the same about x, y and z, but for their half axes.
   constexpr bool HasAxis() const { return horizontal != vertical; }
+  // One exponent for both, for a body whose axis does not stay vertical.
+  constexpr double Mean() const { return 0.5 * (horizontal + vertical); }
 
   bool operator==(const ShapeExponents&) const = default;
 };

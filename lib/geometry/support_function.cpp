@@ -22,22 +22,22 @@ Eigen::Array3d RoundedDirection(const Eigen::Vector3d& direction, double squared
 
 SupportValue SupportFunction(const Eigen::Vector3d& half_axes, const ShapeExponents& exponents,
                              const Eigen::Vector3d& direction_in_object) {
-  const double rounding = SquaredRounding(exponents);
-  const Eigen::Array3d rounded = RoundedDirection(direction_in_object, rounding);
+  const double squared_rounding = SquaredRounding(exponents);
+  const Eigen::Array3d rounded = RoundedDirection(direction_in_object, squared_rounding);
   const Eigen::Array3d u = half_axes.array() * rounded;
   const auto [extent, slopes] = SuperquadricNorm(u, exponents);
   // d u_i / d m_j = s_i (m_i [i = j] + e^2 m_j) / rounded_i
   const Eigen::Array3d d_squares =
       (rounded > 0.0).select(slopes * half_axes.array() / rounded, 0.0);
-  return {extent, (d_squares + d_squares.sum() * rounding) * direction_in_object.array(),
+  return {extent, (d_squares + d_squares.sum() * squared_rounding) * direction_in_object.array(),
           slopes * u};
 }
 
 Eigen::Matrix3d SupportHessian(const Eigen::Vector3d& half_axes, const ShapeExponents& exponents,
                                const Eigen::Vector3d& direction_in_object) {
   const Eigen::Vector3d& m = direction_in_object;
-  const double rounding = SquaredRounding(exponents);
-  const Eigen::Array3d rounded = RoundedDirection(m, rounding);
+  const double squared_rounding = SquaredRounding(exponents);
+  const Eigen::Array3d rounded = RoundedDirection(m, squared_rounding);
   Eigen::Matrix3d by_u;
   const auto [extent, slopes] = SuperquadricNorm(half_axes.array() * rounded, exponents, &by_u);
   if (!(extent > 0.0)) return Eigen::Matrix3d::Zero();
@@ -51,10 +51,10 @@ Eigen::Matrix3d SupportHessian(const Eigen::Vector3d& half_axes, const ShapeExpo
       d_rounded.row(i) = unit.transpose();
       continue;
     }
-    const Eigen::Vector3d slope = (m[i] * unit + rounding * m) / rounded[i];
+    const Eigen::Vector3d slope = (m[i] * unit + squared_rounding * m) / rounded[i];
     d_rounded.row(i) = slope.transpose();
     hessian += slopes[i] * half_axes[i] / rounded[i] *
-               (unit * unit.transpose() + rounding * Eigen::Matrix3d::Identity() -
+               (unit * unit.transpose() + squared_rounding * Eigen::Matrix3d::Identity() -
                 slope * slope.transpose());
   }
   const Eigen::Matrix3d d_u = half_axes.asDiagonal() * d_rounded;

@@ -122,7 +122,8 @@ class RobustViewTerm final : public LandmarkTerm {
 };
 
 // Weak prior of yaws along or across an axis of the scene, as for furniture: cost
-// `weight` sin^2(2 d), with d the angle between yaw and axis, so at most `weight`.
+// `weight` sin^2(2 d), with d the angle between yaw and axis, so at most `weight`. The Jacobian is
+// that of an upright landmark.
 class AxisTerm final : public LandmarkTerm {
  public:
   AxisTerm(const Plane& plane_in_camera, const Eigen::Vector3d& axis_in_camera, double weight);

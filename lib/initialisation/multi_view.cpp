@@ -189,7 +189,7 @@ class LinearViews {
     UprightVector parameters;
     parameters << body.yaw, body.foot, body.half_axes.array().log().matrix();
     Landmark landmark =
-        ground_.LandmarkAt(parameters, observation_.ShapeExponent(), observation_.RestsOn());
+        ground_.LandmarkAt(parameters, observation_.Exponents(), observation_.RestsOn());
     landmark.frame_from_object.translation += body.height_m * ground_.normal;
     return landmark;
   }

@@ -42,7 +42,7 @@ struct MultiViewObservation {
   double huber_delta = 1.0;
 
   RestingFace RestsOn() const { return prior ? prior->rests_on : RestingFace::kBottom; }
-  ShapeExponents ShapeExponent() const {
+  ShapeExponents Exponents() const {
     return prior ? prior->shape_exponents : ShapeExponents(kCuboidExponent);
   }
 };

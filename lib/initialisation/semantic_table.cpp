@@ -47,8 +47,7 @@ ShapePrior OnFace(const ShapePrior& standing, RestingFace face) {
   turned.rests_on = face;
   if (face == RestingFace::kBottom) return turned;
   // The axis of the sections lies down with the body: one exponent between the two stands for both.
-  turned.shape_exponents =
-      0.5 * (standing.shape_exponents.horizontal + standing.shape_exponents.vertical);
+  turned.shape_exponents = standing.shape_exponents.Mean();
   // Logarithms of half axes along the object frame by those of (a / c, b / c) and of c.
   Eigen::Matrix<double, 3, 2> by_ratios;
   by_ratios << Eigen::Matrix2d::Identity(), Eigen::RowVector2d::Zero();

@@ -165,7 +165,7 @@ std::vector<Candidate> BestOfEachYaw(const std::vector<Landmark>& landmarks, con
   std::map<long, Candidate> best;
   const double first_yaw = FirstYaw(fit.boxes());
   for (Landmark landmark : landmarks) {
-    landmark.shape_exponents = fit.boxes().ShapeExponent();  // whatever it was found with
+    landmark.shape_exponents = fit.boxes().Exponents();  // whatever it was found with
     landmark.rests_on = fit.boxes().RestsOn();
     const double yaw = Yaw(fit.boxes().plane_in_world.normal, landmark.frame_from_object.rotation);
     const long bin = std::lround(YawDifferenceModuloPi(yaw, first_yaw) / kYawBin);

@@ -14,7 +14,8 @@
 namespace soslam {
 namespace {
 
-// Up to this exponent of its sections an object has edges of its own, beyond it only a silhouette.
+// Up to this exponent, the larger of the two, an object has edges of its own, beyond it only a
+// silhouette.
 constexpr double kMaxEdgyExponent = 1.3;
 
 class PointSampler {
@@ -74,7 +75,8 @@ std::vector<ModelPoint> VisibleModelPoints(const Camera& camera, const Landmark&
                                            double spacing_px) {
   if (!IsInFront(landmark_in_camera)) return {};
   PointSampler sampler(camera, landmark_in_camera, spacing_px);
-  if (landmark_in_camera.shape_exponents.horizontal <= kMaxEdgyExponent) {
+  const auto [of_sections, of_curve] = landmark_in_camera.shape_exponents;
+  if (std::max(of_sections, of_curve) <= kMaxEdgyExponent) {
     AddCuboidEdges(CameraInUnitBody(landmark_in_camera), &sampler);
   } else {
     AddOutline(camera, landmark_in_camera, &sampler);

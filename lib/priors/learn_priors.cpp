@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "model/label_groups.h"
 
@@ -129,7 +128,8 @@ class Learner {
                   &row.prior);
     }
     LearnCorrelation(data, &row.prior);
-    if (data.Count() > 0) {
+    const bool is_kept = !update && base.prior.height_m && base.prior.log_correlation != 0.0;
+    if (data.Count() > 0 && !is_kept) {
       row.source += fmt::format("; {}: {}", update ? "updated by" : "size, correlation",
                                 fmt::join(data.cited, ", "));
     }

@@ -111,6 +111,20 @@ TEST_F(ArtefactFilesTest, RowsOfRejectedDetectionsAreChecked) {
   refused(2, 7, {"/rejected/rows/0/2 is 7"});
 }
 
+TEST_F(ArtefactFilesTest, BeforeVersion17ObjectsSaidWhatIsTrue) {
+  WriteSequence(file, sequence, {});
+  nlohmann::json edited = ParseJsonFile(file);
+  edited.erase("true_objects");
+  edited.erase("odometry_world");
+  std::ofstream(file) << edited;
+  const Sequence read = ReadSequence(file);
+  size_t with_truth = 0;
+  for (const Object& object : sequence.objects) with_truth += object.ground_truth ? 1 : 0;
+  ASSERT_GT(with_truth, 0u);
+  EXPECT_EQ(read.true_objects.size(), with_truth);
+  EXPECT_EQ(read.odometry_world, OdometryWorld::kOfTruth);
+}
+
 // Files of older versions have values that the golden tests compare one by one.
 TEST_F(ArtefactFilesTest, WhatIsReadIsWrittenAgainBitForBit) {
   const auto expect_same = [&] { EXPECT_EQ(FileBytes(file), FileBytes(again)); };

@@ -15,6 +15,7 @@
 #include "geometry/surface.h"
 #include "support/exported_world.h"
 #include "support/gltf_document.h"
+#include "support/shape_exponents.h"
 
 namespace soslam {
 namespace {
@@ -90,6 +91,15 @@ TEST_F(GltfTest, NodesAreLandmarksWithTheirBodies) {
                 0.01);
   }
   EXPECT_EQ(document.Mesh(Node(document, 0)).triangles.size(), 12u);
+}
+
+TEST(BodyMeshTest, HasTheVolumeOfItsBody) {
+  for (const ShapeExponents& p : kShapeExponents) {
+    const Eigen::Vector3d half_axes(0.5, 0.3, 0.8);
+    const TriangleMesh mesh = BodyMesh(half_axes, p);
+    ExpectClosed(mesh);
+    EXPECT_NEAR(SignedVolume(mesh) / BodyVolume(half_axes, p), 1.0, 0.01) << p;
+  }
 }
 
 TEST_F(GltfTest, ExtrasSayWhatTheMapKnows) {

@@ -213,6 +213,19 @@ TEST_F(InspectionTest, AssociationsHaveARowPerObject) {
   EXPECT_EQ(At(inspection, 0, "label_votes"), "3 cup, 1 mug");
 }
 
+TEST_F(InspectionTest, SemanticTablesHaveARowPerLabel) {
+  SemanticRow cup{"cup", {"mug", "beaker"}, {}, 5, "a test"};
+  cup.prior.height_m = LogNormal{0.1, 0.2};
+  cup.prior.shape_exponents = {2.0, 1.25};
+  WriteSemanticRows(File(), {"sizes", std::nullopt, {cup}}, {});
+  const Inspection inspection = Read();
+  EXPECT_EQ(Said(inspection, "what"), "sizes");
+  EXPECT_EQ(At(inspection, 0, "aliases"), "mug, beaker");
+  EXPECT_EQ(At(inspection, 0, "height"), 0.1);
+  EXPECT_EQ(At(inspection, 0, "p"), 2.0);
+  EXPECT_EQ(At(inspection, 0, "p_vertical"), 1.25);
+}
+
 TEST_F(InspectionTest, PointsHaveARowPerFrame) {
   WritePoints(File(),
               {{{0.0, 1.0, 2.0}, 0.5, {{3, {1.0, 1.0}}, {5, {2.0, 2.0}}}},

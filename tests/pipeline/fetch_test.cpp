@@ -203,6 +203,14 @@ TEST_F(FetchTest, HalfAFileIsGoneOnWith) {
   }
 }
 
+TEST_F(FetchTest, AServerThatGivesNoPartsGivesTheWholeAgain) {
+  server_.EndAfter(6000);
+  Fetch();
+  server_.EndAfter(std::string::npos);
+  server_.WholeFilesOnly();
+  ExpectWhole(Fetch());
+}
+
 // Killed when all bytes were there and their name was not.
 TEST_F(FetchTest, AWholeFileWithoutItsNameIsTaken) {
   for (const bool size_is_known : {true, false}) {

@@ -184,5 +184,15 @@ TEST_F(ProvenanceTest, NothingIsWrittenOutsideOfTheResults) {
   }
 }
 
+// The project's Makefile, up to what would build the executables.
+TEST_F(ProvenanceTest, FrontDoor) {
+  const CommandResult planned = RunMake({"-n", "-C", SOSLAM_SOURCE_DIR, "verify", "reproduce",
+                                         "RESULTS=some", "DATA_ROOT=elsewhere"});
+  EXPECT_EQ(planned.exit_code, 0) << planned.errors;
+  EXPECT_THAT(planned.output,
+              AllOf(HasSubstr("soslam-verify --results some --data_root elsewhere"),
+                    ContainsRegex("soslam-reproduce --results some .*--data_root elsewhere")));
+}
+
 }  // namespace
 }  // namespace soslam

@@ -50,6 +50,10 @@ class HttpServer {
   void EndAfter(size_t bytes) {
     Locked([&] { end_after_ = bytes; });
   }
+  // Parts of files are not given.
+  void WholeFilesOnly() {
+    Locked([&] { whole_only_ = true; });
+  }
   // What was asked for: "/file", or "/file from 10".
   std::vector<std::string> Requests() {
     std::vector<std::string> requests;
@@ -85,7 +89,7 @@ class HttpServer {
     const auto file = files_.find(name);
     if (file == files_.end()) return Head("404 Not Found", 0);
     const size_t size = file->second.size();
-    if (from == 0) {
+    if (from == 0 || whole_only_) {
       return Head("200 OK", size) + file->second.substr(0, end_after_);
     }
     if (from >= size) return Head("416 Range Not Satisfiable", 0);
@@ -101,6 +105,7 @@ class HttpServer {
   std::map<std::string, std::string> files_;  // by path
   std::mutex mutex_;
   size_t end_after_ = std::string::npos;
+  bool whole_only_ = false;
   std::vector<std::string> requests_;
   int socket_ = -1;
   int port_ = 0;

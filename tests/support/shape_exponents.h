@@ -13,7 +13,8 @@
 namespace soslam {
 
 // The cuboid, the ellipsoid, and bodies in between; 1.02 has almost the edges of a cuboid. Then
-// bodies about a vertical axis: a cylinder, one with rounded rims, and any.
+// bodies about a vertical axis: a cylinder, one with rounded rims, any, and
+// domes over sharp and rounded rectangles.
 inline constexpr std::array kShapeExponents = {ShapeExponents(kCuboidExponent),
                                                ShapeExponents(1.02),
                                                ShapeExponents(1.1),
@@ -21,7 +22,9 @@ inline constexpr std::array kShapeExponents = {ShapeExponents(kCuboidExponent),
                                                ShapeExponents(kEllipsoidExponent),
                                                ShapeExponents(2.0, 1.0),
                                                ShapeExponents(2.0, 1.1),
-                                               ShapeExponents(1.3, 1.7)};
+                                               ShapeExponents(1.3, 1.7),
+                                               ShapeExponents(1.0, 1.5),
+                                               ShapeExponents(1.1, 2.0)};
 
 inline std::ostream& operator<<(std::ostream& stream, const ShapeExponents& exponents) {
   return stream << exponents.horizontal << ", " << exponents.vertical;
