@@ -56,8 +56,8 @@ std::string CocoDatasetText(const std::vector<World>& worlds, CocoAnnotations an
 // - a node "<label> <id>" per landmark: its pose, its body as a mesh in the object frame, a
 // material
 //   named by the label, and extras: id, label, observations, half_axes [a, b, c] in metres, yaw_deg
-//   about the support normal, shape_exponents, and the covariance of ObjectEstimate if there is
-//   one;
+//   about the support normal, shape_exponent, vertical_exponent, and the covariance of
+//   ObjectEstimate if there is one;
 // - a node "trajectory": the camera centres as a line strip, if there are at least two frames.
 // `colours` must have all labels of the world.
 // JSON with the numbers as a base64 data URI (.gltf):
