@@ -66,6 +66,25 @@ TEST(TangencyBackEnd, HeldPosesStayAsTheyAre) {
   ExpectTruth(sequence, map, 0.99);
 }
 
+// Boxes say nothing of the yaw of a round body; what they say of the others stays.
+TEST(TangencyBackEnd, ARoundCylinderLeavesTheOthersTheirCovariances) {
+  Sequence sequence = CuboidSequence(4, 20);
+  Landmark& round = sequence.objects[0].ground_truth->landmark_in_world;
+  round.half_axes.y() = round.half_axes.x();
+  round.shape_exponents = {kEllipsoidExponent, kCuboidExponent};
+  for (Detection& detection : sequence.detections) {
+    if (detection.object_index != 0) continue;
+    detection.box =
+        OutlineBox(sequence.CameraOf(detection), *TrueLandmarkInCamera(sequence, detection))
+            .value();
+  }
+  OptimiseOptions options = TangencyOptions();
+  options.covariances = true;
+  const MapEstimate map = OptimiseMap(TruthInput(sequence), options);
+  ExpectTruth(sequence, map, 0.98);
+  for (const ObjectEstimate& object : map.objects) EXPECT_TRUE(object.covariance);
+}
+
 TEST(TangencyBackEnd, CostsNearlyNothingAtTheTruth) {
   const Sequence sequence = CuboidSequence(5, 20);
   const MapEstimate map = OptimiseMap(TruthInput(sequence), TangencyOptions());
