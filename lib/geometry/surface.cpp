@@ -44,8 +44,9 @@ std::optional<double> SphereEntry(const Eigen::Vector3d& origin, const Eigen::Ve
   return c / (-half_b + std::sqrt(discriminant));
 }
 
-// F^q - 1 in the unit cuboid, with a q for which it takes few powers, and its slope along a
-// direction. Flat faces, which are the cuboid's own, are left out: F is that of what is between.
+// F^q - 1 inside the unit cuboid and its slope along a direction, for the q that needs the fewest
+// powers. Flat faces of the body are faces of the cuboid, which the ray has met before: F here is
+// that of the curved surface between them.
 struct PowerOfF {
   double excess;
   double slope;
@@ -55,29 +56,29 @@ struct PowerOfF {
 PowerOfF PowerAlong(const Eigen::Vector3d& x, const Eigen::Vector3d& direction,
                     const ShapeExponents& dual) {
   const bool has_caps = std::isinf(dual.vertical);
-  double section = 0.0;  // the norm of (x, y), to the power h
+  double section = 0.0;  // the norm of (x, y), to the power of its exponent
   double section_slope = 0.0;
-  double h = dual.horizontal;
-  if (std::isinf(h)) {
+  double exponent = dual.horizontal;
+  if (std::isinf(exponent)) {
     if (has_caps) return {0.0, 0.0, 1.0};
     const int side = std::abs(x.x()) >= std::abs(x.y()) ? 0 : 1;
-    h = 1.0;
+    exponent = 1.0;
     section = std::abs(x[side]);
     section_slope = x[side] < 0.0 ? -direction[side] : direction[side];
   } else {
     for (const int i : {0, 1}) {
-      const double power = AbsolutePower(x[i], h - 2.0);
+      const double power = AbsolutePower(x[i], exponent - 2.0);
       section += x[i] * x[i] * power;
-      section_slope += h * x[i] * power * direction[i];
+      section_slope += exponent * x[i] * power * direction[i];
     }
   }
-  if (has_caps) return {section - 1.0, section_slope, h};
-  const double v = dual.vertical;
-  const double ratio = v / h;
+  if (has_caps) return {section - 1.0, section_slope, exponent};
+  const double ratio = dual.vertical / exponent;
   const double outer = section > 0.0 ? AbsolutePower(section, ratio - 1.0) : 0.0;
-  const double along_axis = AbsolutePower(x.z(), v - 2.0);
+  const double along_axis = AbsolutePower(x.z(), dual.vertical - 2.0);
   return {section * outer + x.z() * x.z() * along_axis - 1.0,
-          ratio * outer * section_slope + v * x.z() * along_axis * direction.z(), v};
+          ratio * outer * section_slope + dual.vertical * x.z() * along_axis * direction.z(),
+          dual.vertical};
 }
 
 // Newton's step to F = 1 from F^q = 1 + u: q ((1 + u) - (1 + u)^(1 - 1 / q)) over the slope of F^q;
