@@ -164,10 +164,15 @@ std::optional<SymmetryDescriptor::Value> SymmetryDescriptor::Describe(
 std::optional<Eigen::Vector2d> SymmetryDescriptor::EdgePixel(
     const Eigen::Vector2d& pixel, const Eigen::Vector3d& point_in_object) const {
   if (descriptor_ != Descriptor::kNearestEdge3d) return NearestEdge(image_.maps, pixel);
-  const auto nearest = std::ranges::min_element(
-      edges_on_surface_, {},
-      [&](const EdgeOnSurface& edge) { return (edge.in_object - point_in_object).squaredNorm(); });
-  return nearest == edges_on_surface_.end() ? std::nullopt : std::optional(nearest->pixel);
+  std::optional<Eigen::Vector2d> nearest;
+  double least = std::numeric_limits<double>::infinity();
+  for (const EdgeOnSurface& edge : edges_on_surface_) {
+    const double squared_distance = (edge.in_object - point_in_object).squaredNorm();
+    if (!(squared_distance < least)) continue;
+    least = squared_distance;
+    nearest = edge.pixel;
+  }
+  return nearest;
 }
 
 std::optional<SymmetryDescriptor::Value> SymmetryDescriptor::SurfaceDistance(
