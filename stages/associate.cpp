@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "association/options.h"
 #include "cli/command_line.h"
 #include "stage/stages.h"
 

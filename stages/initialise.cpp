@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/command_line.h"
+#include "initialisation/options.h"
 #include "stage/stages.h"
 
 int main(int argc, char** argv) {

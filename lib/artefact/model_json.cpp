@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "geometry/image_size.h"
+
 namespace soslam {
 
 using nlohmann::json;

@@ -11,6 +11,7 @@
 #include "artefact/files.h"
 #include "artefact/model_json.h"
 #include "base/error.h"
+#include "geometry/image_size.h"
 #include "model/occlusion.h"
 
 namespace soslam {
@@ -125,11 +126,11 @@ Distortion DistortionFromJson(const json& json) {
   return *distortion;
 }
 
-std::array<bool, 4> BoundsFromJson(const json& names) {
-  std::array<bool, 4> is_bound;
-  std::transform(kEdgeNames.begin(), kEdgeNames.end(), is_bound.begin(),
+std::array<bool, 4> OneSidedFromJson(const json& names) {
+  std::array<bool, 4> is_one_sided;
+  std::transform(kEdgeNames.begin(), kEdgeNames.end(), is_one_sided.begin(),
                  [&](const char* name) { return std::ranges::find(names, name) != names.end(); });
-  return is_bound;
+  return is_one_sided;
 }
 
 Detection DetectionFromJson(const json& json, const IdTable<Frame>& frames,
@@ -142,7 +143,7 @@ Detection DetectionFromJson(const json& json, const IdTable<Frame>& frames,
   const auto& plane = json.at("plane_in_camera");
   if (!plane.is_null()) plane.get_to(detection.plane_in_camera);
   // Schema version 1.0 had no bounds: every edge counted as the object's own.
-  if (json.contains("bounds")) detection.is_bound = BoundsFromJson(json["bounds"]);
+  if (json.contains("bounds")) detection.is_one_sided = OneSidedFromJson(json["bounds"]);
   detection.nearer_boxes = json.value("nearer_boxes", std::vector<Box>());
   detection.nearer_in_view = json.value("nearer_in_view", 0);  // since version 1.6
   if (json.contains("own_in_view")) detection.own_in_view = json["own_in_view"].get<int>();

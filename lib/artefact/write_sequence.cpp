@@ -4,6 +4,7 @@
 
 #include "artefact/files.h"
 #include "artefact/model_json.h"
+#include "geometry/image_size.h"
 
 namespace soslam {
 namespace {
@@ -82,10 +83,10 @@ json IgnoredToJson(const IgnoredThings& things) {
   return fields;
 }
 
-json BoundsToJson(const std::array<bool, 4>& is_bound) {
+json OneSidedToJson(const std::array<bool, 4>& is_one_sided) {
   json names = json::array();
-  for (size_t i = 0; i < is_bound.size(); ++i) {
-    if (is_bound[i]) names.push_back(kEdgeNames[i]);
+  for (size_t i = 0; i < is_one_sided.size(); ++i) {
+    if (is_one_sided[i]) names.push_back(kEdgeNames[i]);
   }
   return names;
 }
@@ -98,7 +99,7 @@ json DetectionToJson(const Detection& detection, const Sequence& sequence) {
                  {"plane_in_camera", sequence.ObjectOf(detection).plane_index == kNoPlane
                                          ? json()
                                          : json(detection.plane_in_camera)},
-                 {"bounds", BoundsToJson(detection.is_bound)},
+                 {"bounds", OneSidedToJson(detection.is_one_sided)},
                  {"nearer_in_view", detection.nearer_in_view}};
   if (detection.own_in_view) fields["own_in_view"] = *detection.own_in_view;
   if (!detection.nearer_boxes.empty()) fields["nearer_boxes"] = detection.nearer_boxes;

@@ -9,8 +9,8 @@
 #include <memory>
 #include <numbers>
 
+#include "constraints/landmark_terms.h"
 #include "geometry/angles.h"
-#include "initialisation/landmark_terms.h"
 
 namespace soslam {
 
@@ -68,7 +68,7 @@ Innovation InnovationOf(const Prediction& prediction, const Box& box,
                         prediction.outline_covariance};
   for (size_t i = 0; i < edges.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    if (edges[i].is_bound && innovation.residuals[row] > 0.0) {
+    if (edges[i].is_one_sided && innovation.residuals[row] > 0.0) {
       innovation.residuals[row] = 0.0;
       innovation.covariance.row(row).setZero();
       innovation.covariance.col(row).setZero();
@@ -149,8 +149,8 @@ std::optional<Prediction> BoxLikelihood::Predict(const FittedObject& object, int
 std::optional<BoxMatch> BoxLikelihood::Match(const Prediction& prediction,
                                              const Detection& detection,
                                              const EdgeBias& bias) const {
-  const Box box = WithoutBias(detection.box, detection.is_bound, bias);
-  const auto edges = BoxEdges(sequence_.CameraOf(detection), detection.box, detection.is_bound,
+  const Box box = WithoutBias(detection.box, detection.is_one_sided, bias);
+  const auto edges = BoxEdges(sequence_.CameraOf(detection), detection.box, detection.is_one_sided,
                               options_.box_sigma_fraction, bias);
   const Innovation innovation = InnovationOf(prediction, box, edges);
   if (IsOutOfReach(innovation)) return std::nullopt;

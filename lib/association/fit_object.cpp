@@ -83,7 +83,7 @@ std::optional<Landmark> LandmarkOnPlane(const Sequence& sequence, const Detectio
   // a better pose.
   const UprightObservation observation = {
       camera,
-      BoxEdges(camera, detection.box, detection.is_bound, options.box_sigma_fraction,
+      BoxEdges(camera, detection.box, detection.is_one_sided, options.box_sigma_fraction,
                all.prior->edge_bias),
       Transform(frame.world_from_camera.Inverse(), all.plane_in_world), *all.prior};
   const YawObjective objective;
@@ -123,9 +123,10 @@ std::optional<FittedObject> FitOnFace(const Sequence& sequence, const std::vecto
   const std::vector<int> used = SpreadOver(detections, static_cast<size_t>(options.max_views));
   const auto* up = std::get_if<UpEstimate>(&support_in_world);
   MultiViewObservation observation = MakeMultiViewObservation(
-      sequence, used, prior, options.box_sigma_fraction, options.view_correlation_deg * kRadPerDeg,
-      /*height_is_free=*/up != nullptr, /*size_is_known=*/true,
-      up == nullptr ? std::optional(std::get<Plane>(support_in_world)) : std::nullopt);
+      sequence, used, prior, options.box_sigma_fraction, options.view_correlation_deg * kRadPerDeg);
+  observation.height_is_free = up != nullptr;
+  observation.size_is_known = true;
+  if (up == nullptr) observation.plane_in_world = std::get<Plane>(support_in_world);
   std::optional<Landmark> landmark;
   if (up != nullptr) {
     const auto body =

@@ -65,7 +65,7 @@ Shown ShownBy(const AssociationModel& model, const Track& track) {
   Shown shown;
   for (const int index : track.detections) {
     const Detection& detection = model.DetectionAt(index);
-    const auto hidden_edges = std::ranges::count(detection.is_bound, true);
+    const auto hidden_edges = std::ranges::count(detection.is_one_sided, true);
     if (hidden_edges <= 1) ++shown.three_edges;
     if (hidden_edges == 0) shown.is_whole = true;
     shown.best_score = std::max(shown.best_score, detection.score);

@@ -67,8 +67,9 @@ BoxesOfLabels ObserveLabels(const Sequence& sequence, const Segment& segment,
     boxes.emplace_back();
     for (const int detection : SpreadOver(detections, kBoxesOfLabel)) {
       boxes.back().push_back(MakeMultiViewObservation(
-          sequence, {detection}, prior, options.box_sigma_fraction,
-          /*view_correlation_rad=*/0.0, /*height_is_free=*/true, /*size_is_known=*/true));
+          sequence, {detection}, prior, options.box_sigma_fraction, /*view_correlation_rad=*/0.0));
+      boxes.back().back().height_is_free = true;
+      boxes.back().back().size_is_known = true;
     }
   }
   return boxes;

@@ -12,15 +12,15 @@ LeaningOnPlane::LeaningOnPlane(const Landmark& landmark, const Plane& plane,
   // The body is symmetric: it reaches as far down as up.
   const SupportValue support =
       SupportFunction(landmark.half_axes, landmark.shape_exponents, normal_in_object);
-  const Eigen::Vector3d contact = frame_from_object * support.contact;
+  const Eigen::Vector3d support_point = frame_from_object * support.point;
   residuals << normal_in_object.head<2>(), plane.SignedDistance(landmark.Centre()) - support.extent;
   d_landmark.setZero();
   d_landmark.topLeftCorner<2, 3>() =
       (frame_from_object.transpose() * Skew(plane.normal)).topRows<2>();
-  d_landmark.row(2) << -contact.cross(plane.normal).transpose(), plane.normal.transpose(),
+  d_landmark.row(2) << -support_point.cross(plane.normal).transpose(), plane.normal.transpose(),
       -support.d_log_half_axes.transpose();
   d_normal << frame_from_object.leftCols<2>().transpose(),
-      (landmark.Centre() - contact).transpose();
+      (landmark.Centre() - support_point).transpose();
   d_offset = Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d weights(1.0 / sigmas.angle_rad, 1.0 / sigmas.angle_rad,
                                 1.0 / sigmas.height_m);

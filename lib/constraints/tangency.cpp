@@ -7,9 +7,9 @@
 
 namespace soslam {
 
-Box WithoutBias(const Box& box, const std::array<bool, 4>& is_bound, const EdgeBias& bias) {
+Box WithoutBias(const Box& box, const std::array<bool, 4>& is_one_sided, const EdgeBias& bias) {
   const auto outside_px = [&](size_t side, double extent_px) {
-    return is_bound[side] ? 0.0 : bias[side] * extent_px;
+    return is_one_sided[side] ? 0.0 : bias[side] * extent_px;
   };
   return {box.x_min + outside_px(0, box.Width()), box.y_min + outside_px(1, box.Height()),
           box.x_max - outside_px(2, box.Width()), box.y_max - outside_px(3, box.Height())};
@@ -27,15 +27,15 @@ constexpr double kSettledExcess = 1e-10;  // px / sigma
 }  // namespace
 
 std::array<BoxEdge, 4> BoxEdges(const Camera& camera, const Box& box,
-                                const std::array<bool, 4>& is_bound, double sigma_fraction,
+                                const std::array<bool, 4>& is_one_sided, double sigma_fraction,
                                 const EdgeBias& bias) {
   const Eigen::Matrix3d to_plane = camera.Intrinsics().transpose();
-  const auto lines = WithoutBias(box, is_bound, bias).EdgeLines();
+  const auto lines = WithoutBias(box, is_one_sided, bias).EdgeLines();
   std::array<BoxEdge, 4> edges;
   for (size_t i = 0; i < edges.size(); ++i) {
     const double outwards = i < 2 ? -1.0 : 1.0;
     const double side = i % 2 == 0 ? box.Width() : box.Height();
-    edges[i] = {outwards * (to_plane * lines[i]), is_bound[i],
+    edges[i] = {outwards * (to_plane * lines[i]), is_one_sided[i],
                 std::max(kMinSigmaPx, sigma_fraction * side), side};
   }
   return edges;
@@ -50,10 +50,10 @@ double Tangency(const BoxEdge& edge, const Landmark& landmark_in_camera, const T
   const double weight = 1.0 / (depth.depth_m * edge.sigma_px);
   const double outside = weight * (edge.plane.dot(landmark_in_camera.Centre()) + support.extent);
   const double residual = outside - bias_px / edge.sigma_px;
-  const bool is_free = edge.is_bound && residual > 0.0;
+  const bool is_free = edge.is_one_sided && residual > 0.0;
   if (jacobian != nullptr) {
-    const Eigen::Vector3d contact = rotation * support.contact;
-    *jacobian << contact.cross(edge.plane).transpose(), edge.plane.transpose(),
+    const Eigen::Vector3d support_point = rotation * support.point;
+    *jacobian << support_point.cross(edge.plane).transpose(), edge.plane.transpose(),
         support.d_log_half_axes.transpose();
     *jacobian *= weight;
     (*jacobian)[5] -= outside / depth.depth_m * depth.d_centre_depth;
@@ -96,7 +96,7 @@ TangentDepth FindTangentDepth(const BoxEdge& edge, const Landmark& landmark_in_c
 double OutlineExcess(const BoxEdge& edge, const Landmark& landmark_in_camera,
                      LandmarkJacobian1* jacobian) {
   BoxEdge moved = edge;
-  moved.is_bound = false;
+  moved.is_one_sided = false;
   double excess = 0.0;
   for (int i = 0; i < kMaxNewtonSteps; ++i) {
     const TangentDepth depth = FindTangentDepth(moved, landmark_in_camera);
@@ -105,7 +105,7 @@ double OutlineExcess(const BoxEdge& edge, const Landmark& landmark_in_camera,
     moved.plane.z() -= step * edge.sigma_px;
     if (!(std::abs(step) > kSettledExcess)) break;
   }
-  if (!edge.is_bound || !(excess > 0.0)) return excess;
+  if (!edge.is_one_sided || !(excess > 0.0)) return excess;
   if (jacobian != nullptr) jacobian->setZero();
   return 0.0;
 }
@@ -130,7 +130,7 @@ bool TangencyResidual::Evaluate(double const* const* blocks, double* residuals,
   const TangentDepth depth = {depth_ratio_ * (is_near ? min_centre_depth_m_ : centre_depth_m),
                               is_near ? 0.0 : depth_ratio_};
   LandmarkJacobian1 d_tangency;
-  const double outwards_px = *blocks[2] + edge_.length_px * *blocks[3];
+  const double outwards_px = *blocks[2] + edge_.extent_px * *blocks[3];
   const double tangency = Tangency(edge_, landmark, depth, outwards_px, &d_tangency);
   if (!std::isfinite(tangency)) return false;
   Eigen::Map<Eigen::Vector3d>(residuals) << tangency, 0.0, 0.0;
@@ -143,11 +143,11 @@ bool TangencyResidual::Evaluate(double const* const* blocks, double* residuals,
         TangencyCurvature(edge_, landmark, depth.depth_m, tangency);
   }
   observation.WriteJacobians<3>(d_landmark, blocks, jacobians);
-  const bool is_free = edge_.is_bound && !(tangency < 0.0);
+  const bool is_free = edge_.is_one_sided && !(tangency < 0.0);
   const Eigen::Vector3d d_outwards_px(is_free ? 0.0 : -1.0 / edge_.sigma_px, 0.0, 0.0);
   using Column = Eigen::Map<Eigen::Vector3d>;
   if (jacobians[2] != nullptr) Column{jacobians[2]} = d_outwards_px;
-  if (jacobians[3] != nullptr) Column{jacobians[3]} = edge_.length_px * d_outwards_px;
+  if (jacobians[3] != nullptr) Column{jacobians[3]} = edge_.extent_px * d_outwards_px;
   return true;
 }
 

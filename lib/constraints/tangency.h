@@ -9,16 +9,12 @@
 #include "constraints/parameters.h"
 #include "geometry/box.h"
 #include "geometry/camera.h"
+#include "model/shape_prior.h"
 
 namespace soslam {
 
-// Mean distances by which the edges of a detector's boxes (left, top, right, bottom) lie outside
-// the outline of the body, as fractions of the width or height of the box; negative: inside. Those
-// of opposite edges have a sum below 1.
-using EdgeBias = std::array<double, 4>;
-
-// The box without the bias of its edges. Bounds are not measured and stay.
-Box WithoutBias(const Box& box, const std::array<bool, 4>& is_bound, const EdgeBias& bias);
+// The box without the bias of its edges. One-sided edges stay as they are.
+Box WithoutBias(const Box& box, const std::array<bool, 4>& is_one_sided, const EdgeBias& bias);
 
 // An edge of a detection's box, for a body of any shape exponents.
 struct BoxEdge {
@@ -27,14 +23,14 @@ struct BoxEdge {
   Eigen::Vector3d plane;
   // True if the object may reach beyond the edge (the image border or a nearer object truncates
   // it).
-  bool is_bound = false;
+  bool is_one_sided = false;
   double sigma_px = 1.0;
-  double length_px = 1.0;  // width of the box for left and right, height for top and bottom
+  double extent_px = 1.0;  // width of the box for left and right, height for top and bottom
 };
 
 // Edges in the order left, top, right, bottom, of the box without its bias.
 std::array<BoxEdge, 4> BoxEdges(const Camera& camera, const Box& box,
-                                const std::array<bool, 4>& is_bound, double sigma_fraction,
+                                const std::array<bool, 4>& is_one_sided, double sigma_fraction,
                                 const EdgeBias& bias = {});
 
 // Depth of a tangent point, and its derivative by the depth of the body's centre: 0 if it is fixed.
@@ -49,9 +45,9 @@ TangentDepth FindTangentDepth(const BoxEdge& edge, const Landmark& landmark_in_c
 // Signed distance (px / sigma) by which an object reaches outside a box edge: zero when the plane
 // behind the edge is tangent to it. Equals h(n) + n . c + d of the plane in metres, divided by the
 // depth of the tangent point (its other changes alter the residual by less than the residual's own
-// size) and multiplied by the focal length. For a bound edge it is zero when positive. At p = 2 it
-// has the same zeros as the paper's eq. (3), as pi^T Q* pi = h^2 - (n . c + d)^2. `bias_px` moves
-// the edge outwards before the comparison.
+// size) and multiplied by the focal length. For a one-sided edge it is zero when positive. At p = 2
+// it has the same zeros as the paper's eq. (3), as pi^T Q* pi = h^2 - (n . c + d)^2. `bias_px`
+// moves the edge outwards before the comparison.
 double Tangency(const BoxEdge& edge, const Landmark& landmark_in_camera, const TangentDepth& depth,
                 double bias_px, LandmarkJacobian1* jacobian);
 

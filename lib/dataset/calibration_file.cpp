@@ -20,6 +20,7 @@
 #include "dataset/text_file.h"
 #include "dataset/trajectories.h"
 #include "dataset/yaml_fields.h"
+#include "geometry/image_size.h"
 
 namespace soslam {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "dataset/dataset_checks.h"
 #include "dataset/image_path.h"
+#include "geometry/image_size.h"
 #include "image/image_format.h"
 
 namespace soslam {

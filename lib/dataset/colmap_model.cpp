@@ -17,6 +17,7 @@
 #include "base/paths.h"
 #include "dataset/text_file.h"
 #include "geometry/camera.h"
+#include "geometry/image_size.h"
 
 namespace soslam {
 namespace {

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "dataset/trajectories.h"
 #include "geometry/camera.h"
+#include "geometry/image_size.h"
 
 namespace soslam {
 namespace {

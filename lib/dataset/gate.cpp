@@ -143,17 +143,17 @@ std::array<bool, 4> EdgesCutByBorder(const Box& box, const Camera& camera) {
           camera.height - 0.5 - box.y_max <= y_margin_px};
 }
 
-// Nearer objects make only the lower edge a bound. They stand on the same support, so they occlude
-// what is behind them from the base upwards, and a box that ends within another has probably lost
-// its base. Sides and tops are less certain: the box of a tall object full of gaps (a chair) covers
-// much that is visible past its back and between its legs, and the edge of the object behind is
-// then measured as well as any.
+// Nearer objects make only the lower edge one-sided. They stand on the same support, so they
+// occlude what is behind them from the base upwards, and a box that ends within another has
+// probably lost its base. Sides and tops are less certain: the box of a tall object full of gaps (a
+// chair) covers much that is visible past its back and between its legs, and the edge of the object
+// behind is then measured as well as any.
 void MarkHiddenEdges(const ImportOptions& options, Sequence* sequence) {
   for (Detection& detection : sequence->detections) {
     const double hidden_share =
         CoveredShareOfLowerEdge(detection.box, BoxesInFront(*sequence, detection));
     if (hidden_share >= options.hidden_edge_fraction - kShareTolerance) {
-      detection.is_bound[3] = true;
+      detection.is_one_sided[3] = true;
     }
   }
 }

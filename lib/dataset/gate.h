@@ -88,7 +88,7 @@ std::vector<DetectionRow> WithoutDuplicates(std::vector<DetectionRow> rows, Reje
 std::vector<DetectionRow> WithEnoughObservations(std::vector<DetectionRow> rows,
                                                  int min_observations, Rejections* rejected);
 
-// Marks edges of boxes that are only bounds (Detection::is_bound): edges cut by the image border,
+// Marks edges of boxes that are one-sided (Detection::is_one_sided): edges cut by the image border,
 // and lower edges occluded by nearer objects.
 
 // True for the edges of a box (left, top, right, bottom) at the border of its image.

@@ -164,7 +164,7 @@ class Importer {
       } else if (sequence_->ObjectOf(detection).plane_index != kNoPlane) {
         detection.plane_in_camera = WorldPlane(detection);
       }
-      detection.is_bound =
+      detection.is_one_sided =
           EdgesCutByBorder(row.box_in_image_file.value_or(row.box), sequence_->CameraOf(detection));
       detection.true_landmark_in_camera = row.true_landmark_in_camera;
       detection.true_object_id = TrueObjectId(row.object_id);

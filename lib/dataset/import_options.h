@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/options.h"
-#include "geometry/camera.h"
+#include "geometry/image_size.h"
 
 namespace soslam {
 
@@ -212,7 +212,7 @@ struct ImportOptions {
     visit.Real(
         "hidden_edge_fraction", &hidden_edge_fraction, {0, 1},
         "the share of a box's lower edge that must lie inside boxes of nearer objects for it "
-        "to be a lower bound only");
+        "to be one-sided: the object may extend beyond it");
     visit.Flag("scene_axes", &scene_axes,
                "the directions along which the straight edges of the images lie on the support "
                "planes are estimated, for later stages to prefer them for objects");

@@ -12,6 +12,7 @@
 #include "dataset/gate.h"
 #include "dataset/labelled_box.h"
 #include "geometry/camera.h"
+#include "geometry/image_size.h"
 
 namespace soslam {
 

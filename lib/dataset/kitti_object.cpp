@@ -9,6 +9,7 @@
 #include "dataset/dataset_content.h"
 #include "dataset/image_path.h"
 #include "dataset/kitti_label.h"
+#include "geometry/image_size.h"
 
 namespace soslam {
 namespace {

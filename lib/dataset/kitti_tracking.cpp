@@ -14,6 +14,7 @@
 #include "dataset/image_path.h"
 #include "dataset/kitti_label.h"
 #include "dataset/trajectories.h"
+#include "geometry/image_size.h"
 
 namespace soslam {
 namespace {

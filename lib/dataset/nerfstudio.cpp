@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "dataset/json_entry.h"
 #include "geometry/camera.h"
+#include "geometry/image_size.h"
 
 namespace soslam {
 namespace {

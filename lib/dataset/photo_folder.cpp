@@ -14,6 +14,7 @@
 #include "base/text.h"
 #include "dataset/dataset_files.h"
 #include "dataset/text_file.h"
+#include "geometry/image_size.h"
 
 namespace soslam {
 namespace {

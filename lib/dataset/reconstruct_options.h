@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/options.h"
-#include "geometry/camera.h"
+#include "geometry/image_size.h"
 
 namespace soslam {
 

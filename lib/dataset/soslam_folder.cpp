@@ -11,6 +11,7 @@
 #include "dataset/calibration_file.h"
 #include "dataset/text_file.h"
 #include "geometry/camera.h"
+#include "geometry/image_size.h"
 
 namespace soslam {
 namespace {

@@ -89,7 +89,7 @@ SupportPoint FindSupportPoint(const Landmark& landmark, const Eigen::Vector3d& d
   const Eigen::Quaterniond& rotation = landmark.frame_from_object.rotation;
   const SupportValue support = SupportFunction(landmark.half_axes, landmark.shape_exponents,
                                                rotation.conjugate() * direction);
-  return {landmark.frame_from_object * support.contact,
+  return {landmark.frame_from_object * support.point,
           direction.dot(landmark.Centre()) + support.extent};
 }
 
@@ -176,6 +176,14 @@ double Yaw(const Eigen::Vector3d& support_normal, const Eigen::Quaterniond& fram
   const Eigen::Vector3d reference = HorizontalReference(support_normal);
   const Eigen::Vector3d front = frame_from_object * Eigen::Vector3d::UnitX();
   return std::atan2(front.dot(support_normal.cross(reference)), front.dot(reference));
+}
+
+Eigen::RowVector3d YawJacobian(const Eigen::Vector3d& support_normal,
+                               const Eigen::Quaterniond& frame_from_object) {
+  const Eigen::Vector3d front = frame_from_object * Eigen::Vector3d::UnitX();
+  const double rise = front.dot(support_normal);
+  const Eigen::Vector3d level = front - rise * support_normal;
+  return (support_normal - rise / level.squaredNorm() * level).transpose();
 }
 
 Landmark RotatedAboutZ(const Landmark& landmark, double angle) {

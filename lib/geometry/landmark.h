@@ -119,6 +119,9 @@ std::optional<double> NearestIntersection(const Landmark& landmark, const Eigen:
 Eigen::Quaterniond UprightRotation(const Eigen::Vector3d& support_normal, double yaw);
 // The yaw of a rotation's x axis, in (-pi, pi]; the counterpart of UprightRotation.
 double Yaw(const Eigen::Vector3d& support_normal, const Eigen::Quaterniond& frame_from_object);
+// d yaw / d rotation vector, applied from the left: the normal, for upright landmarks.
+Eigen::RowVector3d YawJacobian(const Eigen::Vector3d& support_normal,
+                               const Eigen::Quaterniond& frame_from_object);
 
 // The landmark rotated about its own z axis by `angle` (rad); centre and half axes stay.
 Landmark RotatedAboutZ(const Landmark& landmark, double angle);

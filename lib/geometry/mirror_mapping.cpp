@@ -47,9 +47,9 @@ std::optional<VisibleSurface::Point> VisibleSurface::FromPixel(const Eigen::Vect
 }
 
 std::optional<VisibleSurface::Point> VisibleSurface::FromPixelOnTangentPlane(
-    const Eigen::Vector2d& pixel, const Point& contact, bool with_jacobian) const {
+    const Eigen::Vector2d& pixel, const Point& tangent, bool with_jacobian) const {
   const Eigen::Vector3d ray = RayInObject(pixel);
-  const Eigen::Vector3d normal = surface_.Gradient(contact.in_object);
+  const Eigen::Vector3d normal = surface_.Gradient(tangent.in_object);
   const double slope = normal.dot(ray);
   const double depth = (1.0 - normal.dot(camera_in_object_)) / slope;
   if (!std::isfinite(depth) || !(depth > 0.0)) return std::nullopt;
@@ -57,13 +57,13 @@ std::optional<VisibleSurface::Point> VisibleSurface::FromPixelOnTangentPlane(
   Point point;
   point.in_object = camera_in_object_ + depth * ray;
   if (with_jacobian) {
-    // The plane normal . x = 1 moves with the contact point and the half axes.
-    const Eigen::Vector3d d_contact = surface_.Hessian(contact.in_object) * point.in_object;
+    // The plane normal . x = 1 moves with the tangent point and the half axes.
+    const Eigen::Vector3d d_normal = surface_.Hessian(tangent.in_object) * point.in_object;
     point.jacobian = FixedPointJacobian(point.in_object);
     LandmarkJacobian1 plane =
-        normal.transpose() * point.jacobian + d_contact.transpose() * contact.jacobian;
+        normal.transpose() * point.jacobian + d_normal.transpose() * tangent.jacobian;
     plane.tail<3>() -=
-        (normal.cwiseProduct(point.in_object) + d_contact.cwiseProduct(contact.in_object))
+        (normal.cwiseProduct(point.in_object) + d_normal.cwiseProduct(tangent.in_object))
             .transpose();
     point.jacobian -= ray * (plane / slope);
   }

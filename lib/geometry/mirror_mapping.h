@@ -30,10 +30,10 @@ class VisibleSurface {
   // ray misses the surface.
   std::optional<Point> FromPixel(const Eigen::Vector2d& pixel, bool with_jacobian = false) const;
 
-  // The intersection of the pixel's ray with the plane that is tangent to the surface at `contact`,
+  // The intersection of the pixel's ray with the plane that is tangent to the surface at `tangent`,
   // a surface point (eq. 23). None when the ray is parallel to the plane or meets it behind the
   // camera.
-  std::optional<Point> FromPixelOnTangentPlane(const Eigen::Vector2d& pixel, const Point& contact,
+  std::optional<Point> FromPixelOnTangentPlane(const Eigen::Vector2d& pixel, const Point& tangent,
                                                bool with_jacobian = false) const;
 
   // S, the mirror image in the xz plane; again a surface point. With another `mirror_plane`, in the

@@ -10,7 +10,7 @@ namespace soslam {
 // The support function at a direction, and its derivatives.
 struct SupportValue {
   double extent;                    // h, in metres where |m| = 1
-  Eigen::Vector3d contact;          // dh / dm: the support point
+  Eigen::Vector3d point;            // dh / dm: the support point
   Eigen::Vector3d d_log_half_axes;  // dh / d log (a, b, c)
 };
 inline constexpr double kEdgeRounding = 1e-3;

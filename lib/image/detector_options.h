@@ -4,7 +4,7 @@
 #include <string>
 
 #include "base/options.h"
-#include "geometry/camera.h"
+#include "geometry/image_size.h"
 #include "image/yolo_output.h"
 
 namespace soslam {

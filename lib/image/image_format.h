@@ -10,7 +10,7 @@
 #include <string_view>
 #include <utility>
 
-#include "geometry/camera.h"
+#include "geometry/image_size.h"
 
 namespace soslam {
 

@@ -6,6 +6,7 @@
 
 #include "geometry/camera.h"
 #include "geometry/distortion.h"
+#include "geometry/image_size.h"
 
 namespace soslam {
 

@@ -15,6 +15,7 @@
 #include "base/paths.h"
 #include "base/run_log.h"
 #include "geometry/camera.h"
+#include "geometry/image_size.h"
 #include "image/image_format.h"
 
 namespace soslam {

@@ -27,7 +27,7 @@ ClosedForm::ClosedForm(const UprightObservation& observation)
     normals_.row(i) = edge.plane.transpose() * camera_from_ground;
     at_origin_[i] = edge.plane.dot(ground.origin);
     sigma_px_[i] = edge.sigma_px;
-    is_bound_[i] = edge.is_bound ? 1.0 : 0.0;
+    is_one_sided_[i] = edge.is_one_sided ? 1.0 : 0.0;
   }
   optical_axis_ = camera_from_ground.row(2);
   origin_depth_ = ground.origin.z();
@@ -47,7 +47,7 @@ ClosedForm::HalfHeightCoefficients ClosedForm::CoefficientsAt(double yaw) const 
     const Eigen::Vector3d normal = object_from_ground * normals_.row(edge).transpose();
     const SupportValue support = SupportFunction(proportions_, shape_exponents_, normal);
     coefficients.residuals[edge] = normal.z() + support.extent;
-    coefficients.tangent_depths[edge] = axis.z() + axis.dot(support.contact);
+    coefficients.tangent_depths[edge] = axis.z() + axis.dot(support.point);
   }
   coefficients.nearest_depth =
       axis.z() - SupportFunction(proportions_, shape_exponents_, axis).extent;
@@ -61,15 +61,16 @@ std::optional<ClosedFormSolution> ClosedForm::At(double yaw) const {
   const Eigen::Array4d half_height_by_b = without_foot_ * projected / projected.squaredNorm();
   const Eigen::Array4d null = without_foot_ * Eigen::Vector2d(-projected.y(), projected.x());
   const double missing = (null * at_origin_).sum();  // n^T r
-  const bool has_bound = (is_bound_ != 0.0).any();
+  const bool has_one_sided = (is_one_sided_ != 0.0).any();
   Eigen::Array4d depths_m = Eigen::Array4d::Ones();  // any value, as long as they are equal
   for (int round = 0;; ++round) {
     Eigen::Array4d residuals = (depths_m * sigma_px_).square() * null;
     residuals *= missing / (residuals * null).sum();
-    if (has_bound) {
-      // Three equations have a solution; then the bound has a residual only if it is reached.
-      const double at_bound = missing / (is_bound_ * null).sum();
-      if (!(at_bound < 0.0)) residuals = is_bound_ * at_bound;
+    if (has_one_sided) {
+      // Three equations have a solution; then the one-sided edge has a residual only if it is
+      // reached.
+      const double at_one_sided = missing / (is_one_sided_ * null).sum();
+      if (!(at_one_sided < 0.0)) residuals = is_one_sided_ * at_one_sided;
     }
     const Eigen::Array4d b = residuals - at_origin_;
     const double half_height = (half_height_by_b * b).sum();

@@ -16,8 +16,8 @@ struct ClosedFormSolution {
 };
 
 // Closed-form solution at a given yaw for an object with the prior's ratio: least squares over the
-// measured edges, and over a bound edge that the object would not reach otherwise. The depths of
-// the tangent points are those on the solution itself, found by fixed-point iteration.
+// measured edges, and over a one-sided edge that the object would not reach otherwise. The depths
+// of the tangent points are those on the solution itself, found by fixed-point iteration.
 //
 // The tangency equations of the four edges are linear in the foot and the half height c:
 // F foot + a c = b, and only a depends on the yaw. With N^T F = 0, N^T a c = N^T b remains for c.
@@ -35,7 +35,7 @@ class ClosedForm {
   std::optional<ClosedFormSolution> At(double yaw) const;
 
   // True if at least three edges are measured.
-  bool HasEnoughEdges() const { return (is_bound_ == 0.0).count() >= 3; }
+  bool HasEnoughEdges() const { return (is_one_sided_ == 0.0).count() >= 3; }
 
  private:
   // Coefficients of the half height at a yaw.
@@ -51,7 +51,7 @@ class ClosedForm {
   Eigen::Matrix<double, 4, 3> normals_;
   Eigen::Array4d at_origin_;
   Eigen::Array4d sigma_px_;
-  Eigen::Array4d is_bound_;       // 1 or 0
+  Eigen::Array4d is_one_sided_;   // 1 or 0
   Eigen::Vector3d optical_axis_;  // of the camera, in the ground frame
   double origin_depth_;           // depth of the ground's origin, m
   Eigen::Vector3d proportions_;   // (a, b, c) / c

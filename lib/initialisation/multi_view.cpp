@@ -7,10 +7,10 @@
 #include <limits>
 #include <numbers>
 
+#include "constraints/landmark_terms.h"
 #include "constraints/loss.h"
 #include "geometry/angles.h"
 #include "geometry/triangulation.h"
-#include "initialisation/landmark_terms.h"
 #include "initialisation/yaw_sweep.h"
 
 namespace soslam {
@@ -221,9 +221,9 @@ class LinearViews {
     LinearSystem::Row at;
     at << body.foot, body.half_axes, body.height_m;
     for (const BoxEdge& edge : view.edges) {
-      // The initial guess is too rough to decide which bounds are active and which edges are
-      // outliers.
-      if (is_first && edge.is_bound) continue;
+      // The initial guess is too rough to decide which one-sided edges are active and which edges
+      // are outliers.
+      if (is_first && edge.is_one_sided) continue;
       const TangentDepth depth =
           is_first ? TangentDepth{landmark.Centre().z()} : FindTangentDepth(edge, landmark);
       if (!(depth.depth_m > 0.0)) continue;
@@ -291,27 +291,21 @@ MultiViewObservation MakeMultiViewObservation(const Sequence& sequence,
                                               const std::vector<int>& detections,
                                               const std::optional<ShapePrior>& prior,
                                               double detection_sigma_fraction,
-                                              double view_correlation_rad, bool height_is_free,
-                                              bool size_is_known,
-                                              const std::optional<Plane>& plane_in_world) {
+                                              double view_correlation_rad) {
   MultiViewObservation observation;
   observation.prior = prior;
-  observation.height_is_free = height_is_free;
-  observation.size_is_known = size_is_known;
   const EdgeBias bias = prior ? prior->edge_bias : EdgeBias();
   for (const int index : detections) {
     const Detection& detection = sequence.detections[index];
     const Frame& frame = sequence.frames[detection.frame_index];
     const Object& object = sequence.objects[detection.object_index];
-    if (plane_in_world) {
-      observation.plane_in_world = *plane_in_world;
-    } else if (object.plane_index != kNoPlane) {
+    if (object.plane_index != kNoPlane) {
       const SupportPlane& support = sequence.planes[object.plane_index];
       observation.plane_in_world = support.plane_in_world;
       observation.scene_axis_in_world = support.scene_axis_in_world;
     }
     observation.views.push_back({BoxEdges(sequence.CameraOf(detection), detection.box,
-                                          detection.is_bound, detection_sigma_fraction, bias),
+                                          detection.is_one_sided, detection_sigma_fraction, bias),
                                  frame.world_from_camera.Inverse()});
   }
   const auto weights =

@@ -47,13 +47,13 @@ struct MultiViewObservation {
   }
 };
 // Observation of one object from its detections (indices into Sequence::detections, at least one),
-// with the frames' estimated poses, on the given plane or else that of the object. View weights are
-// those of ViewWeights about the point nearest to the rays through the boxes.
-MultiViewObservation MakeMultiViewObservation(
-    const Sequence& sequence, const std::vector<int>& detections,
-    const std::optional<ShapePrior>& prior, double detection_sigma_fraction,
-    double view_correlation_rad, bool height_is_free = false, bool size_is_known = false,
-    const std::optional<Plane>& plane_in_world = std::nullopt);
+// with the frames' estimated poses, on the object's plane, if it has one. View weights are those of
+// ViewWeights about the point nearest to the rays through the boxes.
+MultiViewObservation MakeMultiViewObservation(const Sequence& sequence,
+                                              const std::vector<int>& detections,
+                                              const std::optional<ShapePrior>& prior,
+                                              double detection_sigma_fraction,
+                                              double view_correlation_rad);
 
 // Weights of an object's detections, which index Sequence::detections. The misfit between the
 // label's shape and a box is almost the same in the next frame: views from directions (camera

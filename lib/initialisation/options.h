@@ -4,9 +4,9 @@
 #include <array>
 
 #include "base/options.h"
+#include "constraints/point_term.h"
 #include "constraints/variances.h"
 #include "initialisation/cuboid_score.h"
-#include "initialisation/point_term.h"
 #include "initialisation/semantic_table.h"
 #include "initialisation/upright_observation.h"
 #include "initialisation/yaw_prior.h"

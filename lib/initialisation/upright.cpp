@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/levenberg_marquardt.h"
+#include "constraints/leaning_on_plane.h"
 
 namespace soslam {
 namespace {
@@ -94,13 +95,6 @@ Landmark Tilted(const Landmark& upright, const Plane& plane, const Eigen::Vector
 }
 
 }  // namespace
-
-void LeaningTerm::Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
-                           Jacobian* jacobian) const {
-  const LeaningOnPlane leaning(landmark, plane_, LeaningSigmas());
-  residuals = leaning.residuals;
-  if (jacobian != nullptr) *jacobian = leaning.d_landmark;
-}
 
 std::optional<UprightSolution> FitLeaning(const Plane& plane, const Landmark& upright,
                                           const LandmarkCosts& costs) {

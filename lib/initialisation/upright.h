@@ -4,11 +4,10 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "constraints/leaning_on_plane.h"
+#include "constraints/landmark_cost.h"
+#include "constraints/landmark_terms.h"
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
-#include "initialisation/landmark_cost.h"
-#include "initialisation/landmark_terms.h"
 
 namespace soslam {
 
@@ -47,18 +46,6 @@ struct UprightSolution {
 };
 std::optional<UprightSolution> FitUpright(const Plane& plane, const Landmark& start,
                                           const LandmarkCosts& costs, bool yaw_is_free);
-
-// The residuals of LeaningOnPlane on a constant plane.
-class LeaningTerm final : public LandmarkTerm {
- public:
-  explicit LeaningTerm(const Plane& plane) : plane_(plane) {}
-  int NumResiduals() const override { return 3; }
-  void Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
-                Jacobian* jacobian) const override;
-
- private:
-  Plane plane_;
-};
 
 // Levenberg-Marquardt over all nine parameters of a body that leans on a plane, from an upright
 // landmark and from that landmark tilted to four sides. `costs` hold a LeaningTerm. Returns the

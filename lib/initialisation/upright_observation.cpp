@@ -8,7 +8,7 @@ namespace soslam {
 UprightObservation MakeUprightObservation(const Sequence& sequence, const Detection& detection,
                                           const ShapePrior& prior, const UprightOptions& options) {
   return {sequence.CameraOf(detection),
-          BoxEdges(sequence.CameraOf(detection), detection.box, detection.is_bound,
+          BoxEdges(sequence.CameraOf(detection), detection.box, detection.is_one_sided,
                    options.detection_sigma_fraction, prior.edge_bias),
           detection.plane_in_camera,
           prior,

@@ -6,11 +6,11 @@
 #include <optional>
 
 #include "base/options.h"
+#include "constraints/landmark_terms.h"
+#include "constraints/point_term.h"
 #include "constraints/tangency.h"
 #include "geometry/camera.h"
 #include "geometry/plane.h"
-#include "initialisation/landmark_terms.h"
-#include "initialisation/point_term.h"
 #include "initialisation/semantic_table.h"
 #include "model/sequence.h"
 

@@ -17,10 +17,10 @@ constexpr double kTrueYawSigma = 0.1 * kRadPerDeg;
 constexpr size_t kMinPriorViews = 2;
 
 // Foot of an object in the world: where the ray through the centre of its box's lower edge meets
-// the support plane. None if the lower edge is a bound, or if its ray does not meet the plane in
+// the support plane. None if the lower edge is one-sided, or if its ray does not meet the plane in
 // front of the camera.
 std::optional<Eigen::Vector3d> Foot(const Sequence& sequence, const Detection& detection) {
-  if (detection.is_bound[3]) return std::nullopt;
+  if (detection.is_one_sided[3]) return std::nullopt;
   const auto foot_in_camera =
       GroundContactInCamera(sequence.CameraOf(detection), detection.box, detection.plane_in_camera);
   if (!foot_in_camera) return std::nullopt;

@@ -76,7 +76,7 @@ std::vector<Value> ObjectRow(const Sequence& sequence, const Object& object,
       score += of(i).score;
       width += of(i).box.Width();
       height += of(i).box.Height();
-      cut += std::ranges::find(of(i).is_bound, true) != of(i).is_bound.end() ? 1 : 0;
+      cut += std::ranges::find(of(i).is_one_sided, true) != of(i).is_one_sided.end() ? 1 : 0;
     }
     const auto count = static_cast<double>(detections.size());
     row.insert(row.end(), {sequence.FrameOf(of(detections.front())).id,

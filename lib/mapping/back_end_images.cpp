@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "constraints/image_residual.h"
 #include "mapping/back_end_problem.h"
-#include "mapping/image_residual.h"
 #include "orientation/symmetry_samples.h"
 #include "orientation/texture_asymmetry.h"
 

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "constraints/detection.h"
+#include "constraints/landmark_terms.h"
 #include "constraints/leaning_on_plane.h"
 #include "constraints/odometry.h"
 #include "constraints/parameters.h"
@@ -18,7 +19,6 @@
 #include "constraints/tangency.h"
 #include "constraints/upright_on_plane.h"
 #include "geometry/angles.h"
-#include "initialisation/landmark_terms.h"
 #include "initialisation/multi_view.h"
 
 namespace soslam {
@@ -223,7 +223,7 @@ void BackEndProblem::AddDetection(size_t index, const Landmark& initial_in_camer
   view_losses_.emplace_back(&loss_, view_weights_[index], ceres::DO_NOT_TAKE_OWNERSHIP);
   const auto& prior = input_.priors[detection.object_index];
   const auto edges =
-      BoxEdges(camera, detection.box, detection.is_bound, options_.detection_sigma_fraction,
+      BoxEdges(camera, detection.box, detection.is_one_sided, options_.detection_sigma_fraction,
                prior ? prior->edge_bias : EdgeBias());
   for (size_t side = 0; side < edges.size(); ++side) {
     // A body so near that it reaches behind the camera has no tangent point in view.

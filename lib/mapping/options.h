@@ -5,9 +5,9 @@
 
 #include "base/options.h"
 #include "constraints/odometry.h"
+#include "constraints/point_term.h"
 #include "constraints/variances.h"
 #include "geometry/angles.h"
-#include "initialisation/point_term.h"
 #include "initialisation/semantic_table.h"
 #include "orientation/options.h"
 

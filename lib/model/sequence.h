@@ -13,6 +13,7 @@
 #include "geometry/box.h"
 #include "geometry/camera.h"
 #include "geometry/distortion.h"
+#include "geometry/image_size.h"
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
 #include "geometry/rigid3.h"
@@ -147,7 +148,7 @@ struct Detection {
   Plane plane_in_camera;
   // True for an edge (left, top, right, bottom) beyond which the object may extend, because the
   // image border or a nearer object cuts it off. Computed at import.
-  std::array<bool, 4> is_bound{};
+  std::array<bool, 4> is_one_sided{};
   // Possible occluders, see BoxesInFront: the first `nearer_in_view` of Frame::boxes_in_view,
   // except `own_in_view`, the box of the object itself, if it is among them. Computed at import.
   int nearer_in_view = 0;

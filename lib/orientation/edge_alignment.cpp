@@ -60,12 +60,12 @@ void AddCuboidEdges(const Eigen::Vector3d& camera_in_unit_body, PointSampler* sa
 
 void AddOutline(const Camera& camera, const Landmark& landmark, PointSampler* sampler) {
   const Rigid3d object_from_camera = landmark.frame_from_object.Inverse();
-  std::vector<Eigen::Vector3d> contacts = SilhouettePoints(camera, landmark);
-  for (Eigen::Vector3d& contact : contacts) {
-    contact = (object_from_camera * contact).cwiseQuotient(landmark.half_axes);
+  std::vector<Eigen::Vector3d> silhouette = SilhouettePoints(camera, landmark);
+  for (Eigen::Vector3d& point : silhouette) {
+    point = (object_from_camera * point).cwiseQuotient(landmark.half_axes);
   }
-  for (size_t i = 0; i < contacts.size(); ++i) {
-    sampler->AddSegment(contacts[i], contacts[(i + 1) % contacts.size()]);
+  for (size_t i = 0; i < silhouette.size(); ++i) {
+    sampler->AddSegment(silhouette[i], silhouette[(i + 1) % silhouette.size()]);
   }
 }
 

@@ -6,11 +6,11 @@
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
+#include "constraints/landmark_cost.h"
 #include "geometry/box.h"
 #include "geometry/camera.h"
 #include "geometry/landmark.h"
 #include "image/edge_maps.h"
-#include "initialisation/landmark_cost.h"
 #include "orientation/options.h"
 
 namespace soslam {

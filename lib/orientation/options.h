@@ -5,9 +5,9 @@
 #include <array>
 
 #include "base/options.h"
+#include "constraints/point_term.h"
 #include "constraints/symmetry.h"
 #include "constraints/variances.h"
-#include "initialisation/point_term.h"
 #include "initialisation/semantic_table.h"
 #include "initialisation/upright_observation.h"
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "constraints/point_term.h"
 #include "image/edge_maps.h"
-#include "initialisation/point_term.h"
 #include "initialisation/semantic_table.h"
 #include "model/estimates.h"
 #include "model/sequence.h"

@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
+#include "constraints/landmark_cost.h"
 #include "constraints/symmetry.h"
 #include "geometry/camera.h"
-#include "initialisation/landmark_cost.h"
 #include "orientation/options.h"
 
 namespace soslam {

@@ -87,9 +87,10 @@ class Estimator {
   std::optional<MultiViewObservation> Observe(const std::vector<int>& detections,
                                               const std::optional<ShapePrior>& prior) const {
     if (detections.empty() || (prior && prior->attitude == Attitude::kFree)) return std::nullopt;
-    MultiViewObservation observation = MakeMultiViewObservation(
-        sequence_, detections, prior, options_.detection_sigma_fraction,
-        options_.view_correlation_deg * kRadPerDeg, /*height_is_free=*/true);
+    MultiViewObservation observation =
+        MakeMultiViewObservation(sequence_, detections, prior, options_.detection_sigma_fraction,
+                                 options_.view_correlation_deg * kRadPerDeg);
+    observation.height_is_free = true;
     observation.huber_delta = options_.huber_delta;
     observation.ratio_is_free = prior && prior->attitude != Attitude::kStanding;
     observation.size_is_known = options_.size_prior && !observation.ratio_is_free;

@@ -36,7 +36,7 @@ void Add(const Sequence& sequence, const Detection& detection,
   if (!IsInFront(in_camera)) return;
   const auto edges = BoxEdges(sequence.CameraOf(detection), detection.box, {}, 0.0);
   for (size_t side = 0; side < edges.size(); ++side) {
-    if (detection.is_bound[side]) continue;
+    if (detection.is_one_sided[side]) continue;
     const double inside_px = OutlineExcess(edges[side], in_camera, nullptr) * edges[side].sigma_px;
     const double extent_px = side % 2 == 0 ? detection.box.Width() : detection.box.Height();
     (*offsets)[side].push_back(-inside_px / extent_px);

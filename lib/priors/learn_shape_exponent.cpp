@@ -23,8 +23,8 @@ double Loss(const Sequence& sequence, const Detection& detection,
   in_camera.shape_exponents = shape_exponents;
   const ceres::HuberLoss huber(1.0);  // of residuals in standard deviations
   double loss = 0.0;
-  for (const BoxEdge& edge :
-       BoxEdges(sequence.CameraOf(detection), detection.box, detection.is_bound, kSigmaFraction)) {
+  for (const BoxEdge& edge : BoxEdges(sequence.CameraOf(detection), detection.box,
+                                      detection.is_one_sided, kSigmaFraction)) {
     const double residual =
         Tangency(edge, in_camera, FindTangentDepth(edge, in_camera), 0.0, nullptr);
     loss += EvaluateLoss(huber, residual).cost;

@@ -54,7 +54,7 @@ std::vector<SeenBox> BoxesOf(const Sequence& sequence, const std::vector<int>& d
   std::vector<SeenBox> boxes;
   for (const int index : detections) {
     const Detection& seen = sequence.detections[index];
-    boxes.push_back({seen.frame_index, seen.box, std::ranges::count(seen.is_bound, true) == 0});
+    boxes.push_back({seen.frame_index, seen.box, std::ranges::count(seen.is_one_sided, true) == 0});
   }
   return boxes;
 }

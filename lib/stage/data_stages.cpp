@@ -15,6 +15,7 @@
 #include "cli/command_line.h"
 #include "dataset/dataset_content.h"
 #include "dataset/gate.h"
+#include "dataset/import_options.h"
 #include "priors/furniture_catalogue.h"
 #include "priors/learn_priors.h"
 #include "stage/read_evidence.h"

@@ -20,6 +20,8 @@
 #include "evaluation/result_checks.h"
 #include "initialisation/initialise.h"
 #include "initialisation/object_points.h"
+#include "initialisation/options.h"
+#include "orientation/options.h"
 #include "orientation/refine_orientation.h"
 #include "orientation/texture_asymmetry.h"
 #include "stage/read_evidence.h"

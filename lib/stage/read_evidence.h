@@ -8,9 +8,9 @@
 
 #include "artefact/hdf5_artefact.h"
 #include "cli/command_line.h"
+#include "constraints/point_term.h"
 #include "image/edge_maps.h"
 #include "image/read_image.h"
-#include "initialisation/point_term.h"
 #include "model/map_points.h"
 #include "model/sequence.h"
 #include "planes/up_prior.h"

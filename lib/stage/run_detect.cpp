@@ -18,6 +18,7 @@
 #include "dataset/labelled_box.h"
 #include "dataset/text_file.h"
 #include "dataset/trajectories.h"
+#include "image/detector_options.h"
 #include "image/read_image.h"
 #include "image/yolo_detector.h"
 #include "model/label_groups.h"

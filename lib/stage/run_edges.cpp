@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "image/edge_maps.h"
 #include "stage/read_evidence.h"
 #include "stage/stages.h"
 

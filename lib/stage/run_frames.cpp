@@ -29,6 +29,7 @@
 #include "dataset/labelled_box.h"
 #include "dataset/photo_folder.h"
 #include "dataset/text_file.h"
+#include "image/frame_choice.h"
 #include "image/read_image.h"
 #include "image/tiff_file.h"
 #include "image/video_file.h"

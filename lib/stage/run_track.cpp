@@ -15,6 +15,7 @@
 #include "geometry/angles.h"
 #include "geometry/distortion.h"
 #include "geometry/triangulation.h"
+#include "image/feature_tracks.h"
 #include "model/finding.h"
 #include "model/map_points.h"
 #include "stage/read_evidence.h"

@@ -6,25 +6,27 @@
 #include <string>
 #include <vector>
 
-#include "association/options.h"
 #include "base/options.h"
 #include "cli/command_line.h"
-#include "dataset/import_options.h"
-#include "dataset/reconstruct_options.h"
-#include "evaluation/alignment.h"
-#include "ground/options.h"
-#include "image/detector_options.h"
-#include "image/edge_maps.h"
-#include "image/feature_tracks.h"
-#include "image/frame_choice.h"
-#include "initialisation/options.h"
 #include "inspection/overlay.h"
-#include "mapping/options.h"
-#include "orientation/options.h"
-#include "planes/options.h"
-#include "priors/learn_priors.h"
 
 namespace soslam {
+
+// Options of the stages, each beside the code that it configures.
+struct AssociateOptions;
+struct DetectorOptions;
+struct EdgesOptions;
+struct EvaluateOptions;
+struct FrameOptions;
+struct GroundOptions;
+struct ImportOptions;
+struct InitialiseOptions;
+struct LearnPriorsOptions;
+struct OptimiseOptions;
+struct OrientationOptions;
+struct PlanesOptions;
+struct ReconstructOptions;
+struct TrackOptions;
 
 // soslam-import: reads the folder "dataset", writes the sequence artefact "output" and prints a
 // one-line summary of how much is used. Errors as ImportDataset and WriteSequence.

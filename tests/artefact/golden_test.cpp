@@ -26,7 +26,7 @@ TEST(GoldenTest, Sequence10) {
   EXPECT_EQ(sequence.image_orientation, ImageOrientation::kStored);
   EXPECT_EQ(sequence.objects.at(0).ground_truth->landmark_in_world.shape_exponents, 2.0);
   for (const Detection& detection : sequence.detections) {
-    EXPECT_EQ(detection.is_bound, (std::array<bool, 4>{}));
+    EXPECT_EQ(detection.is_one_sided, (std::array<bool, 4>{}));
     EXPECT_FALSE(detection.true_landmark_in_camera);
   }
   for (const Frame& frame : sequence.frames) {
@@ -69,9 +69,9 @@ TEST(GoldenTest, Sequence11) {
   EXPECT_EQ(sequence.objects.at(0).ground_truth->landmark_in_world.shape_exponents,
             1.2026355410146854);
   ASSERT_EQ(sequence.detections.size(), 10u);
-  EXPECT_EQ(sequence.detections[0].is_bound, (std::array<bool, 4>{}));
-  EXPECT_EQ(sequence.detections[6].is_bound, (std::array<bool, 4>{false, true, true, false}));
-  EXPECT_EQ(sequence.detections[9].is_bound, (std::array<bool, 4>{true, false, false, true}));
+  EXPECT_EQ(sequence.detections[0].is_one_sided, (std::array<bool, 4>{}));
+  EXPECT_EQ(sequence.detections[6].is_one_sided, (std::array<bool, 4>{false, true, true, false}));
+  EXPECT_EQ(sequence.detections[9].is_one_sided, (std::array<bool, 4>{true, false, false, true}));
 }
 
 TEST(GoldenTest, Landmarks11) {

@@ -110,7 +110,7 @@ TEST_F(BoxLikelihoodTest, OneEdgeMayBeCutOff) {
 }
 
 TEST_F(BoxLikelihoodTest, ABoundNeedsOnlyBeReached) {
-  expected_.is_bound = {false, false, true, false};
+  expected_.is_one_sided = {false, false, true, false};
   Box cut = expected_.box;
   cut.x_max -= 0.5 * cut.Width();
   EXPECT_NEAR(Match(cut)->distance, 0.0, 0.1);

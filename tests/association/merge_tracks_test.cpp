@@ -133,10 +133,10 @@ TEST_F(TrackTest, WhatIsRarelyDetectedThoughInSightIsFalse) {
 TEST_F(TrackTest, WhatIsNeverSeenWholeIsNoObject) {
   const int track = AddTrack(of_objects_[0]);
   for (const int index : of_objects_[0]) {
-    sequence_.detections[index].is_bound = {true, false, false, false};
+    sequence_.detections[index].is_one_sided = {true, false, false, false};
   }
   EXPECT_EQ(FateOf(track), TrackFate::kNeverWhole);
-  sequence_.detections[of_objects_[0][2]].is_bound = {};
+  sequence_.detections[of_objects_[0][2]].is_one_sided = {};
   EXPECT_EQ(FateOf(track), TrackFate::kObject);
 }
 

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "initialisation/landmark_cost.h"
+#include "constraints/landmark_cost.h"
 
 namespace soslam {
 namespace {

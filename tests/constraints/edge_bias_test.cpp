@@ -21,13 +21,14 @@ TEST(WithoutBias, LeavesBoundsWhereTheyAre) {
 
 TEST(BoxEdges, AreThoseOfTheBoxWithoutBias) {
   const Box box{100, 200, 300, 400};
-  const std::array<bool, 4> is_bound = {false, false, true, false};
+  const std::array<bool, 4> is_one_sided = {false, false, true, false};
   const EdgeBias bias = {0.1, -0.05, 0.3, -0.2};
-  const auto biased = BoxEdges(TestCamera(), box, is_bound, 0.02, bias);
-  const auto corrected = BoxEdges(TestCamera(), WithoutBias(box, is_bound, bias), is_bound, 0.02);
+  const auto biased = BoxEdges(TestCamera(), box, is_one_sided, 0.02, bias);
+  const auto corrected =
+      BoxEdges(TestCamera(), WithoutBias(box, is_one_sided, bias), is_one_sided, 0.02);
   for (size_t i = 0; i < biased.size(); ++i) {
     EXPECT_EQ(biased[i].plane, corrected[i].plane);
-    EXPECT_EQ(biased[i].is_bound, is_bound[i]);
+    EXPECT_EQ(biased[i].is_one_sided, is_one_sided[i]);
     EXPECT_DOUBLE_EQ(biased[i].sigma_px, 4.0);  // of the detected box
   }
 }

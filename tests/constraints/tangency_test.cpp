@@ -35,12 +35,12 @@ TEST(BoxEdges, PointOutOfTheBoxAndMeasurePixels) {
       EXPECT_NEAR(edges[k].plane.dot(point) / point.z(), outside[k], 1e-9);
     }
   }
-  EXPECT_TRUE(edges[0].is_bound && edges[3].is_bound);
-  EXPECT_FALSE(edges[1].is_bound || edges[2].is_bound);
+  EXPECT_TRUE(edges[0].is_one_sided && edges[3].is_one_sided);
+  EXPECT_FALSE(edges[1].is_one_sided || edges[2].is_one_sided);
   EXPECT_DOUBLE_EQ(edges[0].sigma_px, 10.0);
   EXPECT_DOUBLE_EQ(edges[1].sigma_px, 3.0);
-  EXPECT_DOUBLE_EQ(edges[2].length_px, 200.0);
-  EXPECT_DOUBLE_EQ(edges[3].length_px, 60.0);
+  EXPECT_DOUBLE_EQ(edges[2].extent_px, 200.0);
+  EXPECT_DOUBLE_EQ(edges[3].extent_px, 60.0);
   // Not below a pixel.
   EXPECT_DOUBLE_EQ(BoxEdges(camera, {100, 100, 110, 110}, {}, 0.05)[2].sigma_px, 1.0);
 }
@@ -125,7 +125,7 @@ TEST(Tangency, OfABoundCountsOnlyWhatIsMissing) {
     const Landmark landmark = WithShape(RandomLandmarkInCamera(), RandomUniform(1, 2));
     const BoxEdge measured = RandomEdge();
     BoxEdge bound = measured;
-    bound.is_bound = true;
+    bound.is_one_sided = true;
     const double bias_px = RandomUniform(-3, 3);
     LandmarkJacobian1 of_measured, of_bound;
     const double expected = Tangency(measured, landmark, {3.0}, bias_px, &of_measured);
@@ -195,7 +195,7 @@ TEST(TangencyResidual, HasCorrectJacobiansWithoutItsCurvatureRows) {
     view.initial_in_camera.shape_exponents = RandomUniform(1.4, 2.0);
     const LandmarkBlock landmark = view.LandmarkInWorld();
     BoxEdge edge = RandomEdge();
-    edge.is_bound = i % 2 == 0;
+    edge.is_one_sided = i % 2 == 0;
     const TangencyResidual residual(edge, view.initial_in_camera, &with_curvature);
     ExpectCorrectJacobians(residual,
                            {view.pose.data(), landmark.data(), &view.bias_px, &view.misfit});
@@ -246,7 +246,7 @@ TEST(TangencyResidual, ComparesABodyBehindTheCameraAtATenthOfItsDepth) {
   const double depth_m = 0.1 * FindTangentDepth(edge, view.initial_in_camera).depth_m;
   EXPECT_NEAR(
       values[0],
-      Tangency(edge, behind, {depth_m}, view.bias_px + edge.length_px * view.misfit, nullptr),
+      Tangency(edge, behind, {depth_m}, view.bias_px + edge.extent_px * view.misfit, nullptr),
       1e-9 * (1.0 + std::abs(values[0])));
   const bool without_curvature = false;
   ExpectCorrectJacobians(TangencyResidual(edge, view.initial_in_camera, &without_curvature),
@@ -260,9 +260,9 @@ TEST(TangencyResidual, RefusesHalfAxesBeyondNumbers) {
   landmark[8] = 1000.0;
   const double* blocks[] = {view.pose.data(), landmark.data(), &view.bias_px, &view.misfit};
   Eigen::Vector3d values;
-  for (const bool is_bound : {false, true}) {
+  for (const bool is_one_sided : {false, true}) {
     BoxEdge edge = RandomEdge();
-    edge.is_bound = is_bound;
+    edge.is_one_sided = is_one_sided;
     const TangencyResidual residual(edge, view.initial_in_camera, &with_curvature);
     EXPECT_FALSE(residual.Evaluate(blocks, values.data(), nullptr));
   }

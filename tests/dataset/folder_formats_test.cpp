@@ -102,7 +102,7 @@ TEST_F(FolderFormatsTest, WithoutPlanesWhatEndsLowerIsNearer) {
   const std::vector<Box> nearer = BoxesInFront(sequence, sequence.detections[0]);
   ASSERT_EQ(nearer.size(), 1u);
   EXPECT_EQ(nearer[0].y_max, 240.0);
-  EXPECT_TRUE(sequence.detections[0].is_bound[3]);
+  EXPECT_TRUE(sequence.detections[0].is_one_sided[3]);
   EXPECT_TRUE(BoxesInFront(sequence, sequence.detections[1]).empty());
 }
 
@@ -280,7 +280,7 @@ TEST_F(FolderFormatsTest, YoloInFractions) {
   const Detection detection = ImportOne(DetectionsFormat::kYolo, "labels");
   ExpectBox(detection.box, {279.5, -0.5, 359.5, 239.5});
   EXPECT_EQ(detection.score, 0.75);
-  EXPECT_TRUE(detection.is_bound[1]);
+  EXPECT_TRUE(detection.is_one_sided[1]);
 }
 
 TEST_F(FolderFormatsTest, YoloWithNamesAndTracks) {
@@ -359,8 +359,8 @@ TEST_F(FolderFormatsTest, BoxesAreUndistorted) {
   EXPECT_NEAR(corner.y() * (1 - 0.2 * corner.squaredNorm()), -100.0 / 510, 1e-6);
   // Its edge is cut by the border of the file, wherever it is without the lens.
   EXPECT_LT(sequence.detections[1].box.x_min, -10.0);
-  EXPECT_EQ(sequence.detections[1].is_bound, (std::array<bool, 4>{true, false, false, false}));
-  EXPECT_EQ(sequence.detections[0].is_bound, (std::array<bool, 4>{}));
+  EXPECT_EQ(sequence.detections[1].is_one_sided, (std::array<bool, 4>{true, false, false, false}));
+  EXPECT_EQ(sequence.detections[0].is_one_sided, (std::array<bool, 4>{}));
 }
 
 TEST_F(FolderFormatsTest, DistortionOfTheCameraFileHolds) {

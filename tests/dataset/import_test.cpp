@@ -244,16 +244,16 @@ TEST_F(ImportTest, BoxesThatAreNotUsedHideLowerEdgesUnlessTheyMayNotBeReal) {
       ElementsAre(Pair("low_score", 1), Pair("near_border", 1), Pair("too_few_observations", 1)));
   ASSERT_EQ(sequence.detections.size(), 3u);
   const std::array<bool, 4> lower_edge = {false, false, false, true};
-  EXPECT_EQ(sequence.detections[0].is_bound, lower_edge);
-  EXPECT_EQ(sequence.detections[1].is_bound, (std::array<bool, 4>{}));
-  EXPECT_EQ(sequence.detections[2].is_bound, lower_edge);
+  EXPECT_EQ(sequence.detections[0].is_one_sided, lower_edge);
+  EXPECT_EQ(sequence.detections[1].is_one_sided, (std::array<bool, 4>{}));
+  EXPECT_EQ(sequence.detections[2].is_one_sided, lower_edge);
   EXPECT_EQ(BoxesInFront(sequence, sequence.detections[0]),
             (std::vector<Box>{{90, 200, 210, 470}}));
   EXPECT_TRUE(BoxesInFront(sequence, sequence.detections[1]).empty());
   EXPECT_EQ(BoxesInFront(sequence, sequence.detections[2]),
             (std::vector<Box>{{90, 200, 210, 440}}));
   options.hidden_edge_fraction = 0.0;
-  EXPECT_EQ(Import().detections[1].is_bound, lower_edge);
+  EXPECT_EQ(Import().detections[1].is_one_sided, lower_edge);
 }
 
 TEST_F(ImportTest, WhatIsTrueStaysWithoutIds) {
@@ -356,13 +356,13 @@ constexpr Bounds kBottom = {false, false, false, true};
 std::vector<Bounds> BoundsOfAll(Sequence sequence, double hidden_edge_fraction = 0.7) {
   ListBoxesInView(sequence, &sequence);
   for (Detection& detection : sequence.detections) {
-    detection.is_bound = EdgesCutByBorder(detection.box, sequence.CameraOf(detection));
+    detection.is_one_sided = EdgesCutByBorder(detection.box, sequence.CameraOf(detection));
   }
   ImportOptions options;
   options.hidden_edge_fraction = hidden_edge_fraction;
   MarkHiddenEdges(options, &sequence);
   std::vector<Bounds> bounds;
-  for (const Detection& detection : sequence.detections) bounds.push_back(detection.is_bound);
+  for (const Detection& detection : sequence.detections) bounds.push_back(detection.is_one_sided);
   return bounds;
 }
 

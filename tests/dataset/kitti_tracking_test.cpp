@@ -281,7 +281,7 @@ TEST_F(KittiObjectTest, BoxesEndWhereACroppedImageDoes) {
   const Detection& cut = sequence.detections[2];
   ASSERT_GT((KittiBox{7, 1.6, 11, 0.5}.Image().x_max), 1100.0);
   EXPECT_EQ(cut.box.x_max, 1099.5);
-  EXPECT_EQ(cut.is_bound, (std::array<bool, 4>{false, false, true, false}));
+  EXPECT_EQ(cut.is_one_sided, (std::array<bool, 4>{false, false, true, false}));
 }
 
 TEST_F(KittiObjectTest, TruncationIsAShare) {

@@ -40,7 +40,7 @@ TEST(SupportFunction, DerivativesAgreeWithNumbers) {
     for (int k = 0; k < 3; ++k) {
       const Eigen::Vector3d step = kStep * Eigen::Vector3d::Unit(k);
       EXPECT_NEAR(
-          value.contact[k],
+          value.point[k],
           (Extent(half_axes, p, direction + step) - Extent(half_axes, p, direction - step)) /
               (2 * kStep),
           1e-8)
@@ -64,8 +64,8 @@ TEST(SupportHessian, IsTheDerivativeOfTheContact) {
     const Eigen::Matrix3d hessian = SupportHessian(half_axes, p, direction);
     for (int k = 0; k < 3; ++k) {
       const Eigen::Vector3d step = kStep * Eigen::Vector3d::Unit(k);
-      const Eigen::Vector3d numeric = (SupportFunction(half_axes, p, direction + step).contact -
-                                       SupportFunction(half_axes, p, direction - step).contact) /
+      const Eigen::Vector3d numeric = (SupportFunction(half_axes, p, direction + step).point -
+                                       SupportFunction(half_axes, p, direction - step).point) /
                                       (2 * kStep);
       EXPECT_LT((hessian.col(k) - numeric).norm(), 1e-7) << p;
     }
@@ -91,11 +91,11 @@ TEST(SupportFunction, TheContactReachesAsFarAsTheExtentInAnyDirection) {
     const RandomCase random(i);
     for (const Eigen::Vector3d& direction : {random.direction, Eigen::Vector3d(0, 0, -2)}) {
       const SupportValue value = SupportFunction(random.half_axes, random.p, direction);
-      EXPECT_NEAR(value.contact.dot(direction), value.extent, 1e-12);
+      EXPECT_NEAR(value.point.dot(direction), value.extent, 1e-12);
       EXPECT_NEAR(value.d_log_half_axes.sum(), value.extent, 1e-12);  // homogeneous in the size
       // No point of the body reaches farther.
       const Eigen::Vector3d other = RandomDirection();
-      EXPECT_LE(SupportFunction(random.half_axes, random.p, other).contact.dot(direction),
+      EXPECT_LE(SupportFunction(random.half_axes, random.p, other).point.dot(direction),
                 value.extent + 1e-12);
     }
   }
@@ -106,17 +106,16 @@ TEST(SupportFunction, TouchesTheCuboidAtItsCorners) {
     RandomCase random(i);
     random.direction = random.direction.array().sign() * (0.2 + random.direction.array().abs());
     const Eigen::Vector3d corner = random.direction.array().sign() * random.half_axes.array();
-    EXPECT_LT(
-        (SupportFunction(random.half_axes, kCuboidExponent, random.direction).contact - corner)
-            .norm(),
-        0.002);
+    EXPECT_LT((SupportFunction(random.half_axes, kCuboidExponent, random.direction).point - corner)
+                  .norm(),
+              0.002);
   }
 }
 
 TEST(SupportFunction, IsZeroForAFlatBodySeenFromItsSide) {
   const SupportValue value = SupportFunction({0, 1, 1}, kEllipsoidExponent, {1, 0, 0});
   EXPECT_EQ(value.extent, 0.0);
-  EXPECT_TRUE(value.contact.isZero());
+  EXPECT_TRUE(value.point.isZero());
 }
 
 }  // namespace

@@ -80,8 +80,7 @@ TEST(BodySurface, GradientIsTheOutwardNormal) {
       const double least = gradient.cwiseProduct(ray.half_axes).cwiseAbs().minCoeff();
       if (!(p == kEllipsoidExponent) && least < 0.1) continue;
       if (p == kCuboidExponent) continue;
-      EXPECT_LT((support.contact - point).norm(),
-                p == kEllipsoidExponent ? 1e-9 : 5 * kEdgeRounding)
+      EXPECT_LT((support.point - point).norm(), p == kEllipsoidExponent ? 1e-9 : 5 * kEdgeRounding)
           << p;
     }
   }

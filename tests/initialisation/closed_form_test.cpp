@@ -121,9 +121,9 @@ TEST(SolveAtYaw, RecoversABodyThatABoundCutsFromTheOtherThreeEdges) {
       for (int i = 0; i < 10; ++i) {
         const StandingBody body(p);
         const Box cut = WithEdgeMoved(body.box, edge, -RandomUniform(0.05, 0.3));
-        std::array<bool, 4> is_bound{};
-        is_bound[edge] = true;
-        const auto landmark = SolveAtYaw(body.Observe(cut, is_bound), body.Yaw());
+        std::array<bool, 4> is_one_sided{};
+        is_one_sided[edge] = true;
+        const auto landmark = SolveAtYaw(body.Observe(cut, is_one_sided), body.Yaw());
         ASSERT_TRUE(landmark) << "edge " << edge;
         EXPECT_TRUE(IsSameBody(*landmark, body.truth, 1e-6)) << "edge " << edge;
         // Used as a measurement, the same edge changes the object.
@@ -157,9 +157,9 @@ TEST(SolveAtYaw, HoldsABoundThatTheBodyDoesNotReachForMeasured) {
     for (int i = 0; i < 20; ++i) {
       const StandingBody body(RandomUniform(1, 2));
       const Box wide = WithEdgeMoved(body.box, edge, RandomUniform(0.05, 0.2));
-      std::array<bool, 4> is_bound{};
-      is_bound[edge] = true;
-      const auto as_bound = SolveAtYaw(body.Observe(wide, is_bound), body.Yaw());
+      std::array<bool, 4> is_one_sided{};
+      is_one_sided[edge] = true;
+      const auto as_bound = SolveAtYaw(body.Observe(wide, is_one_sided), body.Yaw());
       const auto as_measured = SolveAtYaw(body.Observe(wide), body.Yaw());
       ASSERT_TRUE(as_bound && as_measured);
       EXPECT_TRUE(IsSameBody(*as_bound, *as_measured, 1e-9)) << "edge " << edge;

@@ -120,8 +120,8 @@ TEST(InitialiseUpright, NamesDetectionsThatNoBodyExplains) {
 TEST(InitialiseUpright, NamesDetectionsThatAreCutOnTwoSides) {
   Sequence sequence = LevelSequence({{300, 250, 380, 330}, {300, 250, 380, 330}});
   sequence.planes = {{0, {Eigen::Vector3d::UnitZ(), 0.0}}};
-  sequence.detections[0].is_bound = {true, false, false, false};
-  sequence.detections[1].is_bound = {true, false, false, true};
+  sequence.detections[0].is_one_sided = {true, false, false, false};
+  sequence.detections[1].is_one_sided = {true, false, false, true};
   const std::vector<std::optional<ShapePrior>> priors(2, ShapePrior());
   const LandmarkEstimates estimates = InitialiseUpright(sequence, priors, UprightOptions(), 1);
   EXPECT_EQ(estimates.observations[0].failure, "");

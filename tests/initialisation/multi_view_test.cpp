@@ -148,7 +148,7 @@ TEST(SolveViewsAtYaw, TakesBoundsForBounds) {
   };
   const auto taken_for_measured = solve();
   EXPECT_TRUE(!taken_for_measured || BoxIou(taken_for_measured->landmark, world.truth) < 0.95);
-  for (Detection& detection : world.sequence.detections) detection.is_bound[3] = true;
+  for (Detection& detection : world.sequence.detections) detection.is_one_sided[3] = true;
   const auto found = solve();
   ASSERT_TRUE(found);
   ExpectSame(found->landmark, world.truth, 1e-4);

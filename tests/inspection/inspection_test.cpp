@@ -11,6 +11,7 @@
 #include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
 #include "base/error.h"
+#include "dataset/reconstruct_options.h"
 #include "geometry/angles.h"
 #include "initialisation/options.h"
 #include "inspection/doubts.h"

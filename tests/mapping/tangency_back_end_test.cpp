@@ -251,7 +251,7 @@ TEST(TangencyBackEnd, BoundsCostNothingWhereTheObjectReachesFarther) {
   };
   const double of_whole = initial_cost(whole);
   EXPECT_GT(initial_cost(cut), 100.0 * of_whole);
-  for (Detection& detection : cut.detections) detection.is_bound[2] = true;
+  for (Detection& detection : cut.detections) detection.is_one_sided[2] = true;
   EXPECT_LT(initial_cost(cut), of_whole * 1.5);
 
   BackEndInput input = TruthInput(cut);

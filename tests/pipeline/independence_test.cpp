@@ -9,6 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "dataset/import_options.h"
+#include "evaluation/alignment.h"
+#include "image/edge_maps.h"
+#include "initialisation/options.h"
+#include "mapping/options.h"
+#include "orientation/options.h"
 #include "stage/stages.h"
 #include "support/small_pipeline.h"
 

@@ -68,7 +68,7 @@ TEST(LearnEdgeBias, ObjectsCountOnceHoweverOftenTheyAreSeen) {
 TEST(LearnEdgeBias, IgnoresBoundsAndAFewWrongBoxes) {
   Sequence sequence = BiasedObjects("thing", 1, 9, kTrueBias);
   for (Detection& detection : sequence.detections) {
-    detection.is_bound[3] = true;
+    detection.is_one_sided[3] = true;
     detection.box.y_max -= 0.3 * detection.box.Height();
   }
   for (size_t i = 0; i < 3; ++i) sequence.detections[i].box.x_min -= 50.0;

@@ -110,7 +110,7 @@ std::vector<Degeneracy> Degeneracies() {
        })},
       {"NoEdgeIsMeasured",
        [](Sequence* sequence) {
-         for (Detection& detection : sequence->detections) detection.is_bound.fill(true);
+         for (Detection& detection : sequence->detections) detection.is_one_sided.fill(true);
        }},
       {"CamerasOnALineThroughABody",
        [](Sequence* sequence) {

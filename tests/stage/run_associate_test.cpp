@@ -6,6 +6,7 @@
 
 #include "artefact/files.h"
 #include "artefact/json_file.h"
+#include "association/options.h"
 #include "base/error.h"
 #include "report/page_parts.h"
 #include "stage/stages.h"

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "dataset/labelled_box.h"
+#include "image/detector_options.h"
 #include "stage/stages.h"
 #include "support/expect_error.h"
 #include "support/image_files.h"

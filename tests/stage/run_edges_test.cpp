@@ -8,6 +8,7 @@
 #include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
 #include "base/error.h"
+#include "image/edge_maps.h"
 #include "image/read_image.h"
 #include "stage/stages.h"
 #include "support/expect_error.h"

@@ -7,6 +7,7 @@
 #include "artefact/files.h"
 #include "base/error.h"
 #include "dataset/trajectories.h"
+#include "evaluation/alignment.h"
 #include "stage/stages.h"
 #include "support/expect_error.h"
 #include "support/gltf_document.h"

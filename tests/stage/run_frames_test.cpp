@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "artefact/json_file.h"
+#include "image/frame_choice.h"
 #include "image/read_image.h"
 #include "stage/stages.h"
 #include "support/drawn_photos.h"

@@ -6,6 +6,7 @@
 #include "artefact/json_file.h"
 #include "base/error.h"
 #include "base/hash.h"
+#include "dataset/import_options.h"
 #include "stage/stages.h"
 #include "support/dataset_fixture.h"
 #include "support/expect_error.h"

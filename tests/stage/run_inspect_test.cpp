@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/options.h"
 #include "ground/ground_checks.h"
+#include "ground/options.h"
 #include "inspection/canvas.h"
 #include "inspection/overlay.h"
 #include "stage/stages.h"

@@ -4,6 +4,7 @@
 
 #include "artefact/files.h"
 #include "base/error.h"
+#include "priors/learn_priors.h"
 #include "stage/stages.h"
 #include "support/expect_error.h"
 #include "support/printed.h"

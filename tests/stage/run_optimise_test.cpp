@@ -6,6 +6,7 @@
 #include "artefact/files.h"
 #include "base/error.h"
 #include "evaluation/metrics.h"
+#include "mapping/options.h"
 #include "stage/stages.h"
 #include "support/expect_error.h"
 #include "support/scene.h"

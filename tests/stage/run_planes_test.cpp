@@ -11,6 +11,8 @@
 #include "artefact/json_file.h"
 #include "association/association.h"
 #include "base/error.h"
+#include "ground/options.h"
+#include "planes/options.h"
 #include "stage/stages.h"
 #include "support/expect_error.h"
 #include "support/prior_scene.h"

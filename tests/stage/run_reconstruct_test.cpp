@@ -9,6 +9,7 @@
 #include "artefact/model_json.h"
 #include "base/error.h"
 #include "dataset/dataset_json.h"
+#include "dataset/reconstruct_options.h"
 #include "dataset/trajectories.h"
 #include "stage/stages.h"
 #include "support/expect_error.h"

@@ -6,6 +6,7 @@
 
 #include "artefact/files.h"
 #include "geometry/distortion.h"
+#include "image/feature_tracks.h"
 #include "stage/stages.h"
 #include "support/drawn_photos.h"
 #include "support/printed.h"

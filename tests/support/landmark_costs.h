@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "initialisation/landmark_cost.h"
+#include "constraints/landmark_cost.h"
 #include "support/shape_exponents.h"
 
 namespace soslam {

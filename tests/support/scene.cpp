@@ -28,8 +28,8 @@ Sequence RolledByAQuarter(Sequence sequence) {
     const Box box = detection.box;
     detection.box = {box.y_min, width - 1.0 - box.x_max, box.y_max, width - 1.0 - box.x_min};
     detection.plane_in_camera = Transform(old_from_new.Inverse(), detection.plane_in_camera);
-    const auto [left, top, right, bottom] = detection.is_bound;
-    detection.is_bound = {top, right, bottom, left};
+    const auto [left, top, right, bottom] = detection.is_one_sided;
+    detection.is_one_sided = {top, right, bottom, left};
   }
   return sequence;
 }

@@ -53,11 +53,11 @@ inline ShapePrior PriorOf(const Landmark& landmark, double log_sigma) {
           Eigen::Vector2d::Constant(log_sigma), landmark.shape_exponents};
 }
 
-inline UprightObservation ObservationOf(const Box& box, const std::array<bool, 4>& is_bound,
+inline UprightObservation ObservationOf(const Box& box, const std::array<bool, 4>& is_one_sided,
                                         const Plane& floor, const ShapePrior& prior) {
   UprightObservation observation;
   observation.camera = TestCamera();
-  observation.edges = BoxEdges(observation.camera, box, is_bound, kDetectionSigmaFraction);
+  observation.edges = BoxEdges(observation.camera, box, is_one_sided, kDetectionSigmaFraction);
   observation.plane_in_camera = floor;
   observation.prior = prior;
   observation.scene_axis_in_camera =
@@ -75,9 +75,9 @@ struct StandingBody {
 
   double Yaw() const { return soslam::Yaw(plane.normal, truth.frame_from_object.rotation); }
   // The same observation with another box.
-  UprightObservation Observe(const Box& other, const std::array<bool, 4>& is_bound = {}) const {
+  UprightObservation Observe(const Box& other, const std::array<bool, 4>& is_one_sided = {}) const {
     UprightObservation changed = observation;
-    changed.edges = BoxEdges(TestCamera(), other, is_bound, kDetectionSigmaFraction);
+    changed.edges = BoxEdges(TestCamera(), other, is_one_sided, kDetectionSigmaFraction);
     return changed;
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "initialisation/landmark_cost.h"
+#include "constraints/landmark_cost.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "initialisation/point_term.h"
+#include "constraints/point_term.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -30,7 +30,8 @@ double Width(double sigma_m, double rough_sigma_m) {
 
 // Smallest variance along any direction.
 double LeastVariance(const Eigen::Matrix3d& covariance) {
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly)
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>()
+      .computeDirect(covariance, Eigen::EigenvaluesOnly)
       .eigenvalues()[0];
 }
 
@@ -125,7 +126,7 @@ void PointTerm::AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) co
     model.cost += cost;
     model.gradient += weight * distance * jacobian.transpose();
     const double information = IsForSolver() ? weight : Information(density, distance);
-    model.information += information * jacobian.transpose() * jacobian;
+    model.information.noalias() += information * jacobian.transpose() * jacobian;
   }
   sum->Add(model, weight_);
 }

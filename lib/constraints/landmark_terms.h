@@ -9,11 +9,11 @@
 #include <memory>
 #include <utility>
 
+#include "constraints/landmark_cost.h"
 #include "constraints/tangency.h"
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
-#include "initialisation/landmark_cost.h"
-#include "initialisation/semantic_table.h"
+#include "model/shape_prior.h"
 
 namespace soslam {
 
@@ -122,8 +122,7 @@ class RobustViewTerm final : public LandmarkTerm {
 };
 
 // Weak prior of yaws along or across an axis of the scene, as for furniture: cost
-// `weight` sin^2(2 d), with d the angle between yaw and axis, so at most `weight`. The Jacobian is
-// that of an upright landmark.
+// `weight` sin^2(2 d), with d the angle between yaw and axis, so at most `weight`.
 class AxisTerm final : public LandmarkTerm {
  public:
   AxisTerm(const Plane& plane_in_camera, const Eigen::Vector3d& axis_in_camera, double weight);
@@ -155,6 +154,18 @@ class YawTerm final : public LandmarkTerm {
  private:
   Eigen::Vector3d normal_;
   YawPrior prior_;
+};
+
+// The residuals of LeaningOnPlane on a constant plane.
+class LeaningTerm final : public LandmarkTerm {
+ public:
+  explicit LeaningTerm(const Plane& plane) : plane_(plane) {}
+  int NumResiduals() const override { return 3; }
+  void Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
+                Jacobian* jacobian) const override;
+
+ private:
+  Plane plane_;
 };
 
 // A LandmarkTerm as a Ceres cost function. Residuals: those of the term. Block: landmark in the

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "initialisation/point_term.h"
+#include "constraints/point_term.h"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include <memory>
 #include <utility>
 
+#include "constraints/landmark_cost.h"
 #include "constraints/parameters.h"
-#include "initialisation/landmark_cost.h"
 
 namespace soslam {
 

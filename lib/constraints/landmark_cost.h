@@ -24,7 +24,7 @@ struct QuadraticModel {
   void Add(double residual, const Vector& d_parameters) {
     cost += 0.5 * residual * residual;
     gradient += residual * d_parameters;
-    information += d_parameters * d_parameters.transpose();
+    information.noalias() += d_parameters * d_parameters.transpose();
   }
   void Add(const QuadraticModel& other, double weight = 1.0) {
     cost += weight * other.cost;

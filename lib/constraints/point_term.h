@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/options.h"
-#include "initialisation/landmark_cost.h"
+#include "constraints/landmark_cost.h"
 #include "model/estimates.h"
 
 namespace soslam {

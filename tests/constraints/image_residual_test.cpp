@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mapping/image_residual.h"
+#include "constraints/image_residual.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "initialisation/landmark_terms.h"
+#include "constraints/landmark_terms.h"
 
 #include <limits>
 
+#include "constraints/leaning_on_plane.h"
 #include "constraints/loss.h"
 #include "constraints/parameters.h"
 
@@ -39,7 +40,8 @@ void BoxTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::Vec
   for (size_t i = 0; i < edges_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     LandmarkJacobian1 d_landmark;
-    residuals[row] = Tangency(edges_[i], landmark_in_camera, depths_[i], 0.0, &d_landmark);
+    residuals[row] = Tangency(edges_[i], landmark_in_camera, depths_[i], 0.0,
+                              jacobian != nullptr ? &d_landmark : nullptr);
     if (jacobian != nullptr) jacobian->row(row) = d_landmark;
   }
 }
@@ -113,21 +115,28 @@ AxisTerm::AxisTerm(const Plane& plane_in_camera, const Eigen::Vector3d& axis_in_
 
 void AxisTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
                         Jacobian* jacobian) const {
-  const double angle =
-      2.0 * (Yaw(normal_, landmark_in_camera.frame_from_object.rotation) - axis_yaw_);
+  const Eigen::Quaterniond& rotation = landmark_in_camera.frame_from_object.rotation;
+  const double angle = 2.0 * (Yaw(normal_, rotation) - axis_yaw_);
   residuals[0] = amplitude_ * std::sin(angle);
   if (jacobian == nullptr) return;
   jacobian->setZero();
-  jacobian->leftCols<3>() = 2.0 * amplitude_ * std::cos(angle) * normal_.transpose();
+  jacobian->leftCols<3>() = 2.0 * amplitude_ * std::cos(angle) * YawJacobian(normal_, rotation);
 }
 
 void YawTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
                        Jacobian* jacobian) const {
-  const double yaw = Yaw(normal_, landmark_in_camera.frame_from_object.rotation);
-  residuals[0] = YawDifferenceModuloPi(yaw, prior_.yaw) / prior_.sigma;
+  const Eigen::Quaterniond& rotation = landmark_in_camera.frame_from_object.rotation;
+  residuals[0] = YawDifferenceModuloPi(Yaw(normal_, rotation), prior_.yaw) / prior_.sigma;
   if (jacobian == nullptr) return;
   jacobian->setZero();
-  jacobian->leftCols<3>() = normal_.transpose() / prior_.sigma;
+  jacobian->leftCols<3>() = YawJacobian(normal_, rotation) / prior_.sigma;
+}
+
+void LeaningTerm::Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
+                           Jacobian* jacobian) const {
+  const LeaningOnPlane leaning(landmark, plane_, LeaningSigmas());
+  residuals = leaning.residuals;
+  if (jacobian != nullptr) *jacobian = leaning.d_landmark;
 }
 
 bool LandmarkTermResidual::Evaluate(double const* const* blocks, double* residuals,

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "initialisation/svd.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "geometry/triangulation.h"
+
+namespace soslam {
+namespace {
+
+constexpr int kCoefficients = 10;  // of a symmetric 4 x 4 matrix
+constexpr int kMinPlanes = kCoefficients - 1;
+
+// Row whose product with the upper triangle of Q* is pi^T Q* pi.
+Eigen::Matrix<double, 1, kCoefficients> TangencyRow(const Eigen::Vector4d& plane) {
+  Eigen::Matrix<double, 1, kCoefficients> row;
+  int k = 0;
+  for (int i = 0; i < 4; ++i) {
+    for (int j = i; j < 4; ++j) row(k++) = (i == j ? 1.0 : 2.0) * plane(i) * plane(j);
+  }
+  return row;
+}
+
+Eigen::Matrix4d SymmetricMatrix(const Eigen::Matrix<double, kCoefficients, 1>& upper_triangle) {
+  Eigen::Matrix4d matrix;
+  int k = 0;
+  for (int i = 0; i < 4; ++i) {
+    for (int j = i; j < 4; ++j) matrix(i, j) = matrix(j, i) = upper_triangle(k++);
+  }
+  return matrix;
+}
+
+}  // namespace
+
+std::optional<DualQuadricLandmark> LandmarkFromTangentPlanes(
+    const std::vector<Plane>& planes_in_world) {
+  if (planes_in_world.size() < kMinPlanes) return std::nullopt;
+
+  // Coordinates centred on the object and scaled by its size, so that all coefficients have the
+  // same magnitude.
+  PointOnPlanes on_planes;
+  for (const Plane& plane : planes_in_world) on_planes.Add(plane);
+  const Eigen::Vector3d centre = on_planes.Solve();
+  double squares = 0.0;
+  for (const Plane& plane : planes_in_world) {
+    squares += std::pow(plane.SignedDistance(centre), 2);
+  }
+  const double size = std::sqrt(squares / static_cast<double>(planes_in_world.size()));
+  if (!(size > 0.0)) return std::nullopt;
+
+  Eigen::Matrix<double, Eigen::Dynamic, kCoefficients> equations(planes_in_world.size(),
+                                                                 kCoefficients);
+  for (size_t i = 0; i < planes_in_world.size(); ++i) {
+    const Plane& plane = planes_in_world[i];
+    Eigen::Vector4d scaled;
+    scaled << plane.normal, plane.SignedDistance(centre) / size;
+    equations.row(static_cast<Eigen::Index>(i)) = TangencyRow(scaled);
+  }
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(equations, Eigen::ComputeFullV);
+  auto result = LandmarkFromDualQuadric(SymmetricMatrix(svd.matrixV().col(kCoefficients - 1)));
+  if (!result) return std::nullopt;
+  Rigid3d& world_from_object = result->landmark.frame_from_object;
+  world_from_object.translation = centre + size * world_from_object.translation;
+  result->landmark.half_axes *= size;
+  return result;
+}
+
+}  // namespace soslam

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "geometry/landmark.h"
+
+namespace soslam {
+
+// A positive quantity whose logarithm is normal.
+struct LogNormal {
+  double median;
+  double log_sigma;  // standard deviation of the logarithm
+};
+
+// Side of an upright object where its support plane is. The object frame has z pointing away from
+// the plane.
+enum class Mount {
+  kStanding,  // below the object
+  kHanging,   // above it, as for a lamp
+  kOnWall,    // behind it, as for a picture
+};
+inline constexpr std::array kMountNames = {"standing", "hanging", "on_wall"};
+
+// How an object may be held by its support plane.
+enum class Attitude {
+  kStanding,  // with the face of its mount on the plane
+  kAnyFace,   // with its bottom, back or side on the plane
+  kFree,      // leaning: the plane only touches it
+};
+inline constexpr std::array kAttitudeNames = {"standing", "any_face", "free"};
+
+// Mean distances by which the edges of a detector's boxes (left, top, right, bottom) lie outside
+// the outline of the body, as fractions of the width or height of the box; negative: inside. Those
+// of opposite edges have a sum below 1.
+using EdgeBias = std::array<double, 4>;
+
+// Prior of an object's size and shape. Ratios are log-normal.
+struct ShapePrior {
+  Eigen::Vector2d ratio = Eigen::Vector2d::Ones();      // (a / c, b / c), medians
+  Eigen::Vector2d log_sigma = Eigen::Vector2d::Ones();  // standard deviations of their logarithms
+  ShapeExponents shape_exponents = kEllipsoidExponent;
+  double log_correlation = 0.0;            // of the logarithms of the two ratios, in (-1, 1)
+  std::optional<LogNormal> height_m = {};  // along its own z axis; none if the size is unknown
+  Mount mount = Mount::kStanding;
+  EdgeBias edge_bias = {};  // of detected boxes, for this shape
+  Attitude attitude = Attitude::kStanding;
+  RestingFace rests_on = RestingFace::kBottom;  // the face that a, b and c are for
+};
+
+// The prior in the object frame, whose z points away from the support plane, from a prior of
+// upright objects as tables have it (a is the depth, b the width, c the height): an object on a
+// wall has its height along x and its depth along z. Ratios are assumed to be independent of
+// heights, so the variance of the logarithm of a depth is the sum of those of height and ratio.
+ShapePrior TurnedToSupport(const ShapePrior& prior);
+
+// The same for an object that rests on a face, from the prior of one that stands; height_m stays
+// that of its own z axis.
+ShapePrior OnFace(const ShapePrior& standing, RestingFace face);
+
+// OnFace for each face that the prior's attitude allows; none for no prior.
+std::vector<std::optional<ShapePrior>> OnPossibleFaces(const std::optional<ShapePrior>& standing);
+
+// Log-normal prior with the moments of a mixture of priors of one mount; the height is that of the
+// priors that have one, the attitude that of the first. Their weights have the sum 1.
+struct WeightedPrior {
+  double weight;
+  ShapePrior prior;
+};
+ShapePrior MomentsOfMixture(const std::vector<WeightedPrior>& priors);
+
+}  // namespace soslam
