@@ -33,12 +33,9 @@ Information PriorInformation(Eigen::Index parameters) {
 
 ParameterJacobian LandmarkByParameters(const MultiViewObservation& observation,
                                        const Landmark& landmark) {
-  const Plane& plane = observation.plane_in_world;
-  ParameterJacobian d_parameters =
-      ParameterJacobian::Zero(kLandmarkDof, observation.height_is_free ? 7 : 6);
-  d_parameters.leftCols<6>() = UprightGround(plane).ParameterJacobian(landmark);
-  if (observation.height_is_free) d_parameters.block<3, 1>(3, 6) = plane.normal;
-  return d_parameters;
+  return UprightGround(observation.plane_in_world)
+      .ParameterJacobianWithHeight(landmark)
+      .leftCols(observation.height_is_free ? 7 : 6);
 }
 
 // Sum of the logarithms of the prior's standard deviations: its normalisation.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 namespace soslam {
 
@@ -22,7 +23,7 @@ constexpr double kMinSigmaPx = 1.0;
 constexpr double kMinDepthShare = 0.1;  // of the initial depth
 
 constexpr int kMaxNewtonSteps = 20;
-constexpr double kSettledExcess = 1e-10;  // px / sigma
+constexpr double kSettledExcess = 1e-6;  // px / sigma; the error after such a step is near rounding
 
 }  // namespace
 
@@ -41,25 +42,52 @@ std::array<BoxEdge, 4> BoxEdges(const Camera& camera, const Box& box,
   return edges;
 }
 
-double Tangency(const BoxEdge& edge, const Landmark& landmark_in_camera, const TangentDepth& depth,
-                double bias_px, LandmarkJacobian1* jacobian) {
-  const Eigen::Quaterniond& rotation = landmark_in_camera.frame_from_object.rotation;
-  const SupportValue support =
-      SupportFunction(landmark_in_camera.half_axes, landmark_in_camera.shape_exponents,
-                      rotation.conjugate() * edge.plane);
+namespace {
+
+// Support of a body in the direction of the plane behind an edge.
+struct EdgeSupport {
+  EdgeSupport(const BoxEdge& edge, const Landmark& landmark_in_camera) {
+    const Eigen::Quaterniond& rotation = landmark_in_camera.frame_from_object.rotation;
+    value = SupportFunction(landmark_in_camera.half_axes, landmark_in_camera.shape_exponents,
+                            rotation.conjugate() * edge.plane);
+    from_centre = rotation * value.point;
+  }
+
+  SupportValue value;
+  Eigen::Vector3d from_centre;  // the support point, along the axes of the camera
+};
+
+double TangencyOf(const EdgeSupport& support, const BoxEdge& edge,
+                  const Landmark& landmark_in_camera, const TangentDepth& depth, double bias_px,
+                  LandmarkJacobian1* jacobian) {
   const double weight = 1.0 / (depth.depth_m * edge.sigma_px);
-  const double outside = weight * (edge.plane.dot(landmark_in_camera.Centre()) + support.extent);
+  const double outside =
+      weight * (edge.plane.dot(landmark_in_camera.Centre()) + support.value.extent);
   const double residual = outside - bias_px / edge.sigma_px;
   const bool is_free = edge.is_one_sided && residual > 0.0;
   if (jacobian != nullptr) {
-    const Eigen::Vector3d support_point = rotation * support.point;
-    *jacobian << support_point.cross(edge.plane).transpose(), edge.plane.transpose(),
-        support.d_log_half_axes.transpose();
+    *jacobian << support.from_centre.cross(edge.plane).transpose(), edge.plane.transpose(),
+        support.value.d_log_half_axes.transpose();
     *jacobian *= weight;
     (*jacobian)[5] -= outside / depth.depth_m * depth.d_centre_depth;
     if (is_free) jacobian->setZero();
   }
   return is_free ? 0.0 : residual;
+}
+
+}  // namespace
+
+double Tangency(const BoxEdge& edge, const Landmark& landmark_in_camera, const TangentDepth& depth,
+                double bias_px, LandmarkJacobian1* jacobian) {
+  return TangencyOf({edge, landmark_in_camera}, edge, landmark_in_camera, depth, bias_px, jacobian);
+}
+
+std::optional<double> TangencyAtOwnDepth(const BoxEdge& edge, const Landmark& landmark_in_camera,
+                                         LandmarkJacobian1* jacobian) {
+  const EdgeSupport support(edge, landmark_in_camera);
+  const double depth_m = landmark_in_camera.Centre().z() + support.from_centre.z();
+  if (!(depth_m > 0.0)) return std::nullopt;
+  return TangencyOf(support, edge, landmark_in_camera, {depth_m}, 0.0, jacobian);
 }
 
 // A rotation w of the body in its own frame turns the plane's normal m by m x w.
@@ -99,11 +127,11 @@ double OutlineExcess(const BoxEdge& edge, const Landmark& landmark_in_camera,
   moved.is_one_sided = false;
   double excess = 0.0;
   for (int i = 0; i < kMaxNewtonSteps; ++i) {
-    const TangentDepth depth = FindTangentDepth(moved, landmark_in_camera);
-    const double step = Tangency(moved, landmark_in_camera, depth, 0.0, jacobian);
-    excess += step;
-    moved.plane.z() -= step * edge.sigma_px;
-    if (!(std::abs(step) > kSettledExcess)) break;
+    const auto step = TangencyAtOwnDepth(moved, landmark_in_camera, jacobian);
+    if (!step) return std::numeric_limits<double>::quiet_NaN();
+    excess += *step;
+    moved.plane.z() -= *step * edge.sigma_px;
+    if (!(std::abs(*step) > kSettledExcess)) break;
   }
   if (!edge.is_one_sided || !(excess > 0.0)) return excess;
   if (jacobian != nullptr) jacobian->setZero();

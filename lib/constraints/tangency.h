@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 
 #include "constraints/parameters.h"
 #include "geometry/box.h"
@@ -51,6 +52,11 @@ TangentDepth FindTangentDepth(const BoxEdge& edge, const Landmark& landmark_in_c
 double Tangency(const BoxEdge& edge, const Landmark& landmark_in_camera, const TangentDepth& depth,
                 double bias_px, LandmarkJacobian1* jacobian);
 
+// The same without bias, with the tangent point at its own depth (FindTangentDepth), which counts
+// as fixed in the Jacobian. None unless that is in front of the camera.
+std::optional<double> TangencyAtOwnDepth(const BoxEdge& edge, const Landmark& landmark_in_camera,
+                                         LandmarkJacobian1* jacobian);
+
 // Square root of what the curvature of the body adds to the Hessian of the squared tangency, as two
 // rows by a rotation vector in the camera frame. A body that reaches outside an edge, and turns
 // towards its corner, reaches outside faster than its tangent point says: without these rows,
@@ -62,7 +68,7 @@ Eigen::Matrix<double, 2, 3> TangencyCurvature(const BoxEdge& edge,
 
 // Signed distance (px / sigma) by which an object's silhouette reaches outside a box edge. Tangency
 // is its linearisation; this is exact, so that residual and Jacobian agree wherever the object is.
-// The whole object must be in front of the camera.
+// Not a number unless the tangent point is in front of the camera.
 double OutlineExcess(const BoxEdge& edge, const Landmark& landmark_in_camera,
                      LandmarkJacobian1* jacobian);
 

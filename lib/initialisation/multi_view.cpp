@@ -140,7 +140,9 @@ std::unique_ptr<const LandmarkTerm> TermOfView(const MultiViewObservation& obser
 class LinearViews {
  public:
   explicit LinearViews(const MultiViewObservation& observation)
-      : observation_(observation), ground_(observation.plane_in_world) {
+      : observation_(observation),
+        ground_(observation.plane_in_world),
+        loss_(observation.huber_delta) {
     if (HasRatio(observation)) ratio_.emplace(*observation.prior);
     Start();
   }
@@ -224,14 +226,15 @@ class LinearViews {
       // The initial guess is too rough to decide which one-sided edges are active and which edges
       // are outliers.
       if (is_first && edge.is_one_sided) continue;
-      const TangentDepth depth =
-          is_first ? TangentDepth{landmark.Centre().z()} : FindTangentDepth(edge, landmark);
-      if (!(depth.depth_m > 0.0)) continue;
       LandmarkJacobian1 d_landmark;
-      const double residual = Tangency(edge, landmark, depth, 0.0, &d_landmark);
-      const double robust =
-          is_first ? 1.0
-                   : EvaluateLoss(ceres::HuberLoss(observation_.huber_delta), residual).weight;
+      std::optional<double> residual;
+      if (!is_first) {
+        residual = TangencyAtOwnDepth(edge, landmark, &d_landmark);
+      } else if (landmark.Centre().z() > 0.0) {
+        residual = Tangency(edge, landmark, {landmark.Centre().z()}, 0.0, &d_landmark);
+      }
+      if (!residual) continue;
+      const double robust = is_first ? 1.0 : EvaluateLoss(loss_, *residual).weight;
       const Eigen::Vector3d d_centre = world_from_camera * d_landmark.segment<3>(3).transpose();
       const double d_height = d_centre.dot(ground_.normal);
       LinearSystem::Row row;
@@ -239,7 +242,7 @@ class LinearViews {
       row.segment<3>(2) = d_landmark.tail<3>().transpose().cwiseQuotient(body.half_axes);
       row(4) += d_height;
       row(5) = observation_.height_is_free ? d_height : 0.0;
-      system->Add(row, residual - row.dot(at), view.weight * robust);
+      system->Add(row, *residual - row.dot(at), view.weight * robust);
     }
   }
 
@@ -270,8 +273,10 @@ class LinearViews {
     double cost = 0.0;
     for (const BoxView& view : observation_.views) {
       const Landmark in_camera = Transform(view.camera_from_world, landmark);
-      cost += TermOfView(observation_, view, std::make_unique<BoxTerm>(view.edges, in_camera))
-                  ->Value(landmark);
+      for (const BoxEdge& edge : view.edges) {
+        const auto residual = TangencyAtOwnDepth(edge, in_camera, nullptr);
+        cost += view.weight * EvaluateLoss(loss_, residual.value()).cost;
+      }
     }
     if (ratio_) cost += RatioTerm(*observation_.prior).Value(landmark);
     if (HasSize(observation_))
@@ -282,6 +287,7 @@ class LinearViews {
   const MultiViewObservation& observation_;
   UprightGround ground_;
   std::optional<RatioRows> ratio_;
+  ceres::HuberLoss loss_;
   Body start_;
 };
 

@@ -53,6 +53,15 @@ UprightJacobian UprightGround::ParameterJacobian(const Landmark& landmark) const
   return jacobian;
 }
 
+Eigen::Matrix<double, kLandmarkDof, 7> UprightGround::ParameterJacobianWithHeight(
+    const Landmark& landmark) const {
+  Eigen::Matrix<double, kLandmarkDof, 7> jacobian;
+  jacobian.setZero();
+  jacobian.leftCols<6>() = ParameterJacobian(landmark);
+  jacobian.block<3, 1>(3, 6) = normal;
+  return jacobian;
+}
+
 QuadraticModel<6> UprightModel(const LandmarkCosts& costs, const UprightGround& ground,
                                const Landmark& landmark) {
   LandmarkModel sum;

@@ -28,6 +28,9 @@ struct UprightGround {
   // upright landmark.
   UprightVector ParametersOf(const Landmark& landmark) const;
   UprightJacobian ParameterJacobian(const Landmark& landmark) const;
+  // The same with the height of the foot over the plane (m) as seventh parameter.
+  Eigen::Matrix<double, kLandmarkDof, 7> ParameterJacobianWithHeight(
+      const Landmark& landmark) const;
 
   Eigen::Quaterniond rotation;  // UprightRotation(normal, 0)
   Eigen::Vector3d x, y, normal;

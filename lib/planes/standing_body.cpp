@@ -13,8 +13,8 @@
 namespace soslam {
 namespace {
 
-constexpr int kHeightSteps = 20;
-constexpr double kSettledHeight = 1e-3;  // share of the body's size
+// One box determines height and distance only by a narrow valley along the ray.
+constexpr int kMaxHeightIterations = 100;
 // Information of a prior of all parameters of a body, as a share of the largest, for those that are
 // not observed (the yaw of a round body).
 constexpr double kPriorShare = 1e-9;
@@ -38,40 +38,33 @@ Eigen::Matrix<double, kLandmarkDof, 3> MotionJacobian(const Plane& plane,
   return d_motion;
 }
 
-StandingBody Raised(StandingBody body, double rise) {
-  const Plane plane = body.observation.plane_in_world;
-  const Eigen::Vector3d centre = body.landmark.Centre();
-  const PlaneMotion motion(0.0, 0.0, rise);
-  body.landmark = Moved(plane, centre, motion, body.landmark);
-  body.observation.plane_in_world = Moved(plane, centre, motion);
-  return body;
-}
-
-// A body raised by `rise`, `rise` / 2, `rise` / 4, ..., at the first that costs less than `cost`.
-std::optional<StandingBody> BetterRaised(const StandingBody& body, double cost, double rise,
-                                         double least_rise) {
-  for (; std::abs(rise) >= least_rise; rise *= 0.5) {
-    auto raised = FitOnPlane(Raised(body, rise));
-    if (raised && TotalCost(OutlineTerms(raised->observation), raised->landmark) < cost) {
-      return raised;
-    }
-  }
-  return std::nullopt;
-}
-
-// The body at its optimal height near its own, all other parameters adapting.
-std::optional<StandingBody> OptimiseHeight(const StandingBody& start) {
-  auto body = FitOnPlane(start);
-  for (int i = 0; body && i < kHeightSteps; ++i) {
-    const PlaneEvidence evidence = EvidenceOf(*body, body->landmark.Centre());
-    if (!(evidence.information(2, 2) > 0.0)) return std::nullopt;
-    const double size = body->landmark.half_axes.maxCoeff();
-    const double rise =
-        std::clamp(-evidence.gradient(2) / evidence.information(2, 2), -0.5 * size, 0.5 * size);
-    const auto better = BetterRaised(*body, evidence.cost, rise, kSettledHeight * size);
-    if (!better) break;
-    body = better;
-  }
+// The body near the given one that fits best, with the height of its plane free.
+std::optional<StandingBody> FitWithHeight(StandingBody body) {
+  using Parameters = Eigen::Matrix<double, 7, 1>;  // UprightVector, height of the foot (m)
+  Plane& plane = body.observation.plane_in_world;
+  const UprightGround ground(plane);
+  const LandmarkCosts outlines = OutlineTerms(body.observation);
+  const auto landmark_at = [&](const Parameters& at) {
+    Landmark landmark =
+        ground.LandmarkAt(at.head<6>(), body.landmark.shape_exponents, body.landmark.rests_on);
+    landmark.frame_from_object.translation += at[6] * plane.normal;
+    return landmark;
+  };
+  const auto linearise = [&](const Parameters& at) {
+    const Landmark landmark = landmark_at(at);
+    LandmarkModel sum;
+    for (const auto& outline : outlines) outline->AddTo(landmark, &sum);
+    return sum.Chained(ground.ParameterJacobianWithHeight(landmark));
+  };
+  const auto plus = [](const Parameters& at, const Parameters& step) {
+    return std::optional<Parameters>(at + step);
+  };
+  Parameters parameters;
+  parameters << ground.ParametersOf(body.landmark), 0.0;
+  const double cost = MinimiseSquares(linearise, plus, {kMaxHeightIterations}, &parameters).cost;
+  if (!std::isfinite(cost) || !parameters.allFinite()) return std::nullopt;
+  body.landmark = landmark_at(parameters);
+  plane.offset -= parameters[6];
   return body;
 }
 
@@ -125,12 +118,13 @@ std::optional<StandingBody> FitBodyAtFreeHeight(MultiViewObservation observation
   double lowest = 0.0;
   for (const UprightSolution& optimum : optima) {
     observation.plane_in_world.offset = SupportPlaneOf(optimum.landmark).offset;
-    const auto body = OptimiseHeight({observation, optimum.landmark});
+    const auto body = FitWithHeight({observation, optimum.landmark});
     if (!body) continue;
-    const double cost = EvidenceOf(*body, body->landmark.Centre()).cost;
-    if (best && cost >= lowest) continue;
+    const PlaneEvidence evidence = EvidenceOf(*body, body->landmark.Centre());
+    const bool is_determined = evidence.information(2, 2) > 0.0;
+    if (!is_determined || (best && evidence.cost >= lowest)) continue;
     best = body;
-    lowest = cost;
+    lowest = evidence.cost;
   }
   return best;
 }

@@ -25,9 +25,7 @@ double Loss(const Sequence& sequence, const Detection& detection,
   double loss = 0.0;
   for (const BoxEdge& edge : BoxEdges(sequence.CameraOf(detection), detection.box,
                                       detection.is_one_sided, kSigmaFraction)) {
-    const double residual =
-        Tangency(edge, in_camera, FindTangentDepth(edge, in_camera), 0.0, nullptr);
-    loss += EvaluateLoss(huber, residual).cost;
+    loss += EvaluateLoss(huber, TangencyAtOwnDepth(edge, in_camera, nullptr).value()).cost;
   }
   return loss;
 }

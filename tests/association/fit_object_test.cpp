@@ -22,7 +22,7 @@ TEST(FitObjectWithoutPlanesTest, OneBoxGivesABodyOfThePriorsHeight) {
     const auto object = FitObject(sequence, {0}, prior, options, up);
     ASSERT_TRUE(object);
     EXPECT_NEAR(2.0 * object->landmark_in_world.half_axes.z() / height_m, 1.0,
-                0.02);  // as far as heights settle
+                0.02);  // as far as the fit gets along its valley
     const Detection& detection = sequence.detections[0];
     const Rigid3d world_from_camera = sequence.FrameOf(detection).world_from_camera;
     const Landmark in_camera = Transform(world_from_camera.Inverse(), object->landmark_in_world);
