@@ -19,6 +19,9 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MapScore, min_iou, true_objects, detectable, 
                                    recall_of_detectable, f1_of_detectable, of_found)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DriftSummary, landmarks, iou_mean, iou_mean_in_world,
                                    centre_m_median, centre_m_median_in_world)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HeldOutObject, in_sight, in_sight_matched, matched, iou_mean)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HeldOutMetrics, frames, detections, detections_matched, in_sight,
+                                   in_sight_matched, iou_mean, iou_median, iou_mean_of_detections)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(InFrames, observations, iou_mean, centre_m_mean)
 
 namespace {
@@ -135,22 +138,14 @@ json ToJson(const ObjectMetrics& metrics, const Sequence& sequence) {
 }
 
 json ToJson(const HeldOutMetrics& metrics, const Sequence& sequence) {
-  const auto object_to_json = [&](const HeldOutObject& one) -> json {
-    const Object& object = sequence.objects[one.object_index];
-    return {{"object", object.id},      {"label", object.label},
-            {"in_sight", one.in_sight}, {"in_sight_matched", one.in_sight_matched},
-            {"matched", one.matched},   {"iou_mean", one.iou_mean}};
-  };
-  return {{"frames", metrics.frames},
-          {"min_iou", kMinHeldOutIou},
-          {"detections", metrics.detections},
-          {"detections_matched", metrics.detections_matched},
-          {"in_sight", metrics.in_sight},
-          {"in_sight_matched", metrics.in_sight_matched},
-          {"iou_mean", metrics.iou_mean},
-          {"iou_median", metrics.iou_median},
-          {"iou_mean_of_detections", metrics.iou_mean_of_detections},
-          {"objects", ListToJson(metrics.objects, object_to_json)}};
+  json fields = metrics;
+  fields["min_iou"] = kMinHeldOutIou;
+  fields["objects"] = metrics.objects;
+  for (size_t i = 0; i < metrics.objects.size(); ++i) {
+    const Object& object = sequence.objects[metrics.objects[i].object_index];
+    fields["objects"][i].update({{"object", object.id}, {"label", object.label}});
+  }
+  return fields;
 }
 
 }  // namespace

@@ -71,6 +71,11 @@ auto ListFromJson(const nlohmann::json& object, const char* name, const FromJson
   return items;
 }
 
+// Texts that are absent are empty in code, null in artefacts.
+inline nlohmann::json NullIfEmpty(const std::string& text) {
+  return text.empty() ? nlohmann::json() : nlohmann::json(text);
+}
+
 // The value of an enumeration whose values 0..n-1 have these names; the schema allows no others.
 template <typename Enum, typename Names>
 Enum EnumFromName(const Names& names, const std::string& name) {

@@ -65,73 +65,60 @@ Software ThisSoftware() {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunSetting, value, origin)
 
-namespace {
-
 using nlohmann::json;
+
+static void to_json(json& json, const RunFile& file) {
+  json = {{"argument", NullIfEmpty(file.argument)},
+          {"relative_to", file.relative_to},
+          {"path", file.path.string()},
+          {"sha256", file.sha256}};
+}
+
+static void from_json(const json& json, RunFile& file) {
+  const auto& argument = json.at("argument");
+  file = {argument.is_null() ? "" : argument.get<std::string>(), json.at("relative_to"),
+          json.at("path").get<std::string>(), json.at("sha256")};
+}
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunRecord, stage, settings, allow_outside_paths, seed, folders,
+                                   inputs, outputs, exit_code, timing)
+
+namespace {
 
 constexpr const char* kRunKind = "run";
 
-json FilesToJson(const std::vector<RunFile>& files) {
-  return ListToJson(files, [](const RunFile& file) -> json {
-    return {{"argument", file.argument.empty() ? json() : json(file.argument)},
-            {"relative_to", file.relative_to},
-            {"path", file.path.string()},
-            {"sha256", file.sha256}};
-  });
-}
-
-std::vector<RunFile> FilesFromJson(const json& list, const RunRecord& record,
-                                   const std::string& place) {
-  std::vector<RunFile> files;
-  for (const json& item : list) {
-    const json& argument = item.at("argument");
-    files.push_back({argument.is_null() ? "" : argument.get<std::string>(), item.at("relative_to"),
-                     item.at("path").get<std::string>(), item.at("sha256")});
-    const std::string& base = files.back().relative_to;
+void CheckBases(const std::vector<RunFile>& files, const RunRecord& record,
+                const std::string& place) {
+  for (size_t i = 0; i < files.size(); ++i) {
+    const std::string& base = files[i].relative_to;
     if (base != kRelativeToRun && base != kRelativeToCall && !record.folders.contains(base)) {
       throw InputError(
           fmt::format("{}/{}/relative_to is \"{}\"; expected \"{}\", \"{}\" or one of /folders",
-                      place, files.size() - 1, base, kRelativeToRun, kRelativeToCall));
+                      place, i, base, kRelativeToRun, kRelativeToCall));
     }
   }
-  return files;
 }
 
 RunRecord RunFromJson(const json& document) {
-  RunRecord record;
-  record.stage = document.at("stage");
+  auto record = document.get<RunRecord>();
   record.software = {document.at("artefact").at("software"), document.at("compiler"),
                      document.at("libraries")};
-  document.at("settings").get_to(record.settings);
-  record.allow_outside_paths = document.at("allow_outside_paths");
-  document.at("seed").get_to(record.seed);
   record.called_in = document.value("called_in", std::string());
-  document.at("folders").get_to(record.folders);
-  record.inputs = FilesFromJson(document.at("inputs"), record, "/inputs");
-  record.outputs = FilesFromJson(document.at("outputs"), record, "/outputs");
-  record.exit_code = document.at("exit_code");
+  CheckBases(record.inputs, record, "/inputs");
+  CheckBases(record.outputs, record, "/outputs");
   if (!document.at("error").is_null()) record.error = document.at("error");
-  record.timing = document.at("timing");
   return record;
 }
 
 }  // namespace
 
 void WriteRun(const std::filesystem::path& path, const RunRecord& record) {
-  const json document = {{"artefact", HeaderOfKind(kRunKind)},
-                         {"stage", record.stage},
-                         {"compiler", record.software.compiler},
-                         {"libraries", record.software.libraries},
-                         {"settings", record.settings},
-                         {"allow_outside_paths", record.allow_outside_paths},
-                         {"seed", record.seed},
-                         {"called_in", record.called_in.string()},
-                         {"folders", record.folders},
-                         {"inputs", FilesToJson(record.inputs)},
-                         {"outputs", FilesToJson(record.outputs)},
-                         {"exit_code", record.exit_code},
-                         {"error", record.error.empty() ? json() : json(record.error)},
-                         {"timing", record.timing}};
+  json document = record;
+  document.update({{"artefact", HeaderOfKind(kRunKind)},
+                   {"compiler", record.software.compiler},
+                   {"libraries", record.software.libraries},
+                   {"called_in", record.called_in.string()},
+                   {"error", NullIfEmpty(record.error)}});
   if (const auto violation = SchemaViolation(document, kRunKind)) {
     throw std::logic_error(
         fmt::format("{}: would break its schema: {}", path.string(), *violation));
