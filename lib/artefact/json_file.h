@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <istream>
 #include <map>
@@ -21,6 +22,28 @@ struct nlohmann::adl_serializer<std::optional<Value>> {
   }
   static void from_json(const json& json, std::optional<Value>& value) {
     value = json.is_null() ? std::nullopt : std::optional(json.get<Value>());
+  }
+};
+
+// Vectors are lists of numbers, matrices lists of their rows.
+template <int kRows, int kColumns, int kOptions>
+struct nlohmann::adl_serializer<Eigen::Matrix<double, kRows, kColumns, kOptions>> {
+  using Matrix = Eigen::Matrix<double, kRows, kColumns, kOptions>;
+
+  static void to_json(json& json, const Matrix& matrix) {
+    json = nlohmann::json::array();
+    for (int i = 0; i < kRows; ++i) {
+      const auto row = matrix.row(i);
+      json.push_back(kColumns == 1 ? nlohmann::json(row[0])
+                                   : nlohmann::json(std::vector<double>(row.begin(), row.end())));
+    }
+  }
+  static void from_json(const json& json, Matrix& matrix) {
+    for (int i = 0; i < kRows; ++i) {
+      for (int k = 0; k < kColumns; ++k) {
+        (kColumns == 1 ? json.at(i) : json.at(i).at(k)).get_to(matrix(i, k));
+      }
+    }
   }
 };
 

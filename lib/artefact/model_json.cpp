@@ -13,10 +13,6 @@ std::vector<Finding> FindingsFromJson(const json& artefact) {
   return artefact.value("findings", std::vector<Finding>());  // since version 1.6
 }
 
-Eigen::Vector3d VectorFromJson(const json& json) {
-  return Eigen::Vector3d(json.get<std::array<double, 3>>().data());
-}
-
 namespace {
 
 // Tolerance far above the rounding of composed poses, but below the error of a number typed by
@@ -31,39 +27,24 @@ void RequireUnit(double norm, const char* name, const json& found) {
 
 }  // namespace
 
-json VectorToJson(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
-
-json MatrixToJson(const Eigen::Matrix3d& matrix) {
-  json rows = json::array();
-  for (const auto& row : matrix.rowwise()) rows.push_back(VectorToJson(row));
-  return rows;
-}
-
-Eigen::Matrix3d MatrixFromJson(const json& json) {
-  Eigen::Matrix3d matrix;
-  for (int i = 0; i < 3; ++i) matrix.row(i) = VectorFromJson(json.at(i));
-  return matrix;
-}
-
 void to_json(json& json, const Rigid3d& rigid) {
   const Eigen::Quaterniond& q = rigid.rotation;
-  json = {{"rotation_xyzw", {q.x(), q.y(), q.z(), q.w()}},
-          {"translation", VectorToJson(rigid.translation)}};
+  json = {{"rotation_xyzw", {q.x(), q.y(), q.z(), q.w()}}, {"translation", rigid.translation}};
 }
 
 void from_json(const json& json, Rigid3d& rigid) {
   const auto& rotation = json.at("rotation_xyzw");
   rigid.rotation = Eigen::Quaterniond(rotation.get<std::array<double, 4>>().data());
   RequireUnit(rigid.rotation.norm(), "rotation_xyzw", rotation);
-  rigid.translation = VectorFromJson(json.at("translation"));
+  json.at("translation").get_to(rigid.translation);
 }
 
 void to_json(json& json, const Plane& plane) {
-  json = {{"normal", VectorToJson(plane.normal)}, {"offset", plane.offset}};
+  json = {{"normal", plane.normal}, {"offset", plane.offset}};
 }
 
 void from_json(const json& json, Plane& plane) {
-  plane.normal = VectorFromJson(json.at("normal"));
+  json.at("normal").get_to(plane.normal);
   RequireUnit(plane.normal.norm(), "normal", json.at("normal"));
   plane.offset = json.at("offset").get<double>();
 }
@@ -96,7 +77,7 @@ ShapeExponents ShapeExponentsFromJson(const json& json, double absent) {
 
 json LandmarkToJson(const Landmark& landmark, const std::string& frame) {
   json fields = {{frame + "_from_object", landmark.frame_from_object},
-                 {"half_axes", VectorToJson(landmark.half_axes)},
+                 {"half_axes", landmark.half_axes},
                  {"shape_exponent", landmark.shape_exponents.horizontal}};
   if (landmark.shape_exponents.HasAxis()) {
     fields["vertical_exponent"] = landmark.shape_exponents.vertical;
@@ -108,20 +89,14 @@ json LandmarkToJson(const Landmark& landmark, const std::string& frame) {
 }
 
 Landmark LandmarkFromJson(const json& json, const std::string& frame) {
-  return {json.at(frame + "_from_object").get<Rigid3d>(), VectorFromJson(json.at("half_axes")),
+  return {json.at(frame + "_from_object").get<Rigid3d>(),
+          json.at("half_axes").get<Eigen::Vector3d>(),
           ShapeExponentsFromJson(json, kEllipsoidExponent),
           EnumFromName<RestingFace>(kRestingFaceNames,
                                     json.value("rests_on", kRestingFaceNames.front()))};
 }
 
 namespace {
-
-using CovarianceRows = std::array<std::array<double, 9>, 9>;
-
-Covariance9 CovarianceFromJson(const json& json) {
-  const auto rows = json.get<CovarianceRows>();
-  return Eigen::Map<const Eigen::Matrix<double, 9, 9, Eigen::RowMajor>>(rows[0].data());
-}
 
 json PointToJson(const PointPosterior& point) {
   return {{"point", point.index},
@@ -131,12 +106,11 @@ json PointToJson(const PointPosterior& point) {
 
 json EstimateToJson(const ObjectEstimate& estimate, const Sequence& sequence) {
   const auto& landmark = estimate.landmark_in_world;
-  const auto& covariance = estimate.covariance;
   const Object& object = sequence.objects.at(estimate.object_index);
   json row = {{"object", object.id},
               {"observations", estimate.observations},
               {"landmark", landmark ? LandmarkToJson(*landmark, "world") : json()},
-              {"covariance", covariance ? CovarianceToJson(*covariance) : json()},
+              {"covariance", estimate.covariance},
               {"failure", estimate.failure},
               {"proper_ellipsoid", estimate.proper_ellipsoid}};
   if (!object.labels.empty()) row["labels"] = object.labels;
@@ -145,14 +119,6 @@ json EstimateToJson(const ObjectEstimate& estimate, const Sequence& sequence) {
 }
 
 }  // namespace
-
-json CovarianceToJson(const Covariance9& covariance) {
-  json rows = json::array();
-  for (const auto& row : covariance.rowwise()) {
-    rows.push_back(std::vector<double>(row.begin(), row.end()));
-  }
-  return rows;
-}
 
 json ObjectEstimatesToJson(const std::vector<ObjectEstimate>& estimates, const Sequence& sequence) {
   return ListToJson(estimates, [&](const ObjectEstimate& estimate) {
@@ -165,8 +131,7 @@ ObjectEstimate ObjectEstimateFromJson(const json& row) {
   row.at("observations").get_to(estimate.observations);
   const auto& landmark = row.at("landmark");
   if (!landmark.is_null()) estimate.landmark_in_world = LandmarkFromJson(landmark, "world");
-  const auto& covariance = row.at("covariance");
-  if (!covariance.is_null()) estimate.covariance = CovarianceFromJson(covariance);
+  row.at("covariance").get_to(estimate.covariance);
   row.at("failure").get_to(estimate.failure);
   row.at("proper_ellipsoid").get_to(estimate.proper_ellipsoid);
   estimate.points = ListFromJson(row, "points", [](const json& point) {

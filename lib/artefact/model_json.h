@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "artefact/json_file.h"
 #include "base/error.h"
 #include "geometry/box.h"
 #include "geometry/camera.h"
@@ -116,13 +117,6 @@ void from_json(const nlohmann::json& json, Camera& camera);
 // Names of the edges of a box, in the order of Box::EdgeLines.
 inline constexpr std::array kEdgeNames = {"left", "top", "right", "bottom"};
 
-nlohmann::json VectorToJson(const Eigen::Vector3d& vector);
-Eigen::Vector3d VectorFromJson(const nlohmann::json& json);
-
-// Matrix as rows of three numbers.
-nlohmann::json MatrixToJson(const Eigen::Matrix3d& matrix);
-Eigen::Matrix3d MatrixFromJson(const nlohmann::json& json);
-
 // {"<frame>_from_object": rigid, "half_axes": [a, b, c] in metres, "shape_exponent": 1 to 2,
 // "vertical_exponent": 1 to 2, the same if absent, "rests_on": a name of kRestingFaceNames,
 // "bottom" if absent}; `frame` is "world" or "camera". Schema version 1.0 had no exponents: all
@@ -132,9 +126,6 @@ Landmark LandmarkFromJson(const nlohmann::json& json, const std::string& frame);
 
 // The exponents of such an object or of an entry of a semantic table; `absent` without any.
 ShapeExponents ShapeExponentsFromJson(const nlohmann::json& json, double absent);
-
-// Covariance as nine rows of nine numbers.
-nlohmann::json CovarianceToJson(const Covariance9& covariance);
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LabelProbability, label, probability)
 

@@ -43,15 +43,15 @@ SupportPlane SupportPlaneFromJson(const json& json) {
   SupportPlane plane{json.at("plane").get<int>(), json.at("plane_in_world").get<Plane>()};
   const auto has = [&](const char* name) { return json.contains(name) && !json[name].is_null(); };
   if (has("attitude_information")) {  // since version 1.3
-    plane.attitude_information = MatrixFromJson(json["attitude_information"]);
+    plane.attitude_information = json["attitude_information"].get<Eigen::Matrix3d>();
   }
   if (has("height_prior")) {  // since version 1.7
     const auto& prior = json["height_prior"];
-    plane.height_prior = {VectorFromJson(prior.at("point_in_world")),
+    plane.height_prior = {prior.at("point_in_world").get<Eigen::Vector3d>(),
                           prior.at("sigma_m").get<double>()};
   }
   if (has("scene_axis")) {  // since version 1.7
-    plane.scene_axis_in_world = VectorFromJson(json["scene_axis"]);
+    plane.scene_axis_in_world = json["scene_axis"].get<Eigen::Vector3d>();
   }
   return plane;
 }

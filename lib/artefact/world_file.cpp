@@ -43,17 +43,16 @@ json HoldingToJson(const PlanesEstimate& estimate) {
 // A plane in both kinds, without its id and error. `tilt_variance` (rad^2) is added to the tilt of
 // the covariance.
 json PlaneToJson(const EstimatedPlane& plane, double tilt_variance) {
-  json covariance, tilt_sigma, height_sigma;
+  json tilt_sigma, height_sigma;
   if (plane.covariance) {
-    covariance = MatrixToJson(*plane.covariance);
     tilt_sigma = kDegPerRad *
                  std::sqrt((*plane.covariance)(0, 0) + (*plane.covariance)(1, 1) + tilt_variance);
     height_sigma = std::sqrt((*plane.covariance)(2, 2));
   }
   return {{"plane_in_world", plane.plane_in_world},
-          {"point_in_world", VectorToJson(plane.point_in_world)},
-          {"x_axis_in_world", VectorToJson(plane.x_axis_in_world)},
-          {"covariance", covariance},
+          {"point_in_world", plane.point_in_world},
+          {"x_axis_in_world", plane.x_axis_in_world},
+          {"covariance", plane.covariance},
           {"tilt_sigma_deg", tilt_sigma},
           {"height_sigma_m", height_sigma}};
 }
@@ -72,12 +71,9 @@ json SupportToJson(const ObjectSupport& support, const Object& object) {
 
 void WritePlanes(const std::filesystem::path& path, const PlanesEstimate& estimate,
                  const Sequence& given, const ArtefactInfo& info) {
-  json body = {{"dataset", given.name},
-               {"planes", json::array()},
-               {"objects", json::array()},
-               {"up_of_cameras_in_world", VectorToJson(estimate.up_of_cameras)},
-               {"cost", estimate.cost},
-               {"rounds", estimate.rounds},
+  json body = {{"dataset", given.name},      {"planes", json::array()},
+               {"objects", json::array()},   {"up_of_cameras_in_world", estimate.up_of_cameras},
+               {"cost", estimate.cost},      {"rounds", estimate.rounds},
                {"settled", estimate.settled}};
   if (!estimate.holdings.empty()) body["camera_holding"] = HoldingToJson(estimate);
   for (size_t i = 0; i < estimate.planes.size(); ++i) {
@@ -97,7 +93,7 @@ namespace {
 
 json UpToJson(const GroundEstimate& estimate) {
   return {
-      {"up_in_input", VectorToJson(estimate.up_in_input)},
+      {"up_in_input", estimate.up_in_input},
       {"sigma_deg", kDegPerRad * estimate.tilt_sigma},
       {"found_by", estimate.planes.empty() ? "cameras" : "planes"},
       {"cameras_held", estimate.cameras_are_turned ? "turned" : NameOf(estimate.attitude.holding)},
@@ -126,11 +122,10 @@ json ScaleToJson(const GroundEstimate& estimate, const std::vector<Finding>& fin
 }
 
 json GroundObjectToJson(const GroundObject& object) {
-  const auto& centre = object.centre_in_world;
   return {{"label", object.label},
           {"boxes", object.boxes},
           {"plane", object.plane == kNoPlane ? json() : json(object.plane)},
-          {"centre_in_world", centre ? VectorToJson(*centre) : json()},
+          {"centre_in_world", object.centre_in_world},
           {"height_m", object.height_m},
           {"log_scale", object.log_scale},
           {"log_sigma", object.log_sigma},
@@ -150,7 +145,7 @@ void WriteWorld(const std::filesystem::path& path, const GroundEstimate& estimat
       {"output_from_input",
        {{"scale", estimate.output_from_input.scale},
         {"rotation_xyzw", std::vector<double>(rotation.coeffs().begin(), rotation.coeffs().end())},
-        {"translation", VectorToJson(estimate.output_from_input.rigid.translation)}}},
+        {"translation", estimate.output_from_input.rigid.translation}}},
       {"planes", json::array()},
       {"points", estimate.points},
       {"planes_of_points", estimate.planes_of_points},

@@ -33,13 +33,13 @@ json GroundTruthToJson(const GroundTruth& truth) {
 json SupportPlaneToJson(const SupportPlane& plane) {
   json fields = {{"plane", plane.id}, {"plane_in_world", plane.plane_in_world}};
   if (plane.attitude_information) {
-    fields["attitude_information"] = MatrixToJson(*plane.attitude_information);
+    fields["attitude_information"] = *plane.attitude_information;
   }
   if (plane.height_prior) {
-    fields["height_prior"] = {{"point_in_world", VectorToJson(plane.height_prior->point_in_world)},
+    fields["height_prior"] = {{"point_in_world", plane.height_prior->point_in_world},
                               {"sigma_m", plane.height_prior->sigma_m}};
   }
-  if (plane.scene_axis_in_world) fields["scene_axis"] = VectorToJson(*plane.scene_axis_in_world);
+  if (plane.scene_axis_in_world) fields["scene_axis"] = *plane.scene_axis_in_world;
   return fields;
 }
 

@@ -42,7 +42,7 @@ json ExtrasOf(const WorldObject& object) {
   json extras = {{"id", object.id},
                  {"label", object.label},
                  {"observations", object.estimate.observations},
-                 {"half_axes", VectorToJson(landmark.half_axes)},
+                 {"half_axes", landmark.half_axes},
                  {"yaw_deg", YawOf(object) * kDegPerRad},
                  {"shape_exponent", landmark.shape_exponents.horizontal},
                  {"vertical_exponent", landmark.shape_exponents.vertical}};
@@ -50,7 +50,7 @@ json ExtrasOf(const WorldObject& object) {
     extras["rests_on"] = kRestingFaceNames[static_cast<size_t>(landmark.rests_on)];
   }
   if (object.estimate.covariance) {
-    extras["covariance"] = CovarianceToJson(*object.estimate.covariance);
+    extras["covariance"] = *object.estimate.covariance;
   }
   if (object.verdict) {
     extras["fate"] = object.verdict->fate;
@@ -109,8 +109,8 @@ class GltfBuilder {
                              {"componentType", kFloat},
                              {"type", "VEC3"},
                              {"count", points.size()},
-                             {"min", VectorToJson(bounds.min().cast<double>())},
-                             {"max", VectorToJson(bounds.max().cast<double>())}});
+                             {"min", Eigen::Vector3d(bounds.min().cast<double>())},
+                             {"max", Eigen::Vector3d(bounds.max().cast<double>())}});
   }
 
   size_t AddIndices(const TriangleMesh& mesh) {
@@ -154,7 +154,7 @@ class GltfBuilder {
                             {"indices", AddIndices(mesh)},
                             {"material", MaterialOf(object.label)}};
     AddNode({{"name", fmt::format("{} {}", object.label, object.id)},
-             {"translation", VectorToJson(landmark.Centre())},
+             {"translation", landmark.Centre()},
              {"rotation", RotationToJson(landmark.frame_from_object.rotation)},
              {"extras", ExtrasOf(object)}},
             primitive);
@@ -171,7 +171,7 @@ class GltfBuilder {
     const json primitive = {{"attributes", {{"POSITION", AddPositions(centres)}}},
                             {"mode", kLineStrip},
                             {"material", AddMaterial(kTrajectory, Colour::Zero())}};
-    AddNode({{"name", kTrajectory}, {"translation", VectorToJson(first)}}, primitive);
+    AddNode({{"name", kTrajectory}, {"translation", first}}, primitive);
   }
 
   const LabelColours& colours_;

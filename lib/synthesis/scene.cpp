@@ -161,7 +161,7 @@ Eigen::Vector2d Vector2(const json& values) {
 
 Plane ParsePlane(const json& document, const std::string& where) {
   constexpr double kTolerance = 1e-6;  // rounding of a unit vector
-  const Eigen::Vector3d normal = VectorFromJson(document.at("normal"));
+  const auto normal = document.at("normal").get<Eigen::Vector3d>();
   if (!(std::abs(normal.norm() - 1.0) <= kTolerance)) {
     throw InputError(
         fmt::format("{}/normal: has length {}, expected a unit vector", where, normal.norm()));
@@ -218,7 +218,7 @@ std::vector<SceneObject> ParseObjects(const json& entries, const std::vector<Sce
     object.id = entry.at("id").get<int>();
     object.label = entry.at("label").get<std::string>();
     object.shape = EnumFromName<Shape>(kShapeNames, entry.at("shape").get<std::string>());
-    object.half_axes = VectorFromJson(entry.at("half_axes"));
+    entry.at("half_axes").get_to(object.half_axes);
     object.position_on_plane = Vector2(entry.at("position"));
     object.yaw = entry.value("yaw_deg", 0.0) * kRadPerDeg;
     object.rests_on = EnumFromName<RestingFace>(kRestingFaceNames,
@@ -243,8 +243,8 @@ Trajectory ParseTrajectory(const json& document) {
   trajectory.frames = document.at("frames").get<int>();
   trajectory.frame_interval = document.at("frame_interval").get<double>();
   for (const json& waypoint : document.at("waypoints")) {
-    trajectory.waypoints.push_back(
-        {VectorFromJson(waypoint.at("position")), VectorFromJson(waypoint.at("look_at"))});
+    trajectory.waypoints.push_back({waypoint.at("position").get<Eigen::Vector3d>(),
+                                    waypoint.at("look_at").get<Eigen::Vector3d>()});
   }
   return trajectory;
 }
