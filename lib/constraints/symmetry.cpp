@@ -22,25 +22,10 @@ cv::Rect PixelsOf(const Box& box, const cv::Size& image) {
           std::max(0, last(box.y_max, image.height) + 1 - y)};
 }
 
-BinaryDescriptors<BriefBits().size()>::Describe PrepareBrief(const cv::Mat& grey) {
-  return [smoothed = SmoothForBrief(grey)](const Eigen::Vector2d& pixel, bool mirrored) {
-    return BriefDescriptor(smoothed, pixel, mirrored);
-  };
-}
-
-BinaryDescriptors<FreakBits().size()>::Describe PrepareFreak(const cv::Mat& grey) {
-  return [smoothed = SmoothForFreak(grey)](const Eigen::Vector2d& pixel, bool mirrored) {
-    return FreakDescriptor(smoothed, pixel, mirrored);
-  };
-}
-
 }  // namespace
 
 SymmetryImage::SymmetryImage(EdgeMaps edge_maps, const Box& own_box)
-    : box(own_box),
-      maps(std::move(edge_maps)),
-      brief(maps.grey, PrepareBrief),
-      freak(maps.grey, PrepareFreak) {
+    : box(own_box), maps(std::move(edge_maps)), brief(maps.grey), freak(maps.grey) {
   const cv::Rect pixels = PixelsOf(box, maps.edges.size());
   for (int y = pixels.y; y < pixels.y + pixels.height; ++y) {
     const auto* row = maps.edges.ptr<unsigned char>(y);

@@ -49,8 +49,8 @@ struct SymmetryImage {
 
   Box box;
   EdgeMaps maps;
-  BinaryDescriptors<BriefBits().size()> brief;
-  BinaryDescriptors<FreakBits().size()> freak;
+  BinaryDescriptors<&SmoothForBrief, &BriefDescriptor> brief;
+  BinaryDescriptors<&SmoothForFreak, &FreakDescriptor> freak;
   std::vector<Eigen::Vector2d> edge_pixels;  // in the box, row by row
 };
 

@@ -5,13 +5,11 @@
 #include <array>
 #include <bitset>
 #include <cstddef>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <opencv2/core/mat.hpp>
 #include <optional>
 #include <unordered_map>
-#include <utility>
 
 namespace soslam {
 
@@ -33,18 +31,11 @@ inline std::optional<cv::Point> PatchCentre(const cv::Size& image, const Eigen::
 }
 
 // Descriptors of an image that compare grey values of a patch, one bit per comparison. The image is
-// prepared and each pixel is described on first use. Thread-safe; copies share what is described.
-template <size_t Bits>
+// smoothed and each pixel is described on first use. Thread-safe; copies share what is described.
+template <auto kSmooth, auto kDescribe>
 class BinaryDescriptors {
  public:
-  using Descriptor = std::optional<std::bitset<Bits>>;
-  // The descriptor of a pixel, none where its patch reaches out of the image.
-  using Describe = std::function<Descriptor(const Eigen::Vector2d& pixel, bool mirrored)>;
-  // Prepares an image to be described.
-  using Prepare = std::function<Describe(const cv::Mat& grey)>;
-
-  BinaryDescriptors(const cv::Mat& grey, Prepare prepare)
-      : grey_(grey), prepare_(std::move(prepare)) {}
+  explicit BinaryDescriptors(const cv::Mat& grey) : grey_(grey) {}
 
   // Hamming distance between the plain descriptor of one pixel and the mirrored one of another.
   // None where either has none.
@@ -58,25 +49,27 @@ class BinaryDescriptors {
   }
 
  private:
+  using Smoothed = decltype(kSmooth(cv::Mat()));
+  using Descriptor = decltype(kDescribe(Smoothed(), Eigen::Vector2d(), false));
+
   struct Described {
     std::mutex mutex;
-    Describe describe;
+    std::optional<Smoothed> smoothed;
     std::array<std::unordered_map<int, Descriptor>, 2> by_pixel;  // plain, mirrored
   };
 
   Descriptor At(const Eigen::Vector2d& pixel, bool mirrored) const {
     const auto closest = PatchCentre(grey_.size(), pixel, 0);
     if (!closest) return std::nullopt;
-    if (!described_->describe) described_->describe = prepare_(grey_);
+    if (!described_->smoothed) described_->smoothed = kSmooth(grey_);
     auto& known = described_->by_pixel[mirrored ? 1 : 0];
     const int index = closest->y * grey_.cols + closest->x;
     const auto found = known.find(index);
     if (found != known.end()) return found->second;
-    return known.emplace(index, described_->describe(pixel, mirrored)).first->second;
+    return known.emplace(index, kDescribe(*described_->smoothed, pixel, mirrored)).first->second;
   }
 
   cv::Mat grey_;
-  Prepare prepare_;
   std::shared_ptr<Described> described_ = std::make_shared<Described>();
 };
 

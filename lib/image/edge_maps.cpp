@@ -10,6 +10,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "base/error.h"
+#include "image/binary_descriptor.h"
 
 // cv::distanceTransform gives the nearest edge pixel as a label, but only together with a chamfer
 // mask: on real images a tenth to a quarter of the labels are wrong and lead to an edge pixel up to
@@ -154,12 +155,9 @@ EdgeMaps ComputeEdgeMaps(const cv::Mat& grey, const EdgesOptions& options) {
 }
 
 std::optional<Eigen::Vector2d> NearestEdge(const EdgeMaps& maps, const Eigen::Vector2d& pixel) {
-  const Eigen::Vector2d closest = (pixel.array() + 0.5).floor();
-  const bool inside = closest.x() >= 0 && closest.x() < maps.nearest_edge.cols &&  //
-                      closest.y() >= 0 && closest.y() < maps.nearest_edge.rows;
-  if (!inside) return std::nullopt;  // also for NaN
-  const auto& edge =
-      maps.nearest_edge.at<cv::Vec2s>(static_cast<int>(closest.y()), static_cast<int>(closest.x()));
+  const auto closest = PatchCentre(maps.nearest_edge.size(), pixel, 0);
+  if (!closest) return std::nullopt;
+  const auto& edge = maps.nearest_edge.at<cv::Vec2s>(*closest);
   if (edge[0] < 0) return std::nullopt;
   return Eigen::Vector2d(edge[0], edge[1]);
 }

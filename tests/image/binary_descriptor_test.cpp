@@ -24,21 +24,21 @@ TEST(HammingDistanceTest, CountsDifferingBits) {
   EXPECT_EQ(HammingDistance(bits, std::bitset<256>()), 2.0 / 256.0);
 }
 
+int Columns(const cv::Mat& grey) { return grey.cols; }
+
 // A descriptor that is the column of the closest pixel, counted from the other side when mirrored;
 // the first and the last column have none.
-BinaryDescriptors<8>::Describe PrepareColumns(const cv::Mat& grey) {
-  return [columns = grey.cols](const Eigen::Vector2d& pixel, bool mirrored) {
-    const auto x = static_cast<int>(std::lround(pixel.x()));
-    return x < 1 || x >= columns - 1 ? std::nullopt
-                                     : std::optional(std::bitset<8>(static_cast<unsigned long long>(
-                                           mirrored ? columns - 1 - x : x)));
-  };
+std::optional<std::bitset<8>> DescribeColumn(int columns, const Eigen::Vector2d& pixel,
+                                             bool mirrored) {
+  const auto x = static_cast<int>(std::lround(pixel.x()));
+  if (x < 1 || x >= columns - 1) return std::nullopt;
+  return static_cast<unsigned long long>(mirrored ? columns - 1 - x : x);
 }
 
 // Described for the first time or known already.
 TEST(BinaryDescriptorsTest, DistanceIsThatOfThePixelsDescriptors) {
   const cv::Mat grey(20, 40, CV_8UC1, cv::Scalar(0));
-  const BinaryDescriptors<8> descriptors(grey, PrepareColumns);
+  const BinaryDescriptors<&Columns, &DescribeColumn> descriptors(grey);
   for (int i = 0; i < 2000; ++i) {
     const Eigen::Vector2d pixel(RandomUniform(0.6, 38.4), RandomUniform(0, 19));
     const Eigen::Vector2d other(RandomUniform(0.6, 38.4), RandomUniform(0, 19));
@@ -52,7 +52,7 @@ TEST(BinaryDescriptorsTest, DistanceIsThatOfThePixelsDescriptors) {
 
 TEST(BinaryDescriptorsTest, NoneWhereOneOfThePixelsHasNone) {
   const cv::Mat grey(20, 40, CV_8UC1, cv::Scalar(0));
-  const BinaryDescriptors<8> descriptors(grey, PrepareColumns);
+  const BinaryDescriptors<&Columns, &DescribeColumn> descriptors(grey);
   const Eigen::Vector2d inner(20, 10);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Eigen::Vector2d& outer :
