@@ -95,14 +95,9 @@ CheckedFile Check(const std::filesystem::path& path, std::vector<char>* bytes) {
   return {format, *header};
 }
 
-struct Image {
-  cv::Mat pixels;
-  ImageHeader header;
-  ImageOrientation read_as;
-};
-
 // `mode` is OpenCV's IMREAD_GRAYSCALE or IMREAD_COLOR.
-Image ReadImage(const std::filesystem::path& path, int mode, ImageOrientation orientation) {
+cv::Mat ReadImage(const std::filesystem::path& path, int mode, ImageOrientation orientation,
+                  const std::optional<cv::Size>& size) {
   std::vector<char> bytes = ReadBytes(path);
   const auto [format, header] = Check(path, &bytes);
   if (format->clear_orientation != nullptr) format->clear_orientation(bytes);
@@ -119,43 +114,31 @@ Image ReadImage(const std::filesystem::path& path, int mode, ImageOrientation or
                                  path.string(), format->name));
   }
   const bool is_upright = orientation == ImageOrientation::kUpright;
-  return {is_upright ? TurnUpright(stored, header.orientation) : stored, header, orientation};
-}
-
-cv::Mat OfSize(const Image& image, int width, int height, const std::filesystem::path& path) {
-  const auto [columns, rows] = image.pixels.size();
-  if (columns == width && rows == height) return image.pixels;
+  const cv::Mat image = is_upright ? TurnUpright(stored, header.orientation) : stored;
+  if (!size || image.size() == *size) return image;
   std::string hint;
-  if (image.header.IsTurnedByAQuarter() && columns == height && rows == width) {
-    const bool is_upright = image.read_as == ImageOrientation::kUpright;
+  if (header.IsTurnedByAQuarter() && image.cols == size->height && image.rows == size->width) {
     hint = fmt::format(
         ": does the camera refer to the {}? EXIF says orientation {}; image_orientation of "
         "soslam-import is {}",
-        is_upright ? "stored pixels" : "upright image", image.header.orientation,
-        kImageOrientationNames[static_cast<size_t>(image.read_as)]);
+        is_upright ? "stored pixels" : "upright image", header.orientation,
+        kImageOrientationNames[static_cast<size_t>(orientation)]);
   }
   throw InputError(fmt::format("{}: is {} x {} pixels; expected the camera's {} x {}{}",
-                               path.string(), columns, rows, width, height, hint));
+                               path.string(), image.cols, image.rows, size->width, size->height,
+                               hint));
 }
 
 }  // namespace
 
-cv::Mat ReadGreyImage(const std::filesystem::path& path, ImageOrientation orientation) {
-  return ReadImage(path, cv::IMREAD_GRAYSCALE, orientation).pixels;
+cv::Mat ReadGreyImage(const std::filesystem::path& path, ImageOrientation orientation,
+                      const std::optional<cv::Size>& size) {
+  return ReadImage(path, cv::IMREAD_GRAYSCALE, orientation, size);
 }
 
-cv::Mat ReadColourImage(const std::filesystem::path& path, ImageOrientation orientation) {
-  return ReadImage(path, cv::IMREAD_COLOR, orientation).pixels;
-}
-
-cv::Mat ReadGreyImage(const std::filesystem::path& path, int width, int height,
-                      ImageOrientation orientation) {
-  return OfSize(ReadImage(path, cv::IMREAD_GRAYSCALE, orientation), width, height, path);
-}
-
-cv::Mat ReadColourImage(const std::filesystem::path& path, int width, int height,
-                        ImageOrientation orientation) {
-  return OfSize(ReadImage(path, cv::IMREAD_COLOR, orientation), width, height, path);
+cv::Mat ReadColourImage(const std::filesystem::path& path, ImageOrientation orientation,
+                        const std::optional<cv::Size>& size) {
+  return ReadImage(path, cv::IMREAD_COLOR, orientation, size);
 }
 
 ImageUndistorter::ImageUndistorter(const Camera& camera, const Distortion& distortion) {

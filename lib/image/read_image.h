@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 
 #include "geometry/camera.h"
 #include "geometry/distortion.h"
@@ -18,19 +19,15 @@ cv::Mat TurnUpright(const cv::Mat& stored, int exif_orientation);
 
 // Reads an image as grey values, CV_8UC1. JPEG, PNG, WebP, BMP or TIFF, of the latter the first
 // page; bytes after the image are ignored. Throws InputError when the file is missing, empty,
-// truncated, not such an image, or larger than can be processed.
+// truncated, not such an image, larger than can be processed, or not of the given size.
 cv::Mat ReadGreyImage(const std::filesystem::path& path,
-                      ImageOrientation orientation = ImageOrientation::kUpright);
-
-// The same; also throws InputError when the image is not width x height pixels.
-cv::Mat ReadGreyImage(const std::filesystem::path& path, int width, int height,
-                      ImageOrientation orientation = ImageOrientation::kUpright);
+                      ImageOrientation orientation = ImageOrientation::kUpright,
+                      const std::optional<cv::Size>& size = std::nullopt);
 
 // Reads an image in colour, CV_8UC3: blue, green, red. Otherwise like ReadGreyImage.
 cv::Mat ReadColourImage(const std::filesystem::path& path,
-                        ImageOrientation orientation = ImageOrientation::kUpright);
-cv::Mat ReadColourImage(const std::filesystem::path& path, int width, int height,
-                        ImageOrientation orientation = ImageOrientation::kUpright);
+                        ImageOrientation orientation = ImageOrientation::kUpright,
+                        const std::optional<cv::Size>& size = std::nullopt);
 
 // Undistorts images: the result is that of a pinhole camera of the same size and intrinsics.
 class ImageUndistorter {

@@ -83,14 +83,14 @@ FrameImageReader::FrameImageReader(const Sequence& sequence) : sequence_(sequenc
 cv::Mat FrameImageReader::ReadGrey(const FrameImage& image) const {
   const Camera& camera = sequence_.CameraOf(*image.frame);
   const cv::Mat grey =
-      ReadGreyImage(image.path, camera.width, camera.height, sequence_.image_orientation);
+      ReadGreyImage(image.path, sequence_.image_orientation, cv::Size(camera.width, camera.height));
   return undistorter_ ? undistorter_->Undistort(grey) : grey;
 }
 
 cv::Mat FrameImageReader::ReadColour(const FrameImage& image) const {
   const Camera& camera = sequence_.CameraOf(*image.frame);
-  const cv::Mat colour =
-      ReadColourImage(image.path, camera.width, camera.height, sequence_.image_orientation);
+  const cv::Mat colour = ReadColourImage(image.path, sequence_.image_orientation,
+                                         cv::Size(camera.width, camera.height));
   return undistorter_ ? undistorter_->Undistort(colour) : colour;
 }
 

@@ -88,11 +88,12 @@ TEST_F(ReadImageTest, EveryOrientationIsTurnedUpright) {
 
 TEST_F(ReadImageTest, SizesThatExifSwapsAreExplained) {
   const auto path = Write("a.jpg", JpegWithExif(EncodedImage(".jpg", TestImage()), ExifOf(6)));
-  EXPECT_EQ(ReadGreyImage(path, 40, 60).cols, 40);
-  EXPECT_EQ(ReadColourImage(path, 60, 40, ImageOrientation::kStored).cols, 60);
-  ExpectError<InputError>([&] { ReadGreyImage(path, 60, 40); },
-                          {"a.jpg", "40 x 60", "60 x 40", "orientation 6", "image_orientation"});
-  ExpectError<InputError>([&] { ReadGreyImage(path, 40, 60, ImageOrientation::kStored); },
+  EXPECT_EQ(ReadGreyImage(path, ImageOrientation::kUpright, cv::Size(40, 60)).cols, 40);
+  EXPECT_EQ(ReadColourImage(path, ImageOrientation::kStored, cv::Size(60, 40)).cols, 60);
+  ExpectError<InputError>(
+      [&] { ReadGreyImage(path, ImageOrientation::kUpright, cv::Size(60, 40)); },
+      {"a.jpg", "40 x 60", "60 x 40", "orientation 6", "image_orientation"});
+  ExpectError<InputError>([&] { ReadGreyImage(path, ImageOrientation::kStored, cv::Size(40, 60)); },
                           {"60 x 40", "upright image", "is stored"});
 }
 

@@ -20,7 +20,7 @@ void CheckHeader(const std::filesystem::path& file) {
 
 const FuzzTarget kImage("image", [](const HostileInput& input) {
   const auto file = input.AsFile("image.png");
-  IsAccepted(file, [&] { ReadGreyImage(file, 60, 40); });
+  IsAccepted(file, [&] { ReadGreyImage(file, ImageOrientation::kUpright, cv::Size(60, 40)); });
   IsAccepted(file, [&] { ReadColourImage(file, ImageOrientation::kStored); });
   if (IsAccepted(file, [&] { ReadGreyImage(file); })) CheckHeader(file);
 });
