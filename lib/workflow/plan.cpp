@@ -92,18 +92,18 @@ const StageInstance& Plan::Instance(const std::string& id) const {
   return *found;
 }
 
-std::vector<Prerequisite> PrerequisitesOf(const StageInstance& instance) {
-  using Folder = Prerequisite::Folder;
-  std::vector<Prerequisite> files = {
-      {Folder::kExecutables, "soslam-" + instance.stage},
-      {Folder::kResults, InstancePath(instance.Id(), "settings.json")}};
+std::vector<std::filesystem::path> PrerequisitesOf(const StageInstance& instance,
+                                                   const PrerequisiteFolders& folders) {
+  std::vector<std::filesystem::path> files = {
+      folders.executables / ("soslam-" + instance.stage),
+      folders.results / InstancePath(instance.Id(), "settings.json")};
   for (const auto& [argument, source] : instance.inputs) {
-    files.push_back({Folder::kResults, InstancePath(source.instance, source.file)});
+    files.push_back(folders.results / InstancePath(source.instance, source.file));
   }
-  if (instance.stage == "import") files.push_back({Folder::kResults, kDatasetListing});
-  if (StageReads(instance.stage, "dataset")) files.push_back({Folder::kResults, kImagesListing});
+  if (instance.stage == "import") files.push_back(folders.results / kDatasetListing);
+  if (StageReads(instance.stage, "dataset")) files.push_back(folders.results / kImagesListing);
   if (!instance.semantic_table.empty()) {
-    files.push_back({Folder::kPipelines, instance.semantic_table});
+    files.push_back(folders.pipelines / instance.semantic_table);
   }
   return files;
 }

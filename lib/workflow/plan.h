@@ -42,14 +42,14 @@ struct Plan {
   const StageInstance& Instance(const std::string& id) const;
 };
 
-// A file that a stage instance depends on: executable, settings, input artefact, listing or
-// semantic table.
-struct Prerequisite {
-  enum class Folder { kExecutables, kPipelines, kResults };  // kResults: results of this dataset
-  Folder folder;
-  std::string path;  // relative to it
+struct PrerequisiteFolders {
+  std::filesystem::path executables, pipelines;
+  std::filesystem::path results;  // of this dataset
 };
-std::vector<Prerequisite> PrerequisitesOf(const StageInstance& instance);
+// The files that a stage instance depends on: executable, settings, input artefacts, listings,
+// semantic table.
+std::vector<std::filesystem::path> PrerequisitesOf(const StageInstance& instance,
+                                                   const PrerequisiteFolders& folders);
 
 // Path of an artefact or the record of a stage instance, relative to the results of the dataset:
 // "shared/refine-c664bee12d/done".

@@ -136,13 +136,9 @@ std::string VariantRules(const Plan& plan, const VariantChain& variant) {
 }
 
 std::vector<std::string> Prerequisites(const StageInstance& instance) {
-  static const std::map<Prerequisite::Folder, std::string> kFolders = {
-      {Prerequisite::Folder::kExecutables, "$(BIN)/"},
-      {Prerequisite::Folder::kPipelines, "$(pipelines)/"},
-      {Prerequisite::Folder::kResults, "$(results)/"}};
   std::vector<std::string> files;
-  for (const Prerequisite& file : PrerequisitesOf(instance)) {
-    files.push_back(kFolders.at(file.folder) + file.path);
+  for (const auto& file : PrerequisitesOf(instance, {"$(BIN)", "$(pipelines)", "$(results)"})) {
+    files.push_back(file.string());
   }
   std::set<std::string> stamps;
   for (const auto& [argument, source] : instance.inputs) {

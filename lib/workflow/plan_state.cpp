@@ -49,13 +49,6 @@ class StateFinder {
   fs::path Result(const StageInstance& instance, const std::string& file) const {
     return folders_.results / InstancePath(instance.Id(), file);
   }
-  fs::path PathOf(const Prerequisite& file) const {
-    const std::map<Prerequisite::Folder, const fs::path*> folders = {
-        {Prerequisite::Folder::kExecutables, &executables_},
-        {Prerequisite::Folder::kPipelines, &folders_.pipelines},
-        {Prerequisite::Folder::kResults, &folders_.results}};
-    return *folders.at(file.folder) / file.path;
-  }
 
   InstanceState Find(const StageInstance& instance) const {
     const auto done = TimeOf(Result(instance, "done"));
@@ -96,12 +89,13 @@ class StateFinder {
   std::vector<std::string> NewerFiles(const StageInstance& instance,
                                       fs::file_time_type done) const {
     std::vector<std::string> reasons;
-    for (const Prerequisite& file : PrerequisitesOf(instance)) {
-      const fs::path path = PathOf(file);
+    const PrerequisiteFolders folders = {executables_, folders_.pipelines, folders_.results};
+    for (const fs::path& path : PrerequisitesOf(instance, folders)) {
       const auto time = TimeOf(path);
       if (!time) reasons.push_back(path.string() + " does not exist");
       if (!time || *time <= done) continue;
-      const bool is_listing = file.path == kDatasetListing || file.path == kImagesListing;
+      const bool is_listing =
+          path == folders_.results / kDatasetListing || path == folders_.results / kImagesListing;
       reasons.push_back(is_listing ? NewerFilesListedIn(path, done)
                                    : path.string() + " has changed since");
     }
