@@ -13,15 +13,17 @@ namespace {
 
 // The logarithms that are learned for a label.
 enum LearnedQuantity { kDepthRatio, kWidthRatio, kHeight, kNumQuantities };
-using Logs = std::array<std::vector<double>, kNumQuantities>;
 
 // All data for a row.
 struct RowData {
-  Logs logs;
+  std::array<std::vector<double>, kNumQuantities> logs;
   std::vector<ShapeExponents> shape_exponents;
   std::vector<std::string> cited;  // "3 of room_a"
 
   size_t Count() const { return logs[kHeight].size(); }
+  std::optional<double> Correlation() const {
+    return RobustCorrelation(logs[kDepthRatio], logs[kWidthRatio]);
+  }
 };
 
 // Statistics pooled over labels.
@@ -63,14 +65,6 @@ std::map<std::string, RowData> DataByRow(const SemanticRows& base,
   return data;
 }
 
-std::optional<double> Correlation(const Logs& logs) {
-  std::vector<std::pair<double, double>> pairs;
-  for (size_t i = 0; i < logs[kHeight].size(); ++i) {
-    pairs.emplace_back(logs[kDepthRatio][i], logs[kWidthRatio][i]);
-  }
-  return RobustCorrelation(pairs);
-}
-
 // Means over the labels with enough objects, weighted with their degrees of freedom.
 Pooled Pool(const std::map<std::string, RowData>& data, double min_sigma) {
   std::array<double, kNumQuantities> squares{};
@@ -85,7 +79,7 @@ Pooled Pool(const std::map<std::string, RowData>& data, double min_sigma) {
       const double sigma = std::max(min_sigma, RobustSigma(row.logs[k]));
       squares[k] += weight * sigma * sigma;
     }
-    if (const auto of_label = Correlation(row.logs)) {
+    if (const auto of_label = row.Correlation()) {
       correlation += weight * *of_label;
       correlated += weight;
     }
@@ -158,7 +152,7 @@ class Learner {
     if (prior->log_correlation != 0.0 && options_.base_rows == BaseRows::kKeep) return;
     double correlation =
         prior->log_correlation != 0.0 ? prior->log_correlation : pooled_.correlation;
-    if (const auto of_label = Correlation(data.logs)) {
+    if (const auto of_label = data.Correlation()) {
       const auto objects = static_cast<double>(data.Count());
       correlation = (options_.correlation_weight * correlation + objects * *of_label) /
                     (options_.correlation_weight + objects);

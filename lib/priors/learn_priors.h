@@ -38,9 +38,10 @@ NormalBelief Update(const NormalBelief& prior, const std::vector<double>& values
 // mean. (The scale of the predictive Student distribution.)
 double PredictiveSigma(const NormalBelief& belief);
 
-// The correlation of pairs; each coordinate is measured in robust sigmas from its median and
-// clipped at 2.5. None for fewer than three pairs, or if a coordinate does not vary.
-std::optional<double> RobustCorrelation(const std::vector<std::pair<double, double>>& pairs);
+// The correlation of values in pairs; each is measured in robust sigmas from the median of its kind
+// and clipped at 2.5. None for fewer than three pairs, or if values of a kind do not vary.
+std::optional<double> RobustCorrelation(const std::vector<double>& firsts,
+                                        const std::vector<double>& seconds);
 
 // Treatment of rows that the base table has.
 enum class BaseRows {

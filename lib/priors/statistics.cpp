@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "priors/learn_priors.h"
 
@@ -57,14 +56,9 @@ double PredictiveSigma(const NormalBelief& belief) {
   return belief.sigma * std::sqrt(1.0 + 1.0 / belief.mean_weight);
 }
 
-std::optional<double> RobustCorrelation(const std::vector<std::pair<double, double>>& pairs) {
-  if (pairs.size() < 3) return std::nullopt;
-  std::vector<double> firsts;
-  std::vector<double> seconds;
-  for (const auto& [first, second] : pairs) {
-    firsts.push_back(first);
-    seconds.push_back(second);
-  }
+std::optional<double> RobustCorrelation(const std::vector<double>& firsts,
+                                        const std::vector<double>& seconds) {
+  if (firsts.size() < 3) return std::nullopt;
   const double first_sigma = RobustSigma(firsts);
   const double second_sigma = RobustSigma(seconds);
   if (first_sigma <= 0.0 || second_sigma <= 0.0) return std::nullopt;

@@ -8,8 +8,6 @@
 namespace soslam {
 namespace {
 
-using Pairs = std::vector<std::pair<double, double>>;
-
 TEST(RobustSigma, IgnoresAnOutlier) {
   EXPECT_DOUBLE_EQ(RobustSigma({1.0, 2.0, 3.0, 4.0, 100.0}), 1.4826);  // deviations 2 1 0 1 97
   EXPECT_EQ(RobustSigma({5.0}), 0.0);
@@ -44,21 +42,24 @@ TEST(Update, EqualValuesAreNotTakenForCertainty) {
 }
 
 TEST(RobustCorrelation, OfValuesWorkedByHand) {
-  EXPECT_NEAR(RobustCorrelation(Pairs{{0, 1}, {1, 3}, {2, 5}}).value(), 1.0, 1e-12);
-  EXPECT_NEAR(RobustCorrelation(Pairs{{0, 5}, {1, 3}, {2, 1}}).value(), -1.0, 1e-12);
+  EXPECT_NEAR(RobustCorrelation({0, 1, 2}, {1, 3, 5}).value(), 1.0, 1e-12);
+  EXPECT_NEAR(RobustCorrelation({0, 1, 2}, {5, 3, 1}).value(), -1.0, 1e-12);
   // Sums of products: 2 and 2 of the squares, 1 of the mixed ones.
-  EXPECT_NEAR(RobustCorrelation(Pairs{{-1, 0}, {0, -1}, {1, 1}}).value(), 0.5, 1e-12);
+  EXPECT_NEAR(RobustCorrelation({-1, 0, 1}, {0, -1, 1}).value(), 0.5, 1e-12);
 }
 
 TEST(RobustCorrelation, OneOutlierDoesNotTurnIt) {
-  Pairs pairs = {{1e6, -1e6}};
-  for (int i = -20; i <= 20; ++i) pairs.emplace_back(i, i);
-  EXPECT_GT(RobustCorrelation(pairs).value(), 0.5);
+  std::vector<double> firsts = {1e6}, seconds = {-1e6};
+  for (int i = -20; i <= 20; ++i) {
+    firsts.push_back(i);
+    seconds.push_back(i);
+  }
+  EXPECT_GT(RobustCorrelation(firsts, seconds).value(), 0.5);
 }
 
 TEST(RobustCorrelation, NeedsThreePairsThatVary) {
-  EXPECT_FALSE(RobustCorrelation(Pairs{{0, 0}, {1, 1}}));
-  EXPECT_FALSE(RobustCorrelation(Pairs{{0, 3}, {1, 3}, {2, 3}}));
+  EXPECT_FALSE(RobustCorrelation({0, 1}, {0, 1}));
+  EXPECT_FALSE(RobustCorrelation({0, 1, 2}, {3, 3, 3}));
 }
 
 }  // namespace
