@@ -24,12 +24,6 @@
 namespace soslam {
 namespace {
 
-// Image points of one track, each with its frame.
-struct TrackViews {
-  std::vector<const Frame*> frames;
-  std::vector<PointView> views;
-};
-
 // Homography between two images of a camera that only turns: where points at infinity move.
 Eigen::Matrix3d TurnOf(const Sequence& sequence, const Frame& from, const Frame& to) {
   const Eigen::Quaterniond to_from_from =
@@ -67,28 +61,15 @@ std::vector<FeatureTrack> TracksOf(const Sequence& sequence, const std::vector<F
   return tracker.Tracks();
 }
 
-TrackViews ViewsOf(const Sequence& sequence, const std::vector<FrameImage>& images,
-                   const FeatureTrack& track) {
-  TrackViews result;
+// The image points of a track, in the order of its places.
+std::vector<PointView> ViewsOf(const Sequence& sequence, const std::vector<FrameImage>& images,
+                               const FeatureTrack& track) {
+  std::vector<PointView> views;
   for (const FeatureTrack::Place& place : track.places) {
     const Frame& frame = *images[place.image].frame;
-    result.frames.push_back(&frame);
-    result.views.push_back(
-        {sequence.CameraOf(frame), frame.world_from_camera.Inverse(), place.pixel});
+    views.push_back({sequence.CameraOf(frame), frame.world_from_camera.Inverse(), place.pixel});
   }
-  return result;
-}
-
-// Leaves out views whose pixel is far from the point's projection.
-TrackViews NearViews(const TrackViews& all, const Eigen::Vector3d& point_in_world,
-                     double max_error_px) {
-  TrackViews near;
-  for (size_t i = 0; i < all.views.size(); ++i) {
-    if (ReprojectionError(all.views[i], point_in_world) > max_error_px) continue;
-    near.frames.push_back(all.frames[i]);
-    near.views.push_back(all.views[i]);
-  }
-  return near;
+  return views;
 }
 
 Eigen::Vector2d StoredPixel(const Sequence& sequence, const PointView& view) {
@@ -97,29 +78,33 @@ Eigen::Vector2d StoredPixel(const Sequence& sequence, const PointView& view) {
 }
 
 // None if a track's image points are not those of one static point, or it is too far away.
-std::optional<MapPoint> PointOf(const Sequence& sequence, const TrackViews& all,
-                                const TrackOptions& options) {
+std::optional<MapPoint> PointOf(const Sequence& sequence, const std::vector<FrameImage>& images,
+                                const FeatureTrack& track, const TrackOptions& options) {
+  const std::vector<PointView> all = ViewsOf(sequence, images, track);
   const double max_error_px = options.max_reprojection_error_px;
   const auto min_views = static_cast<size_t>(options.min_views);
-  if (all.views.size() < min_views) return std::nullopt;
-  const auto first = Triangulate(all.views, 0.5 * max_error_px);
+  if (all.size() < min_views) return std::nullopt;
+  const auto first = Triangulate(all, 0.5 * max_error_px);
   if (!first) return std::nullopt;
-  const TrackViews near = NearViews(all, first->position_in_world, max_error_px);
-  if (near.views.size() < min_views || 2 * near.views.size() < all.views.size()) {
-    return std::nullopt;
-  }
-  const auto point = Triangulate(near.views, 0.5 * max_error_px);
-  if (!point) return std::nullopt;
-  const auto is_far = [&](const PointView& view) {
-    return ReprojectionError(view, point->position_in_world) > max_error_px;
+  const auto is_far_from = [&](const TriangulatedPoint& point) {
+    return [&](const PointView& view) {
+      return ReprojectionError(view, point.position_in_world) > max_error_px;
+    };
   };
-  if (std::ranges::any_of(near.views, is_far) ||
-      LargestAngle(near.views, point->position_in_world) < options.min_angle_deg * kRadPerDeg) {
+  std::vector<PointView> near = all;
+  std::erase_if(near, is_far_from(*first));
+  if (near.size() < min_views || 2 * near.size() < all.size()) return std::nullopt;
+  const auto point = Triangulate(near, 0.5 * max_error_px);
+  if (!point) return std::nullopt;
+  if (std::ranges::any_of(near, is_far_from(*point)) ||
+      LargestAngle(near, point->position_in_world) < options.min_angle_deg * kRadPerDeg) {
     return std::nullopt;
   }
   MapPoint result{point->position_in_world, point->mean_error_px, {}};
-  for (size_t i = 0; i < near.views.size(); ++i) {
-    result.observations.push_back({near.frames[i]->id, StoredPixel(sequence, near.views[i])});
+  for (size_t i = 0; i < all.size(); ++i) {
+    if (is_far_from(*first)(all[i])) continue;
+    const Frame& frame = *images[track.places[i].image].frame;
+    result.observations.push_back({frame.id, StoredPixel(sequence, all[i])});
   }
   return result;
 }
@@ -130,7 +115,7 @@ std::vector<MapPoint> PointsOf(const Sequence& sequence, const std::vector<Frame
   std::vector<std::optional<MapPoint>> found(tracks.size());
   ParallelFor(static_cast<int>(tracks.size()), threads, [&](int i) {
     const auto index = static_cast<size_t>(i);
-    found[index] = PointOf(sequence, ViewsOf(sequence, images, tracks[index]), options);
+    found[index] = PointOf(sequence, images, tracks[index], options);
   });
   std::vector<MapPoint> points;
   for (auto& point : found) {
