@@ -131,26 +131,16 @@ std::vector<TrueObjectRow> ObjectRows(const Sequence& sequence, const ViewsOfTru
   return rows;
 }
 
-// Mean over the landmarks that have this value.
-template <typename ValueOf>
-std::optional<double> MeanOver(const std::vector<LandmarkRow>& rows, const ValueOf& value_of) {
-  std::vector<double> values;
-  for (const LandmarkRow& row : rows) {
-    if (const std::optional<double> value = value_of(row)) values.push_back(*value);
-  }
-  return MeanOf(values);
-}
-
 FoundSummary Summarise(std::vector<LandmarkRow> rows) {
   std::erase_if(rows, [](const LandmarkRow& row) { return row.fate != Fate::kFound; });
   const auto mean = [&](const auto& of_errors) {
-    return MeanOver(rows,
-                    [&](const LandmarkRow& row) { return std::invoke(of_errors, *row.errors); });
+    return MeanOf(ValuesOf(
+        rows, [&](const LandmarkRow& row) { return std::invoke(of_errors, *row.errors); }));
   };
   const auto plane_mean = [&](const auto& of_errors) {
-    return MeanOver(rows, [&](const LandmarkRow& row) {
+    return MeanOf(ValuesOf(rows, [&](const LandmarkRow& row) {
       return row.plane ? std::optional(of_errors(*row.plane)) : std::nullopt;
-    });
+    }));
   };
   FoundSummary summary;
   summary.iou_mean = mean(&BodyErrors::iou);

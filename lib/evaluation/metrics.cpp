@@ -14,35 +14,28 @@ ObjectMetrics Average(int object_index, int observations,
   ObjectMetrics metrics;
   metrics.object_index = object_index;
   metrics.observations = observations;
-  std::vector<double> ious, centres, rotations, yaws, attitudes;
+  std::vector<LandmarkErrors> known;
   for (const auto& error : errors) {
-    ious.push_back(error ? error->iou : 0.0);
-    if (!error) continue;
-    ++metrics.estimates;
-    centres.push_back(error->centre_m);
-    if (error->rotation_deg) rotations.push_back(*error->rotation_deg);
-    if (error->yaw_deg) yaws.push_back(*error->yaw_deg);
-    if (error->attitude_deg) attitudes.push_back(*error->attitude_deg);
+    if (error) known.push_back(*error);
   }
-  metrics.iou = MeanOf(ious).value_or(0.0);
-  metrics.centre_m = MeanOf(centres);
-  metrics.rotation_deg = MeanOf(rotations);
-  metrics.yaw_deg = MeanOf(yaws);
-  metrics.attitude_deg = MeanOf(attitudes);
+  metrics.estimates = static_cast<int>(known.size());
+  const auto iou = [](const auto& error) { return error ? error->iou : 0.0; };
+  metrics.iou = MeanOf(ValuesOf(errors, iou)).value_or(0.0);
+  metrics.centre_m = MeanOf(ValuesOf(known, &LandmarkErrors::centre_m));
+  metrics.rotation_deg = MeanOf(ValuesOf(known, &LandmarkErrors::rotation_deg));
+  metrics.yaw_deg = MeanOf(ValuesOf(known, &LandmarkErrors::yaw_deg));
+  metrics.attitude_deg = MeanOf(ValuesOf(known, &LandmarkErrors::attitude_deg));
   return metrics;
 }
 
-MetricsSummary Summarise(const std::vector<ObjectMetrics>& objects) {
+MetricsSummary Summarise(std::vector<ObjectMetrics> objects) {
+  std::erase_if(objects, [](const ObjectMetrics& object) { return object.observations == 0; });
   MetricsSummary summary;
-  std::vector<double> ious, rotations, yaws;
-  for (const ObjectMetrics& object : objects) {
-    if (object.observations == 0) continue;
-    ++summary.objects;
-    summary.observations += object.observations;
-    ious.push_back(object.iou);
-    if (object.rotation_deg) rotations.push_back(*object.rotation_deg);
-    if (object.yaw_deg) yaws.push_back(*object.yaw_deg);
-  }
+  summary.objects = static_cast<int>(objects.size());
+  for (const ObjectMetrics& object : objects) summary.observations += object.observations;
+  const std::vector<double> ious = ValuesOf(objects, &ObjectMetrics::iou);
+  const std::vector<double> rotations = ValuesOf(objects, &ObjectMetrics::rotation_deg);
+  const std::vector<double> yaws = ValuesOf(objects, &ObjectMetrics::yaw_deg);
   summary.iou_mean = MeanOf(ious);
   summary.iou_median = MedianOf(ious);
   summary.rotation_deg_mean = MeanOf(rotations);

@@ -63,14 +63,9 @@ std::vector<Finding> CheckScale(const std::vector<RelativeHeight>& relative) {
   constexpr double kMedianSigma =
       1.25;  // standard deviation of the median of n normal values: 1.25 sigma / sqrt(n)
   if (relative.size() < kFewest) return {};
-  std::vector<double> log_ratios, log_sigmas;
-  for (const RelativeHeight& object : relative) {
-    log_ratios.push_back(object.log_ratio);
-    log_sigmas.push_back(object.log_sigma);
-  }
-  const double log_factor = *MedianOf(log_ratios);
-  const double sigma =
-      kMedianSigma * *MedianOf(log_sigmas) / std::sqrt(static_cast<double>(relative.size()));
+  const double log_factor = *MedianOf(ValuesOf(relative, &RelativeHeight::log_ratio));
+  const double sigma = kMedianSigma * *MedianOf(ValuesOf(relative, &RelativeHeight::log_sigma)) /
+                       std::sqrt(static_cast<double>(relative.size()));
   const double least = std::max(std::log(kSmallestFactor), kSigmas * sigma);
   if (std::abs(log_factor) <= least) return {};
   return {

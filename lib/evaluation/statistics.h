@@ -2,10 +2,22 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <vector>
 
 namespace soslam {
+
+// One value of each item that has it: `value_of` is a member or function that returns a double or
+// std::optional<double>.
+template <typename Items, typename ValueOf>
+std::vector<double> ValuesOf(const Items& items, const ValueOf& value_of) {
+  std::vector<double> values;
+  for (const auto& item : items) {
+    if (const std::optional<double> value = std::invoke(value_of, item)) values.push_back(*value);
+  }
+  return values;
+}
 
 // None if there are no values.
 std::optional<double> MeanOf(const std::vector<double>& values);

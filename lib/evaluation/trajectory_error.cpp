@@ -33,15 +33,11 @@ namespace {
 double SpreadOf(const std::vector<PosePair>& pairs, Rigid3d PosePair::*pose) {
   Eigen::Vector3d middle;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    std::vector<double> coordinates;
-    for (const PosePair& pair : pairs) coordinates.push_back((pair.*pose).translation[axis]);
-    middle[axis] = *MedianOf(coordinates);
+    middle[axis] = *MedianOf(
+        ValuesOf(pairs, [&](const PosePair& pair) { return (pair.*pose).translation[axis]; }));
   }
-  std::vector<double> distances;
-  for (const PosePair& pair : pairs) {
-    distances.push_back(((pair.*pose).translation - middle).norm());
-  }
-  return *MedianOf(distances);
+  return *MedianOf(ValuesOf(
+      pairs, [&](const PosePair& pair) { return ((pair.*pose).translation - middle).norm(); }));
 }
 
 }  // namespace

@@ -107,8 +107,8 @@ std::string MedianInWords(const std::vector<double>& values, const char* format)
 
 // The middle 98 % of the coordinates along an axis: single points may be far away.
 std::string RangeInWords(const std::vector<MapPoint>& points, int axis) {
-  std::vector<double> values;
-  for (const MapPoint& point : points) values.push_back(point.position_in_world[axis]);
+  std::vector<double> values =
+      ValuesOf(points, [&](const MapPoint& point) { return point.position_in_world[axis]; });
   std::ranges::sort(values);
   const size_t margin = values.size() / 100;
   return fmt::format("{:.3f} to {:.3f}", values[margin], values[values.size() - 1 - margin]);
@@ -118,17 +118,17 @@ std::string RangeInWords(const std::vector<MapPoint>& points, int axis) {
 
 Inspection InspectPoints(const std::filesystem::path& file) {
   const std::vector<MapPoint> points = ReadPoints(file);
-  std::vector<double> errors, views;
   std::map<int, std::vector<double>> errors_of_frame;
   size_t observations = 0;
   for (const MapPoint& point : points) {
-    errors.push_back(point.reprojection_error_px);
-    views.push_back(static_cast<double>(point.observations.size()));
     observations += point.observations.size();
     for (const PointObservation& observation : point.observations) {
       errors_of_frame[observation.frame_id].push_back(point.reprojection_error_px);
     }
   }
+  const auto errors = ValuesOf(points, &MapPoint::reprojection_error_px);
+  const auto views = ValuesOf(
+      points, [](const MapPoint& point) { return static_cast<double>(point.observations.size()); });
   Inspection inspection;
   inspection.facts = {{"points", fmt::format("{}, {} observations in {} frames", points.size(),
                                              observations, errors_of_frame.size())},

@@ -173,15 +173,14 @@ void PrintTrackSummary(const Sequence& sequence, const std::vector<MapPoint>& po
     fmt::print("{}: no point from {} tracks\n", sequence.name, tracks);
     return;
   }
-  std::vector<double> errors_px, views;
-  for (const MapPoint& point : points) {
-    errors_px.push_back(point.reprojection_error_px);
-    views.push_back(static_cast<double>(point.observations.size()));
-  }
+  const auto views = [](const MapPoint& point) {
+    return static_cast<double>(point.observations.size());
+  };
   fmt::print(
       "{}: {} points from {} tracks, median reprojection error {:.2f} px, in {:.0f} images\n",
-      sequence.name, points.size(), tracks, *MedianOf(std::move(errors_px)),
-      *MedianOf(std::move(views)));
+      sequence.name, points.size(), tracks,
+      *MedianOf(ValuesOf(points, &MapPoint::reprojection_error_px)),
+      *MedianOf(ValuesOf(points, views)));
 }
 
 }  // namespace
