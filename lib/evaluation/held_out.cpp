@@ -3,9 +3,9 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <limits>
 
 #include "base/assignment.h"
+#include "evaluation/map_reasons.h"
 #include "evaluation/statistics.h"
 
 namespace soslam {
@@ -57,10 +57,7 @@ void Compare(const Sequence& sequence, const HeldOutFrame& held_out,
           BoxOverlap(*outline, held_out.boxes[k].box);
     }
   }
-  const Eigen::MatrixXd costs = overlaps.unaryExpr([](double overlap) {
-    return overlap < kMinHeldOutIou ? std::numeric_limits<double>::infinity() : 1.0 - overlap;
-  });
-  const std::vector<int> box_of = Assign(costs, Eigen::VectorXd::Ones(rows));
+  const std::vector<int> box_of = MatchByIou(overlaps, kMinHeldOutIou);
   for (size_t i = 0; i < judged->size(); ++i) {
     const bool is_matched = box_of[i] != kUnassigned;
     if (is_in_sight[i]) ++(*judged)[i].in_sight;

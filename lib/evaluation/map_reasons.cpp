@@ -11,6 +11,7 @@
 #include <set>
 
 #include "base/assignment.h"
+#include "base/text.h"
 #include "geometry/iou.h"
 #include "model/label_groups.h"
 
@@ -199,14 +200,10 @@ Fates FatesOf(const ReasonInput& input, int true_index) {
 }
 
 Explanation ExplainLeftOut(const Fates& fates) {
-  std::vector<std::string> words;
-  for (const auto& [reason, count] : fates.by_reason) {
-    words.push_back(fmt::format("{} {}", reason, count));
-  }
   const bool by_association = fates.frames_before_association.size() > fates.frames_in_use.size();
   return {by_association ? MapReason::kLostInAssociation : MapReason::kGated,
           fmt::format("boxes in use in {} frames; left out: {}", fates.frames_in_use.size(),
-                      fmt::join(words, ", "))};
+                      CountsText(fates.by_reason))};
 }
 
 std::string FailureOf(const std::vector<ObjectEstimate>& estimates, int object_index) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluation/true_views.h"
 
-#include <algorithm>
-
 namespace soslam {
 namespace {
 
@@ -33,14 +31,6 @@ std::vector<std::vector<RawBox>> RawBoxesByFrame(const Sequence& sequence) {
   return by_frame;
 }
 
-// The part of the box that is in the image; none if there is no such part.
-std::optional<Box> CutToImage(const Box& box, const Camera& camera) {
-  const Box cut = {std::max(box.x_min, -0.5), std::max(box.y_min, -0.5),
-                   std::min(box.x_max, camera.width - 0.5),
-                   std::min(box.y_max, camera.height - 0.5)};
-  return cut.Width() > 0.0 && cut.Height() > 0.0 ? std::optional(cut) : std::nullopt;
-}
-
 // The outline boxes of all true objects in a frame.
 std::vector<std::optional<Box>> Outlines(const Sequence& sequence, const TrueViews& views,
                                          int frame_index) {
@@ -50,7 +40,8 @@ std::vector<std::optional<Box>> Outlines(const Sequence& sequence, const TrueVie
     auto landmark = views.InCamera(frame_index, static_cast<int>(i));
     if (!landmark) continue;
     landmark->shape_exponents = kOutlineShapeExponent;
-    if (const auto box = OutlineBox(camera, *landmark)) outlines[i] = CutToImage(*box, camera);
+    const auto box = OutlineBox(camera, *landmark);
+    if (box) outlines[i] = CutToImage(*box, camera.width, camera.height);
   }
   return outlines;
 }

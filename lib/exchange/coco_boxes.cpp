@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
 #include <array>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -39,12 +38,8 @@ std::optional<Box> VisibleBox(const WorldFrame& frame, const Landmark& landmark_
   const auto outline =
       OutlineBox(frame.camera, Transform(frame.world_from_camera.Inverse(), landmark_in_world));
   if (!outline) return std::nullopt;
-  const Box whole = ToCornerOrigin(*outline);
-  const Box visible = {std::max(whole.x_min, 0.0), std::max(whole.y_min, 0.0),
-                       std::min(whole.x_max, static_cast<double>(frame.camera.width)),
-                       std::min(whole.y_max, static_cast<double>(frame.camera.height))};
-  if (!(visible.Width() > 0.0) || !(visible.Height() > 0.0)) return std::nullopt;
-  return visible;
+  const auto visible = CutToImage(*outline, frame.camera.width, frame.camera.height);
+  return visible ? std::optional(ToCornerOrigin(*visible)) : std::nullopt;
 }
 
 // Boxes of all landmarks, with the fields that results and annotations have in common.

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <optional>
 
 namespace soslam {
 
@@ -36,6 +37,13 @@ struct Box {
 inline double DistanceToBorder(const Box& box, int width, int height) {
   return std::min(
       {box.x_min + 0.5, box.y_min + 0.5, width - 0.5 - box.x_max, height - 0.5 - box.y_max});
+}
+
+// The part of the box in an image of width x height pixels; none if there is no such part.
+inline std::optional<Box> CutToImage(const Box& box, int width, int height) {
+  const Box cut = {std::max(box.x_min, -0.5), std::max(box.y_min, -0.5),
+                   std::min(box.x_max, width - 0.5), std::min(box.y_max, height - 0.5)};
+  return cut.Width() > 0.0 && cut.Height() > 0.0 ? std::optional(cut) : std::nullopt;
 }
 
 // The area (px^2) of the intersection of two boxes.

@@ -27,12 +27,7 @@ std::optional<Box> NoisyBox(const Scene& scene, int frame_index, const SceneObje
   box.y_min += sigma(exact.Height()) * normal(random);
   box.x_max += sigma(exact.Width()) * normal(random);
   box.y_max += sigma(exact.Height()) * normal(random);
-  box.x_min = std::max(box.x_min, -0.5);
-  box.y_min = std::max(box.y_min, -0.5);
-  box.x_max = std::min(box.x_max, scene.camera.width - 0.5);
-  box.y_max = std::min(box.y_max, scene.camera.height - 0.5);
-  if (!(box.Width() > 0.0) || !(box.Height() > 0.0)) return std::nullopt;
-  return box;
+  return CutToImage(box, scene.camera.width, scene.camera.height);
 }
 
 // The true motions with noise, integrated from the first true pose.

@@ -2,9 +2,7 @@
 #include "workflow/plan_state.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <algorithm>
 #include <fstream>
 #include <optional>
 #include <sstream>
@@ -12,6 +10,7 @@
 #include "artefact/json_file.h"
 #include "base/error.h"
 #include "base/paths.h"
+#include "base/text.h"
 #include "report/results_tree.h"
 #include "workflow/pipeline_settings.h"
 
@@ -114,13 +113,8 @@ class StateFinder {
       const auto time = TimeOf(folders_.dataset / name);
       if (time && *time > done) newer.push_back(name);
     }
-    constexpr size_t kMaxNamed = 5;
-    const size_t named = std::min(newer.size(), kMaxNamed);
     if (newer.empty()) return "files of the dataset came, went or were replaced since";
-    return fmt::format(
-        "files of the dataset have changed since: {}{}",
-        fmt::join(newer.begin(), newer.begin() + static_cast<ptrdiff_t>(named), ", "),
-        newer.size() > named ? fmt::format(" and {} more", newer.size() - named) : "");
+    return "files of the dataset have changed since: " + NamesInWords(newer, 5);
   }
 
   std::vector<std::string> InputsToCome(const StageInstance& instance) const {
