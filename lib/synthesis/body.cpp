@@ -2,61 +2,18 @@
 #include "synthesis/body.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
+#include "geometry/surface.h"
 #include "geometry/wireframe.h"
 
 namespace soslam {
 namespace {
 
-// A ray in the object frame, in units of the half axes, so that the body is the unit box, ball or
-// cylinder. Depths are the same as along the original ray.
-struct UnitRay {
-  Eigen::Vector3d origin;
-  Eigen::Vector3d direction;
-};
-
-Eigen::Vector3d ToUnitBody(const Landmark& landmark, const Eigen::Vector3d& point) {
-  const Rigid3d& pose = landmark.frame_from_object;
-  return (pose.rotation.conjugate() * (point - pose.translation)).cwiseQuotient(landmark.half_axes);
-}
-
-// Depths at which a line enters and leaves a convex set; empty when enter > leave.
-struct DepthInterval {
-  double enter = -std::numeric_limits<double>::infinity();
-  double leave = std::numeric_limits<double>::infinity();
-
-  DepthInterval Intersected(const DepthInterval& other) const {
-    return {std::max(enter, other.enter), std::min(leave, other.leave)};
-  }
-};
-
-constexpr DepthInterval kEmpty = {std::numeric_limits<double>::infinity(),
-                                  -std::numeric_limits<double>::infinity()};
-
-// The interval inside the slab |x_axis| <= 1.
-DepthInterval InsideSlab(const UnitRay& ray, int axis) {
-  const double origin = ray.origin[axis];
-  const double direction = ray.direction[axis];
-  if (direction == 0.0) return std::abs(origin) <= 1.0 ? DepthInterval{} : kEmpty;
-  const double first = (-1.0 - origin) / direction;
-  const double second = (1.0 - origin) / direction;
-  return {std::min(first, second), std::max(first, second)};
-}
-
-// The interval inside the infinite cylinder x^2 + y^2 <= 1.
-DepthInterval InsideTube(const UnitRay& ray) {
-  const Eigen::Vector2d origin = ray.origin.head<2>();
-  const Eigen::Vector2d direction = ray.direction.head<2>();
-  const double a = direction.squaredNorm();
-  const double half_b = origin.dot(direction);
-  const double c = origin.squaredNorm() - 1.0;
-  if (a == 0.0) return c <= 0.0 ? DepthInterval{} : kEmpty;
-  const double discriminant = half_b * half_b - a * c;
-  if (discriminant < 0.0) return kEmpty;
-  const double root = std::sqrt(discriminant);
-  return {(-half_b - root) / a, (-half_b + root) / a};
+Landmark SuperquadricOf(const Body& body) {
+  Landmark landmark = body.landmark;
+  landmark.shape_exponents = ExponentsOf(body.shape);
+  return landmark;
 }
 
 Box Union(const Box& first, const Box& second) {
@@ -95,51 +52,33 @@ std::optional<Box> CylinderOutline(const Camera& camera, const Landmark& landmar
 
 }  // namespace
 
+ShapeExponents ExponentsOf(Shape shape) {
+  if (shape == Shape::kCylinder) return {kEllipsoidExponent, kCuboidExponent};
+  return shape == Shape::kBox ? kCuboidExponent : kEllipsoidExponent;
+}
+
 Body Transform(const Rigid3d& target_from_source, const Body& body_in_source) {
   return {body_in_source.shape, Transform(target_from_source, body_in_source.landmark)};
 }
 
 std::optional<double> NearestIntersection(const Body& body, const Eigen::Vector3d& origin,
                                           const Eigen::Vector3d& direction) {
-  if (body.shape == Shape::kEllipsoid) {
-    return NearestIntersection(body.landmark, origin, direction);
-  }
-  const Eigen::Quaterniond object_from_frame = body.landmark.frame_from_object.rotation.conjugate();
-  const UnitRay ray = {ToUnitBody(body.landmark, origin),
-                       (object_from_frame * direction).cwiseQuotient(body.landmark.half_axes)};
-  DepthInterval inside = InsideSlab(ray, 2);
-  if (body.shape == Shape::kCylinder) {
-    inside = inside.Intersected(InsideTube(ray));
-  } else {
-    inside = inside.Intersected(InsideSlab(ray, 0)).Intersected(InsideSlab(ray, 1));
-  }
-  if (!(inside.enter > 0.0) || !(inside.enter <= inside.leave)) return std::nullopt;
-  return inside.enter;
+  return NearestIntersection(SuperquadricOf(body), origin, direction);
+}
+
+double Gauge(Shape shape, const Eigen::Vector3d& point) {
+  return SuperquadricNorm(point, DualExponents(ExponentsOf(shape))).value;
 }
 
 bool Contains(const Body& body, const Eigen::Vector3d& point) {
-  const Eigen::Vector3d unit = ToUnitBody(body.landmark, point);
-  switch (body.shape) {
-    case Shape::kBox:
-      return unit.cwiseAbs().maxCoeff() <= 1.0;
-    case Shape::kEllipsoid:
-      return unit.squaredNorm() <= 1.0;
-    case Shape::kCylinder:
-      return unit.head<2>().squaredNorm() <= 1.0 && std::abs(unit.z()) <= 1.0;
-  }
-  return false;
+  const Eigen::Vector3d point_in_object = body.landmark.frame_from_object.Inverse() * point;
+  return Gauge(body.shape, point_in_object.cwiseQuotient(body.landmark.half_axes)) <= 1.0;
 }
 
 Eigen::Vector3d OutwardNormal(const Body& body, const Eigen::Vector3d& point_in_object) {
-  const Eigen::Vector3d& half_axes = body.landmark.half_axes;
-  const Eigen::Vector3d unit = point_in_object.cwiseQuotient(half_axes);
-  if (body.shape == Shape::kEllipsoid) return unit.cwiseQuotient(half_axes).normalized();
-  if (body.shape == Shape::kCylinder && std::abs(unit.z()) < unit.head<2>().norm()) {
-    return Eigen::Vector3d(unit.x() / half_axes.x(), unit.y() / half_axes.y(), 0.0).normalized();
-  }
-  int face = 2;
-  if (body.shape == Shape::kBox) unit.cwiseAbs().maxCoeff(&face);
-  return Eigen::Vector3d::Unit(face) * (unit[face] < 0.0 ? -1.0 : 1.0);
+  return BodySurface(body.landmark.half_axes, ExponentsOf(body.shape))
+      .Gradient(point_in_object)
+      .normalized();
 }
 
 std::optional<Box> OutlineBox(const Camera& camera, const Body& body_in_camera) {

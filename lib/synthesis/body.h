@@ -29,6 +29,12 @@ Body Transform(const Rigid3d& target_from_source, const Body& body_in_source);
 std::optional<double> NearestIntersection(const Body& body, const Eigen::Vector3d& origin,
                                           const Eigen::Vector3d& direction);
 
+// Exponents of the superquadric that has this shape.
+ShapeExponents ExponentsOf(Shape shape);
+
+// The factor by which a body whose half axes are 1 grows until its surface has the point.
+double Gauge(Shape shape, const Eigen::Vector3d& point);
+
 // True if the point is inside the body or on its surface.
 bool Contains(const Body& body, const Eigen::Vector3d& point);
 

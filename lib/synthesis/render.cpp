@@ -29,12 +29,7 @@ const std::array<Eigen::Vector3d, 7> kPatchColours = {
 // The point where the ray from the object's centre in that direction leaves it, in the object
 // frame.
 Eigen::Vector3d SurfacePoint(const SceneObject& object, const Eigen::Vector3d& direction) {
-  double gauge = direction.norm();
-  if (object.shape == Shape::kBox) gauge = direction.cwiseAbs().maxCoeff();
-  if (object.shape == Shape::kCylinder) {
-    gauge = std::max(direction.head<2>().norm(), std::abs(direction.z()));
-  }
-  return (direction / gauge).cwiseProduct(object.half_axes);
+  return (direction / Gauge(object.shape, direction)).cwiseProduct(object.half_axes);
 }
 
 // The approximate radius of a disc with the mean area of a patch.
