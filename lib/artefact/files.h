@@ -15,10 +15,10 @@
 #include "evaluation/metrics.h"
 #include "ground/estimate_ground.h"
 #include "ground/ground_checks.h"
-#include "initialisation/semantic_table.h"
 #include "model/estimates.h"
 #include "model/map_points.h"
 #include "model/reconstruction.h"
+#include "model/semantic_table.h"
 #include "model/sequence.h"
 #include "planes/planes_estimate.h"
 

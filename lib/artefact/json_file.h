@@ -28,6 +28,7 @@ struct nlohmann::adl_serializer<std::optional<Value>> {
 // Vectors are lists of numbers, matrices lists of their rows.
 template <int kRows, int kColumns, int kOptions>
 struct nlohmann::adl_serializer<Eigen::Matrix<double, kRows, kColumns, kOptions>> {
+  static_assert(kRows > 1 && kColumns > 0, "a list of known length");
   using Matrix = Eigen::Matrix<double, kRows, kColumns, kOptions>;
 
   static void to_json(json& json, const Matrix& matrix) {

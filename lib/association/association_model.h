@@ -14,7 +14,7 @@
 #include "association/labels.h"
 #include "association/options.h"
 #include "association/up_estimate.h"
-#include "initialisation/semantic_table.h"
+#include "model/semantic_table.h"
 #include "model/sequence.h"
 
 namespace soslam {

@@ -119,11 +119,12 @@ std::optional<FittedObject> FitOnFace(const Sequence& sequence, const std::vecto
                                       const std::variant<Plane, UpEstimate>& support_in_world) {
   const std::vector<int> used = SpreadOver(detections, static_cast<size_t>(options.max_views));
   const auto* up = std::get_if<UpEstimate>(&support_in_world);
-  MultiViewObservation observation = MakeMultiViewObservation(
-      sequence, used, prior, options.box_sigma_fraction, options.view_correlation_deg * kRadPerDeg);
+  MultiViewObservation observation =
+      MakeMultiViewObservation(sequence, used, prior, options.box_sigma_fraction);
   observation.height_is_free = up != nullptr;
   observation.size_is_known = true;
   if (up == nullptr) observation.plane_in_world = std::get<Plane>(support_in_world);
+  WeighViews(options.view_correlation_deg * kRadPerDeg, &observation);
   std::optional<Landmark> landmark;
   if (up != nullptr) {
     const auto body =

@@ -9,9 +9,9 @@
 #include "association/options.h"
 #include "association/up_estimate.h"
 #include "geometry/landmark.h"
-#include "initialisation/semantic_table.h"
 #include "model/estimates.h"
 #include "model/sequence.h"
+#include "model/shape_prior.h"
 
 namespace soslam {
 

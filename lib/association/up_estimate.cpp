@@ -66,8 +66,8 @@ BoxesOfLabels ObserveLabels(const Sequence& sequence, const Segment& segment,
     if (prior.mount == Mount::kOnWall || prior.attitude != Attitude::kStanding) continue;
     boxes.emplace_back();
     for (const int detection : SpreadOver(detections, kBoxesOfLabel)) {
-      boxes.back().push_back(MakeMultiViewObservation(
-          sequence, {detection}, prior, options.box_sigma_fraction, /*view_correlation_rad=*/0.0));
+      boxes.back().push_back(
+          MakeMultiViewObservation(sequence, {detection}, prior, options.box_sigma_fraction));
       boxes.back().back().height_is_free = true;
       boxes.back().back().size_is_known = true;
     }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "association/options.h"
-#include "initialisation/semantic_table.h"
+#include "model/semantic_table.h"
 #include "model/sequence.h"
 #include "planes/planes_estimate.h"
 

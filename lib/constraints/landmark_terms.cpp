@@ -3,7 +3,6 @@
 
 #include <limits>
 
-#include "constraints/leaning_on_plane.h"
 #include "constraints/loss.h"
 #include "constraints/parameters.h"
 
@@ -71,18 +70,17 @@ RatioRows::RatioRows(const ShapePrior& prior) {
   at_prior = whiten * prior.ratio.array().log().matrix();
 }
 
-void RatioTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
+void RatioTerm::Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
                          Jacobian* jacobian) const {
-  residuals = rows_.Residuals(landmark_in_camera.half_axes.array().log());
+  residuals = rows_.Residuals(landmark.half_axes.array().log());
   if (jacobian == nullptr) return;
   jacobian->setZero();
   jacobian->rightCols<3>() = rows_.d_log_half_axes;
 }
 
-void HeightTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
+void HeightTerm::Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
                           Jacobian* jacobian) const {
-  residuals[0] =
-      std::log(2.0 * landmark_in_camera.half_axes[axis_] / height_m_.median) / height_m_.log_sigma;
+  residuals[0] = std::log(2.0 * landmark.half_axes[axis_] / height_m_.median) / height_m_.log_sigma;
   if (jacobian == nullptr) return;
   jacobian->setZero();
   (*jacobian)(0, 6 + axis_) = 1.0 / height_m_.log_sigma;
@@ -107,15 +105,14 @@ void RobustViewTerm::Evaluate(const Landmark& landmark_in_reference,
   if (jacobian != nullptr) *jacobian *= root_weight_;
 }
 
-AxisTerm::AxisTerm(const Plane& plane_in_camera, const Eigen::Vector3d& axis_in_camera,
-                   double weight)
-    : normal_(plane_in_camera.normal),
-      axis_yaw_(Yaw(normal_, RotationBetween(Eigen::Vector3d::UnitX(), axis_in_camera))),
+AxisTerm::AxisTerm(const Plane& plane, const Eigen::Vector3d& axis, double weight)
+    : normal_(plane.normal),
+      axis_yaw_(Yaw(normal_, RotationBetween(Eigen::Vector3d::UnitX(), axis))),
       amplitude_(std::sqrt(2.0 * weight)) {}
 
-void AxisTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
+void AxisTerm::Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
                         Jacobian* jacobian) const {
-  const Eigen::Quaterniond& rotation = landmark_in_camera.frame_from_object.rotation;
+  const Eigen::Quaterniond& rotation = landmark.frame_from_object.rotation;
   const double angle = 2.0 * (Yaw(normal_, rotation) - axis_yaw_);
   residuals[0] = amplitude_ * std::sin(angle);
   if (jacobian == nullptr) return;
@@ -123,9 +120,9 @@ void AxisTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::Ve
   jacobian->leftCols<3>() = 2.0 * amplitude_ * std::cos(angle) * YawJacobian(normal_, rotation);
 }
 
-void YawTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
+void YawTerm::Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
                        Jacobian* jacobian) const {
-  const Eigen::Quaterniond& rotation = landmark_in_camera.frame_from_object.rotation;
+  const Eigen::Quaterniond& rotation = landmark.frame_from_object.rotation;
   residuals[0] = YawDifferenceModuloPi(Yaw(normal_, rotation), prior_.yaw) / prior_.sigma;
   if (jacobian == nullptr) return;
   jacobian->setZero();
@@ -134,7 +131,7 @@ void YawTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::Vec
 
 void LeaningTerm::Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
                            Jacobian* jacobian) const {
-  const LeaningOnPlane leaning(landmark, plane_, LeaningSigmas());
+  const LeaningOnPlane leaning(landmark, plane_, sigmas_);
   residuals = leaning.residuals;
   if (jacobian != nullptr) *jacobian = leaning.d_landmark;
 }
@@ -148,6 +145,7 @@ bool LandmarkTermResidual::Evaluate(double const* const* blocks, double* residua
                   with_jacobian ? &d_landmark : nullptr);
   if (!Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()).allFinite()) return false;
   if (with_jacobian) {
+    if (!d_landmark.allFinite()) return false;
     WriteLandmarkJacobian<Eigen::Dynamic>(blocks[0], d_landmark, jacobians[0]);
   }
   return true;

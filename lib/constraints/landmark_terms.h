@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "constraints/landmark_cost.h"
+#include "constraints/leaning_on_plane.h"
 #include "constraints/tangency.h"
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
@@ -78,7 +79,7 @@ class RatioTerm final : public LandmarkTerm {
  public:
   explicit RatioTerm(const ShapePrior& prior) : rows_(prior) {}
   int NumResiduals() const override { return 2; }
-  void Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
+  void Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
                 Jacobian* jacobian) const override;
 
  private:
@@ -92,7 +93,7 @@ class HeightTerm final : public LandmarkTerm {
   explicit HeightTerm(const LogNormal& height_m, RestingFace rests_on = RestingFace::kBottom)
       : height_m_(height_m), axis_(OwnHeightAxis(rests_on)) {}
   int NumResiduals() const override { return 1; }
-  void Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
+  void Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
                 Jacobian* jacobian) const override;
 
  private:
@@ -125,9 +126,9 @@ class RobustViewTerm final : public LandmarkTerm {
 // `weight` sin^2(2 d), with d the angle between yaw and axis, so at most `weight`.
 class AxisTerm final : public LandmarkTerm {
  public:
-  AxisTerm(const Plane& plane_in_camera, const Eigen::Vector3d& axis_in_camera, double weight);
+  AxisTerm(const Plane& plane, const Eigen::Vector3d& axis, double weight);
   int NumResiduals() const override { return 1; }
-  void Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
+  void Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
                 Jacobian* jacobian) const override;
 
  private:
@@ -145,10 +146,9 @@ struct YawPrior {
 // Residual of the yaw under its prior.
 class YawTerm final : public LandmarkTerm {
  public:
-  YawTerm(const Plane& plane_in_camera, const YawPrior& prior)
-      : normal_(plane_in_camera.normal), prior_(prior) {}
+  YawTerm(const Plane& plane, const YawPrior& prior) : normal_(plane.normal), prior_(prior) {}
   int NumResiduals() const override { return 1; }
-  void Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
+  void Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
                 Jacobian* jacobian) const override;
 
  private:
@@ -159,13 +159,15 @@ class YawTerm final : public LandmarkTerm {
 // The residuals of LeaningOnPlane on a constant plane.
 class LeaningTerm final : public LandmarkTerm {
  public:
-  explicit LeaningTerm(const Plane& plane) : plane_(plane) {}
+  explicit LeaningTerm(const Plane& plane, const LeaningSigmas& sigmas = LeaningSigmas())
+      : plane_(plane), sigmas_(sigmas) {}
   int NumResiduals() const override { return 3; }
   void Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
                 Jacobian* jacobian) const override;
 
  private:
   Plane plane_;
+  LeaningSigmas sigmas_;
 };
 
 // A LandmarkTerm as a Ceres cost function. Residuals: those of the term. Block: landmark in the

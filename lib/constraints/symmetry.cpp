@@ -142,7 +142,7 @@ std::optional<SymmetryDescriptor::Value> SymmetryDescriptor::Describe(
       return value;
     }
     default:
-      return SurfaceDistance(pixel, point, with_jacobian);
+      return DistanceToEdge(pixel, point, with_jacobian);
   }
 }
 
@@ -160,7 +160,7 @@ std::optional<Eigen::Vector2d> SymmetryDescriptor::EdgePixel(
   return nearest;
 }
 
-std::optional<SymmetryDescriptor::Value> SymmetryDescriptor::SurfaceDistance(
+std::optional<SymmetryDescriptor::Value> SymmetryDescriptor::DistanceToEdge(
     const Eigen::Vector2d& pixel, const VisibleSurface::Point& point, bool with_jacobian) const {
   const auto edge_pixel = EdgePixel(pixel, point.in_object);
   if (!edge_pixel) return std::nullopt;

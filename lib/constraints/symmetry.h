@@ -113,9 +113,8 @@ class SymmetryDescriptor {
   std::optional<Pair> Compare(const Side& side, double mirror_plane, bool with_jacobian) const;
   std::optional<Value> Describe(const Eigen::Vector2d& pixel, const VisibleSurface::Point& point,
                                 const LandmarkJacobian2& pixel_jacobian, bool with_jacobian) const;
-  std::optional<Value> SurfaceDistance(const Eigen::Vector2d& pixel,
-                                       const VisibleSurface::Point& point,
-                                       bool with_jacobian) const;
+  std::optional<Value> DistanceToEdge(const Eigen::Vector2d& pixel,
+                                      const VisibleSurface::Point& point, bool with_jacobian) const;
   // The map's value at a pixel, for kGrey and kDistanceTransform.
   std::optional<Sample> LookUp(const Eigen::Vector2d& pixel) const;
   // The edge nearest to a point: on the surface (the first of several, eq. 19), or in the image.

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <limits>
 
+#include "geometry/support_function.h"
+
 namespace soslam {
 
 Box WithoutBias(const Box& box, const std::array<bool, 4>& is_one_sided, const EdgeBias& bias) {
@@ -15,6 +17,7 @@ Box WithoutBias(const Box& box, const std::array<bool, 4>& is_one_sided, const E
   return {box.x_min + outside_px(0, box.Width()), box.y_min + outside_px(1, box.Height()),
           box.x_max - outside_px(2, box.Width()), box.y_max - outside_px(3, box.Height())};
 }
+
 namespace {
 
 // Lower limit of sigma: boxes of a few pixels are not more precise than this.
@@ -128,7 +131,10 @@ double OutlineExcess(const BoxEdge& edge, const Landmark& landmark_in_camera,
   double excess = 0.0;
   for (int i = 0; i < kMaxNewtonSteps; ++i) {
     const auto step = TangencyAtOwnDepth(moved, landmark_in_camera, jacobian);
-    if (!step) return std::numeric_limits<double>::quiet_NaN();
+    if (!step) {
+      if (jacobian != nullptr) jacobian->setConstant(std::numeric_limits<double>::quiet_NaN());
+      return std::numeric_limits<double>::quiet_NaN();
+    }
     excess += *step;
     moved.plane.z() -= *step * edge.sigma_px;
     if (!(std::abs(*step) > kSettledExcess)) break;
@@ -139,13 +145,13 @@ double OutlineExcess(const BoxEdge& edge, const Landmark& landmark_in_camera,
 }
 
 TangencyResidual::TangencyResidual(const BoxEdge& edge, const Landmark& initial_in_camera,
-                                   const bool* with_curvature)
+                                   const bool* for_solver)
     : edge_(edge),
       shape_exponents_(initial_in_camera.shape_exponents),
       depth_ratio_(FindTangentDepth(edge, initial_in_camera).depth_m /
                    initial_in_camera.Centre().z()),
       min_centre_depth_m_(kMinDepthShare * initial_in_camera.Centre().z()),
-      with_curvature_(with_curvature) {}
+      for_solver_(for_solver) {}
 
 bool TangencyResidual::Evaluate(double const* const* blocks, double* residuals,
                                 double** jacobians) const {
@@ -166,7 +172,7 @@ bool TangencyResidual::Evaluate(double const* const* blocks, double* residuals,
   Eigen::Matrix<double, 3, kLandmarkDof> d_landmark;
   d_landmark.setZero();
   d_landmark.row(0) = d_tangency;
-  if (*with_curvature_) {
+  if (*for_solver_) {
     d_landmark.bottomLeftCorner<2, 3>() =
         TangencyCurvature(edge_, landmark, depth.depth_m, tangency);
   }

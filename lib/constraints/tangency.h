@@ -68,7 +68,7 @@ Eigen::Matrix<double, 2, 3> TangencyCurvature(const BoxEdge& edge,
 
 // Signed distance (px / sigma) by which an object's silhouette reaches outside a box edge. Tangency
 // is its linearisation; this is exact, so that residual and Jacobian agree wherever the object is.
-// Not a number unless the tangent point is in front of the camera.
+// Value and Jacobian are not numbers unless the tangent point is in front of the camera.
 double OutlineExcess(const BoxEdge& edge, const Landmark& landmark_in_camera,
                      LandmarkJacobian1* jacobian);
 
@@ -84,9 +84,8 @@ class TangencyResidual final
     : public ceres::SizedCostFunction<3, kPoseSize, kLandmarkSize, kBiasSize, kMisfitSize> {
  public:
   // The tangent point of the initial estimate must be in front of the camera. While
-  // `*with_curvature` is false, the Jacobian of the curvature rows is zero.
-  TangencyResidual(const BoxEdge& edge, const Landmark& initial_in_camera,
-                   const bool* with_curvature);
+  // `*for_solver` is false, the Jacobian of the curvature rows is zero.
+  TangencyResidual(const BoxEdge& edge, const Landmark& initial_in_camera, const bool* for_solver);
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
 
@@ -95,7 +94,7 @@ class TangencyResidual final
   ShapeExponents shape_exponents_;
   double depth_ratio_;  // of the tangent point and the centre
   double min_centre_depth_m_;
-  const bool* with_curvature_;
+  const bool* for_solver_;
 };
 
 }  // namespace soslam

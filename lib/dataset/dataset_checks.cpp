@@ -186,7 +186,7 @@ const std::map<std::string, Advice> kGatesOfData = {
      {"boxes of images of another size", "give boxes in pixels of the camera's image"}},
     {RejectReasonName(RejectReason::kNearBorder),
      {"objects that the image cuts, which the paper's protocol drops",
-      "a smaller border_px keeps them, with the cut edges as bounds"}},
+      "a smaller border_px keeps them, with the cut edges as one-sided ones"}},
     {RejectReasonName(RejectReason::kDuplicate),
      {"several boxes of one object in one image, or one id for several objects",
       "an id for each object, or no ids and estimated association"}},

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "constraints/odometry.h"
-#include "initialisation/semantic_table.h"
 #include "model/estimates.h"
 #include "model/finding.h"
+#include "model/semantic_table.h"
 #include "model/sequence.h"
 #include "planes/planes_estimate.h"
 

@@ -23,6 +23,7 @@ Eigen::Matrix3d OwnFromObject(RestingFace face) {
 Eigen::Vector3d HalfAxesOnFace(const Eigen::Vector3d& own_half_axes, RestingFace face) {
   return OwnFromObject(face).cwiseAbs().transpose() * own_half_axes;
 }
+
 namespace {
 
 // A unit vector orthogonal to the normal: the projection of x, or of y where x is nearly parallel

@@ -119,7 +119,8 @@ std::optional<double> NearestIntersection(const Landmark& landmark, const Eigen:
 Eigen::Quaterniond UprightRotation(const Eigen::Vector3d& support_normal, double yaw);
 // The yaw of a rotation's x axis, in (-pi, pi]; the counterpart of UprightRotation.
 double Yaw(const Eigen::Vector3d& support_normal, const Eigen::Quaterniond& frame_from_object);
-// d yaw / d rotation vector, applied from the left: the normal, for upright landmarks.
+// d yaw / d rotation vector, applied from the left: the normal, for upright landmarks. Not finite
+// where the x axis is along the normal, and there is no yaw.
 Eigen::RowVector3d YawJacobian(const Eigen::Vector3d& support_normal,
                                const Eigen::Quaterniond& frame_from_object);
 

@@ -32,11 +32,9 @@ PairNorm NormOfPair(double x, double y, double p) {
   double value = larger;
   if (!std::isinf(p)) {
     const double ratio = (is_x_larger ? y : x) / larger;  // at most 1: powers stay finite
-    const bool is_round = p == 2.0;
-    const double power = is_round ? ratio : std::exp((p - 1.0) * std::log(ratio));
+    const double power = AbsolutePower(ratio, p - 1.0);
     const double sum = 1.0 + ratio * power;
-    // std::pow takes twice as long, for digits that are not needed here.
-    const double root = is_round ? std::sqrt(sum) : std::exp(std::log(sum) / p);
+    const double root = AbsolutePower(sum, 1.0 / p);
     value = larger * root;
     d_larger = root / sum;
     d_smaller = power * d_larger;
@@ -59,7 +57,7 @@ double AbsolutePower(double x, double exponent) {
   constexpr double kRounding = 1e-12;  // of q = p / (p - 1)
   const double halves = std::round(2.0 * exponent);
   if (exponent < 0.0 || std::abs(2.0 * exponent - halves) > kRounding) {
-    return std::pow(std::abs(x), exponent);
+    return std::exp(exponent * std::log(std::abs(x)));
   }
   const int whole_halves = static_cast<int>(halves);
   double power = whole_halves % 2 == 1 ? std::sqrt(std::abs(x)) : 1.0;

@@ -33,8 +33,9 @@ inline constexpr double kEllipsoidExponent = 2.0;
 // sharp to be told from it.
 ShapeExponents DualExponents(const ShapeExponents& exponents);
 
-// |x|^exponent. For most shape exponents (1.1, 1.2, 1.4, 1.5) twice those of the dual norm are
-// integers: products and a root then take a fraction of the time of logarithms.
+// |x|^exponent, to a few units of the last digit, in half the time of std::pow. For most shape
+// exponents (1.1, 1.2, 1.4, 1.5) twice those of the dual norm are integers: products and a root
+// then take a fraction of that.
 double AbsolutePower(double x, double exponent);
 
 // The norm || ( || (u_1, u_2) ||_horizontal, u_3 ) ||_vertical, exponents from 1 to infinity, and

@@ -10,7 +10,7 @@
 #include "ground/horizontal_planes.h"
 #include "ground/options.h"
 #include "ground/scale_posterior.h"
-#include "initialisation/semantic_table.h"
+#include "model/semantic_table.h"
 #include "model/sequence.h"
 
 namespace soslam {

@@ -14,7 +14,6 @@
 #include "base/error.h"
 #include "base/paths.h"
 #include "base/run_log.h"
-#include "geometry/camera.h"
 #include "geometry/image_size.h"
 #include "image/image_format.h"
 

@@ -140,8 +140,8 @@ LandmarkEstimates InitialiseMultiView(const Sequence& sequence,
     if (!object.failure.empty()) return;
     const auto index = static_cast<size_t>(object.object_index);
     MultiViewObservation observation = MakeMultiViewObservation(
-        sequence, detections[index], priors[index], options.upright.detection_sigma_fraction,
-        options.view_correlation_deg * kRadPerDeg);
+        sequence, detections[index], priors[index], options.upright.detection_sigma_fraction);
+    WeighViews(options.view_correlation_deg * kRadPerDeg, &observation);
     observation.axes_weight = options.upright.axes_weight;
     std::optional<UprightSolution> best;
     for (const auto& on_face : OnPossibleFaces(priors[index])) {

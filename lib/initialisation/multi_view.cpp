@@ -9,29 +9,11 @@
 
 #include "constraints/landmark_terms.h"
 #include "constraints/loss.h"
-#include "geometry/angles.h"
 #include "geometry/triangulation.h"
+#include "initialisation/view_weights.h"
 #include "initialisation/yaw_sweep.h"
 
 namespace soslam {
-
-std::vector<double> DirectionWeights(const std::vector<Eigen::Vector3d>& directions,
-                                     double correlation_rad) {
-  std::vector<double> similar(directions.size(), 1.0);  // sums over all directions
-  if (correlation_rad > 0.0) {
-    for (size_t i = 0; i < directions.size(); ++i) {
-      for (size_t j = 0; j < i; ++j) {
-        const double ratio = AngleBetween(directions[i], directions[j]) / correlation_rad;
-        const double similarity = std::exp(-0.5 * ratio * ratio);
-        similar[i] += similarity;
-        similar[j] += similarity;
-      }
-    }
-  }
-  std::vector<double> weights;
-  for (const double sum : similar) weights.push_back(1.0 / sum);
-  return weights;
-}
 namespace {
 
 constexpr int kMaxRounds = 20;
@@ -275,7 +257,8 @@ class LinearViews {
       const Landmark in_camera = Transform(view.camera_from_world, landmark);
       for (const BoxEdge& edge : view.edges) {
         const auto residual = TangencyAtOwnDepth(edge, in_camera, nullptr);
-        cost += view.weight * EvaluateLoss(loss_, residual.value()).cost;
+        if (!residual) return std::numeric_limits<double>::infinity();
+        cost += view.weight * EvaluateLoss(loss_, *residual).cost;
       }
     }
     if (ratio_) cost += RatioTerm(*observation_.prior).Value(landmark);
@@ -296,8 +279,7 @@ class LinearViews {
 MultiViewObservation MakeMultiViewObservation(const Sequence& sequence,
                                               const std::vector<int>& detections,
                                               const std::optional<ShapePrior>& prior,
-                                              double detection_sigma_fraction,
-                                              double view_correlation_rad) {
+                                              double detection_sigma_fraction) {
   MultiViewObservation observation;
   observation.prior = prior;
   const EdgeBias bias = prior ? prior->edge_bias : EdgeBias();
@@ -314,21 +296,17 @@ MultiViewObservation MakeMultiViewObservation(const Sequence& sequence,
                                           detection.is_one_sided, detection_sigma_fraction, bias),
                                  frame.world_from_camera.Inverse()});
   }
-  const auto weights =
-      ViewWeights(sequence, detections, NearestToAllRays(observation), view_correlation_rad);
-  for (size_t i = 0; i < weights.size(); ++i) observation.views[i].weight = weights[i];
   return observation;
 }
 
-std::vector<double> ViewWeights(const Sequence& sequence, const std::vector<int>& detections,
-                                const Eigen::Vector3d& centre_in_world, double correlation_rad) {
+void WeighViews(double correlation_rad, MultiViewObservation* observation) {
+  const Eigen::Vector3d centre = NearestToAllRays(*observation);
   std::vector<Eigen::Vector3d> directions;
-  for (const int index : detections) {
-    const Detection& detection = sequence.detections[index];
-    directions.push_back(centre_in_world -
-                         sequence.FrameOf(detection).world_from_camera.translation);
+  for (const BoxView& view : observation->views) {
+    directions.push_back(centre - view.camera_from_world.Inverse().translation);
   }
-  return DirectionWeights(directions, correlation_rad);
+  const auto weights = DirectionWeights(directions, correlation_rad);
+  for (size_t i = 0; i < weights.size(); ++i) observation->views[i].weight = weights[i];
 }
 
 LandmarkCosts ViewTerms(const MultiViewObservation& observation, const Landmark& start_in_world) {

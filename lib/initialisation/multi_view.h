@@ -9,18 +9,11 @@
 #include "constraints/tangency.h"
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
-#include "initialisation/semantic_table.h"
 #include "initialisation/upright.h"
 #include "model/sequence.h"
+#include "model/shape_prior.h"
 
 namespace soslam {
-
-// Weights of observations whose errors are correlated when their directions (of any length) are
-// near each other: one over the sum of exp(-(angle / correlation)^2 / 2) over all directions, the
-// own one included. Directions closer than about `correlation_rad` together count as one. All
-// weights are 1 where it is zero.
-std::vector<double> DirectionWeights(const std::vector<Eigen::Vector3d>& directions,
-                                     double correlation_rad);
 
 // One box of an object, in a camera of known pose.
 struct BoxView {
@@ -47,20 +40,15 @@ struct MultiViewObservation {
   }
 };
 // Observation of one object from its detections (indices into Sequence::detections, at least one),
-// with the frames' estimated poses, on the object's plane, if it has one. View weights are those of
-// ViewWeights about the point nearest to the rays through the boxes.
+// with the frames' estimated poses, on the object's plane, if it has one. All views have weight 1.
 MultiViewObservation MakeMultiViewObservation(const Sequence& sequence,
                                               const std::vector<int>& detections,
                                               const std::optional<ShapePrior>& prior,
-                                              double detection_sigma_fraction,
-                                              double view_correlation_rad);
+                                              double detection_sigma_fraction);
 
-// Weights of an object's detections, which index Sequence::detections. The misfit between the
-// label's shape and a box is almost the same in the next frame: views from directions (camera
-// centre to object centre) closer than about `correlation_rad` share it, and together count as one;
-// see DirectionWeights.
-std::vector<double> ViewWeights(const Sequence& sequence, const std::vector<int>& detections,
-                                const Eigen::Vector3d& centre_in_world, double correlation_rad);
+// Gives the views their DirectionWeights about the point nearest to the rays through the boxes and,
+// as far as the observation says that they are known, to the plane and the depths from the size.
+void WeighViews(double correlation_rad, MultiViewObservation* observation);
 
 // Costs of a landmark in the world: its boxes and priors. The tangent points are at their depths on
 // `start`. Views are left out if `start` is not wholly in front of their camera.

@@ -7,9 +7,9 @@
 #include "constraints/point_term.h"
 #include "constraints/variances.h"
 #include "initialisation/cuboid_score.h"
-#include "initialisation/semantic_table.h"
 #include "initialisation/upright_observation.h"
 #include "initialisation/yaw_prior.h"
+#include "model/semantic_table.h"
 
 namespace soslam {
 

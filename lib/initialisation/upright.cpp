@@ -122,7 +122,7 @@ std::optional<UprightSolution> FitLeaning(const Plane& plane, const Landmark& up
   for (const Eigen::Vector3d& turn :
        {Eigen::Vector3d(0.0 * x), x, y, Eigen::Vector3d(-x), Eigen::Vector3d(-y)}) {
     Landmark landmark = Tilted(upright, plane, turn);
-    const LevenbergMarquardtOptions options{50, NegligibleDecrease(costs)};
+    const LevenbergMarquardtOptions options{kMaxIterations, NegligibleDecrease(costs)};
     const double cost = MinimiseSquares(linearise, plus, options, &landmark).cost;
     if (!std::isfinite(cost) || !HasExtent(landmark)) continue;
     if (!best || cost < best->cost) best = UprightSolution{landmark, cost};

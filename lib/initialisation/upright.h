@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "constraints/landmark_cost.h"
-#include "constraints/landmark_terms.h"
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
 

@@ -11,8 +11,8 @@
 #include "constraints/tangency.h"
 #include "geometry/camera.h"
 #include "geometry/plane.h"
-#include "initialisation/semantic_table.h"
 #include "model/sequence.h"
+#include "model/shape_prior.h"
 
 namespace soslam {
 

@@ -76,9 +76,9 @@ std::optional<YawPrior> MotionPrior(const Sequence& sequence, const Detection& d
   if (around.size() < kMinPriorViews || (shape && shape->attitude != Attitude::kStanding)) {
     return std::nullopt;
   }
-  const MultiViewObservation views =
-      MakeMultiViewObservation(sequence, around, shape, options.upright.detection_sigma_fraction,
-                               options.view_correlation_deg * kRadPerDeg);
+  MultiViewObservation views =
+      MakeMultiViewObservation(sequence, around, shape, options.upright.detection_sigma_fraction);
+  WeighViews(options.view_correlation_deg * kRadPerDeg, &views);
   const auto optima = SweepViews(views, options.upright.yaw_grid_deg * kRadPerDeg);
   if (optima.empty()) return std::nullopt;
   const Eigen::Quaterniond& rotation = optima.front().landmark.frame_from_object.rotation;

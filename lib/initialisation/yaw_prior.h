@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "base/options.h"
-#include "initialisation/semantic_table.h"
 #include "initialisation/upright_observation.h"
 #include "model/sequence.h"
+#include "model/shape_prior.h"
 
 namespace soslam {
 

@@ -62,7 +62,7 @@ class Fitter {
     UprightSolution at{LandmarkAt(start), 0.0};
     for (int round = 0; round < objective_.rounds; ++round) {
       LandmarkCosts costs = ObservationTerms(observation_, at.landmark);
-      std::ranges::move(FurtherCosts(at.landmark), std::back_inserter(costs));
+      std::ranges::move(FittedCosts(at.landmark), std::back_inserter(costs));
       const auto solution =
           FitUpright(observation_.plane_in_camera, at.landmark, costs, yaw_is_free);
       if (!solution || !IsInFront(solution->landmark)) return std::nullopt;
@@ -70,12 +70,12 @@ class Fitter {
     }
     UprightFit fit{ground_.ParametersOf(at.landmark), at.cost};
     if (objective_.rounds > 1) {
-      fit.further_cost = TotalCost(FurtherCosts(at.landmark), at.landmark);
+      fit.fitted_cost = TotalCost(FittedCosts(at.landmark), at.landmark);
       fit.cost =
-          TotalCost(ObservationTerms(observation_, at.landmark), at.landmark) + fit.further_cost;
+          TotalCost(ObservationTerms(observation_, at.landmark), at.landmark) + fit.fitted_cost;
     }
-    if (objective_.extra_cost) fit.extra_cost = objective_.extra_cost(at.landmark);
-    fit.cost += fit.extra_cost;
+    if (objective_.compared_cost) fit.compared_cost = objective_.compared_cost(at.landmark);
+    fit.cost += fit.compared_cost;
     return fit;
   }
 
@@ -89,10 +89,10 @@ class Fitter {
     return fits;
   }
 
-  // The best landmark near a grid point. Without an extra cost the fit optimises the yaw; with one,
-  // the neighbours on ever finer grids are compared.
+  // The best landmark near a grid point. Without a compared cost the fit optimises the yaw; with
+  // one, the neighbours on ever finer grids are compared.
   std::optional<UprightFit> RefineYaw(const UprightFit& grid_point, double step) const {
-    if (!objective_.extra_cost) return Fit(grid_point.parameters, /*yaw_is_free=*/true);
+    if (!objective_.compared_cost) return Fit(grid_point.parameters, /*yaw_is_free=*/true);
     UprightFit best = grid_point;
     for (int i = 0; i < kHalvings; ++i) {
       step /= 2.0;
@@ -116,7 +116,7 @@ class Fitter {
       at = tilted->landmark;
     }
     double cost = TotalCost(LeaningCosts(at), at);
-    if (objective_.extra_cost) cost += objective_.extra_cost(at);
+    if (objective_.compared_cost) cost += objective_.compared_cost(at);
     return cost < upright.cost ? UprightSolution{at, cost} : upright;
   }
 
@@ -126,13 +126,13 @@ class Fitter {
   }
 
  private:
-  LandmarkCosts FurtherCosts(const Landmark& start) const {
-    return objective_.further_costs ? objective_.further_costs(start) : LandmarkCosts();
+  LandmarkCosts FittedCosts(const Landmark& start) const {
+    return objective_.fitted_costs ? objective_.fitted_costs(start) : LandmarkCosts();
   }
 
   LandmarkCosts LeaningCosts(const Landmark& start) const {
     LandmarkCosts costs = ObservationTerms(observation_, start);
-    std::ranges::move(FurtherCosts(start), std::back_inserter(costs));
+    std::ranges::move(FittedCosts(start), std::back_inserter(costs));
     costs.push_back(std::make_unique<LeaningTerm>(observation_.plane_in_camera));
     return costs;
   }

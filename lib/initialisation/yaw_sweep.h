@@ -16,23 +16,23 @@ std::string WhyNoSolution(const UprightObservation& observation);
 
 // Costs by which yaws are compared, besides the observation's own terms.
 struct YawObjective {
-  // Further costs of the fit at each yaw, made for the given initial guess; may be empty.
-  std::function<LandmarkCosts(const Landmark& start_in_camera)> further_costs;
+  // Costs that are fitted as well, made for the given initial guess; may be empty.
+  std::function<LandmarkCosts(const Landmark& start_in_camera)> fitted_costs;
   // Number of fits, each with costs made for the result of the previous one. More than one if they
   // depend on their initial guess.
   int rounds = 1;
-  // Cost that is added for the comparison of yaws, but not fitted; may be empty.
-  std::function<double(const Landmark& landmark_in_camera)> extra_cost;
+  // A cost by which yaws are compared, but that is not fitted; may be empty.
+  std::function<double(const Landmark& landmark_in_camera)> compared_cost;
 };
 
 // A landmark on the ground of its observation's plane (see UprightGround), and its cost.
 struct UprightFit {
   UprightVector parameters;
   double cost;
-  // Parts of `cost`: from the further costs, 0 unless the YawObjective has several rounds, and the
-  // extra cost.
-  double further_cost = 0.0;
-  double extra_cost = 0.0;
+  // Parts of `cost`. That of the fitted costs is known if the YawObjective has several rounds,
+  // else 0.
+  double fitted_cost = 0.0;
+  double compared_cost = 0.0;
 };
 
 // The best landmark at each yaw of a grid over half a turn; none where there is no solution.

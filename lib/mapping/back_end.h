@@ -9,10 +9,10 @@
 
 #include "constraints/symmetry.h"
 #include "initialisation/object_points.h"
-#include "initialisation/semantic_table.h"
 #include "mapping/options.h"
 #include "model/estimates.h"
 #include "model/sequence.h"
+#include "model/shape_prior.h"
 #include "orientation/edge_alignment.h"
 
 namespace soslam {

@@ -19,7 +19,7 @@
 #include "constraints/tangency.h"
 #include "constraints/upright_on_plane.h"
 #include "geometry/angles.h"
-#include "initialisation/multi_view.h"
+#include "initialisation/view_weights.h"
 
 namespace soslam {
 namespace {

@@ -56,8 +56,8 @@ class ObjectFit {
         object_index_(object_index),
         detections_(views),
         boxes_(MakeMultiViewObservation(input.sequence, views, prior,
-                                        options.detection_sigma_fraction,
-                                        options.view_correlation_deg * kRadPerDeg)) {
+                                        options.detection_sigma_fraction)) {
+    WeighViews(options.view_correlation_deg * kRadPerDeg, &boxes_);
     boxes_.ratio_is_free = !options.ratio;
     boxes_.axes_weight = options.axes_weight;
     boxes_.huber_delta = options.huber_delta;
@@ -120,7 +120,10 @@ class ObjectFit {
 
   LandmarkCosts Terms(const Landmark& landmark_in_world) const {
     LandmarkCosts terms = ViewTerms(boxes_, landmark_in_world);
-    if (MayLean()) terms.push_back(std::make_unique<LeaningTerm>(boxes_.plane_in_world));
+    if (MayLean()) {
+      terms.push_back(std::make_unique<LeaningTerm>(
+          boxes_.plane_in_world, LeaningSigmas{.height_m = options_.standing_height_sigma_m}));
+    }
     for (size_t i = 0; i < detections_.size(); ++i) {
       const BoxView& view = boxes_.views[i];
       const Landmark in_camera = Transform(view.camera_from_world, landmark_in_world);

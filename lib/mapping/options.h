@@ -8,7 +8,7 @@
 #include "constraints/point_term.h"
 #include "constraints/variances.h"
 #include "geometry/angles.h"
-#include "initialisation/semantic_table.h"
+#include "model/semantic_table.h"
 #include "orientation/options.h"
 
 namespace soslam {

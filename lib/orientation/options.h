@@ -8,8 +8,8 @@
 #include "constraints/point_term.h"
 #include "constraints/symmetry.h"
 #include "constraints/variances.h"
-#include "initialisation/semantic_table.h"
 #include "initialisation/upright_observation.h"
+#include "model/semantic_table.h"
 
 namespace soslam {
 

@@ -173,11 +173,13 @@ class OrientationProfile {
   YawObjective Objective() const {
     YawObjective objective;
     if (options_.edge_alignment) {
-      objective.further_costs = [this](const Landmark& start) { return EdgeCosts(start); };
+      objective.fitted_costs = [this](const Landmark& start) { return EdgeCosts(start); };
       objective.rounds = kEdgeRounds;
     }
     if (options_.texture_symmetry) {
-      objective.extra_cost = [this](const Landmark& landmark) { return asymmetry_.Cost(landmark); };
+      objective.compared_cost = [this](const Landmark& landmark) {
+        return asymmetry_.Cost(landmark);
+      };
     }
     return objective;
   }
@@ -216,10 +218,10 @@ void RecordCurves(const YawSweep& sweep, const ProfileOptions& options, Symmetry
   const double none = std::numeric_limits<double>::quiet_NaN();
   for (const auto& fit : sweep.fits) {
     if (options.edge_alignment) {
-      record->cost["edge_alignment"].push_back(fit ? fit->further_cost : none);
+      record->cost["edge_alignment"].push_back(fit ? fit->fitted_cost : none);
     }
     if (options.texture_symmetry) {
-      record->cost["texture_symmetry"].push_back(fit ? fit->extra_cost : none);
+      record->cost["texture_symmetry"].push_back(fit ? fit->compared_cost : none);
     }
   }
 }

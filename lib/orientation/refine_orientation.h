@@ -7,9 +7,9 @@
 
 #include "constraints/point_term.h"
 #include "image/edge_maps.h"
-#include "initialisation/semantic_table.h"
 #include "model/estimates.h"
 #include "model/sequence.h"
+#include "model/shape_prior.h"
 #include "orientation/edge_alignment.h"
 #include "orientation/options.h"
 

@@ -88,9 +88,9 @@ class Estimator {
                                               const std::optional<ShapePrior>& prior) const {
     if (detections.empty() || (prior && prior->attitude == Attitude::kFree)) return std::nullopt;
     MultiViewObservation observation =
-        MakeMultiViewObservation(sequence_, detections, prior, options_.detection_sigma_fraction,
-                                 options_.view_correlation_deg * kRadPerDeg);
+        MakeMultiViewObservation(sequence_, detections, prior, options_.detection_sigma_fraction);
     observation.height_is_free = true;
+    WeighViews(options_.view_correlation_deg * kRadPerDeg, &observation);
     observation.huber_delta = options_.huber_delta;
     observation.ratio_is_free = prior && prior->attitude != Attitude::kStanding;
     observation.size_is_known = options_.size_prior && !observation.ratio_is_free;

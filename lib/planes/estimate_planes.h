@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "initialisation/semantic_table.h"
 #include "model/sequence.h"
+#include "model/shape_prior.h"
 #include "planes/options.h"
 #include "planes/planes_estimate.h"
 #include "planes/up_prior.h"

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "geometry/rigid3.h"
-#include "initialisation/semantic_table.h"
 #include "model/sequence.h"
+#include "model/shape_prior.h"
 #include "planes/camera_holding.h"
 #include "planes/options.h"
 #include "planes/planes_estimate.h"

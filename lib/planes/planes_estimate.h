@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "geometry/plane.h"
-#include "initialisation/semantic_table.h"
 #include "model/sequence.h"
+#include "model/shape_prior.h"
 #include "planes/camera_holding.h"
 #include "planes/up_prior.h"
 

@@ -2,8 +2,8 @@
 #include "planes/standing_body.h"
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/levenberg_marquardt.h"
 #include "base/parallel.h"
@@ -13,7 +13,8 @@
 namespace soslam {
 namespace {
 
-// One box determines height and distance only by a narrow valley along the ray.
+// Iterations of FitWithHeight. With one box, whose minimum is a narrow valley along its ray, the
+// last per cent of the height is left to go.
 constexpr int kMaxHeightIterations = 100;
 // Information of a prior of all parameters of a body, as a share of the largest, for those that are
 // not observed (the yaw of a round body).

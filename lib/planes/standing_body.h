@@ -37,7 +37,7 @@ struct StandingBody {
 // The best body on its plane near the given one. None when the fit fails.
 std::optional<StandingBody> FitOnPlane(StandingBody body);
 
-// Evidence at a body returned by FitOnPlane, with its six degrees of freedom marginalised.
+// Evidence at a body that fits best on its plane, with its six degrees of freedom marginalised.
 PlaneEvidence EvidenceOf(const StandingBody& body, const Eigen::Vector3d& pivot);
 
 // The best body on a plane with this normal and free height, over all yaws in steps of `step`

@@ -11,6 +11,7 @@
 #include "constraints/loss.h"
 #include "geometry/angles.h"
 #include "geometry/landmark.h"
+#include "initialisation/view_weights.h"
 
 namespace soslam {
 

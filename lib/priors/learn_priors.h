@@ -6,11 +6,10 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "base/options.h"
-#include "initialisation/semantic_table.h"
+#include "model/semantic_table.h"
 #include "model/sequence.h"
 #include "priors/furniture_catalogue.h"
 

@@ -30,11 +30,14 @@ double Loss(const Sequence& sequence, const Detection& detection,
   return loss;
 }
 
-// Detections of objects wholly in front of the camera; otherwise an edge may have no tangent point.
+// Detections of objects whose cuboid, which reaches farthest, is in front of the camera: all edges
+// have a tangent point.
 std::vector<int> WhollyInFront(const Sequence& sequence, const std::vector<int>& detections) {
   std::vector<int> in_front;
   std::copy_if(detections.begin(), detections.end(), std::back_inserter(in_front), [&](int index) {
-    return IsInFront(*TrueLandmarkInCamera(sequence, sequence.detections[index]));
+    Landmark cuboid = *TrueLandmarkInCamera(sequence, sequence.detections[index]);
+    cuboid.shape_exponents = kCuboidExponent;
+    return IsInFront(cuboid);
   });
   return in_front;
 }

@@ -155,10 +155,6 @@ namespace {
 
 using nlohmann::json;
 
-Eigen::Vector2d Vector2(const json& values) {
-  return {values[0].get<double>(), values[1].get<double>()};
-}
-
 Plane ParsePlane(const json& document, const std::string& where) {
   constexpr double kTolerance = 1e-6;  // rounding of a unit vector
   const auto normal = document.at("normal").get<Eigen::Vector3d>();
@@ -171,8 +167,8 @@ Plane ParsePlane(const json& document, const std::string& where) {
 
 TableTop ParseTable(const json& document) {
   TableTop table;
-  table.position_on_plane = Vector2(document.at("position"));
-  table.half_size = Vector2(document.at("half_size"));
+  table.position_on_plane = document.at("position").get<Eigen::Vector2d>();
+  table.half_size = document.at("half_size").get<Eigen::Vector2d>();
   table.yaw = document.value("yaw_deg", 0.0) * kRadPerDeg;
   table.thickness = document.value("thickness", table.thickness);
   table.leg_length = document.value("leg_length", table.leg_length);
@@ -219,11 +215,12 @@ std::vector<SceneObject> ParseObjects(const json& entries, const std::vector<Sce
     object.label = entry.at("label").get<std::string>();
     object.shape = EnumFromName<Shape>(kShapeNames, entry.at("shape").get<std::string>());
     entry.at("half_axes").get_to(object.half_axes);
-    object.position_on_plane = Vector2(entry.at("position"));
+    object.position_on_plane = entry.at("position").get<Eigen::Vector2d>();
     object.yaw = entry.value("yaw_deg", 0.0) * kRadPerDeg;
     object.rests_on = EnumFromName<RestingFace>(kRestingFaceNames,
                                                 entry.value("rests_on", kRestingFaceNames.front()));
-    if (entry.contains("tilt_deg")) object.tilt = Vector2(entry.at("tilt_deg")) * kRadPerDeg;
+    if (entry.contains("tilt_deg"))
+      object.tilt = entry.at("tilt_deg").get<Eigen::Vector2d>() * kRadPerDeg;
     object.texture_seed = entry.value("texture_seed", object.id);
     const int plane_id = entry.at("plane").get<int>();
     const auto plane = std::ranges::find(planes, plane_id, &ScenePlane::id);

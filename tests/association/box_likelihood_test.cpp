@@ -109,7 +109,7 @@ TEST_F(BoxLikelihoodTest, OneEdgeMayBeCutOff) {
   EXPECT_FALSE(Match(expected_.box)->cut_edge);
 }
 
-TEST_F(BoxLikelihoodTest, ABoundNeedsOnlyBeReached) {
+TEST_F(BoxLikelihoodTest, AOneSidedEdgeNeedsOnlyBeReached) {
   expected_.is_one_sided = {false, false, true, false};
   Box cut = expected_.box;
   cut.x_max -= 0.5 * cut.Width();

@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "initialisation/semantic_table.h"
 #include "mapping/back_end.h"
 #include "model/estimates.h"
+#include "model/semantic_table.h"
 #include "model/sequence.h"
 #include "orientation/edge_alignment.h"
 

@@ -13,7 +13,7 @@ TEST(WithoutBias, MovesEdgesByFractionsOfTheBox) {
   EXPECT_EQ(WithoutBias(box, {}, {}), box);
 }
 
-TEST(WithoutBias, LeavesBoundsWhereTheyAre) {
+TEST(WithoutBias, LeavesOneSidedEdgesWhereTheyAre) {
   const Box box{100, 200, 300, 600};
   EXPECT_EQ(WithoutBias(box, {true, false, true, true}, {0.25, 0.25, 0.25, 0.25}),
             (Box{100, 300, 300, 600}));

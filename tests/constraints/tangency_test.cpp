@@ -45,6 +45,30 @@ TEST(BoxEdges, PointOutOfTheBoxAndMeasurePixels) {
   EXPECT_DOUBLE_EQ(BoxEdges(camera, {100, 100, 110, 110}, {}, 0.05)[2].sigma_px, 1.0);
 }
 
+TEST(TangencyAtOwnDepth, IsThatAtTheTangentPointsDepth) {
+  for (int i = 0; i < 50; ++i) {
+    const Landmark landmark = WithShape(RandomLandmarkInCamera(), kShapeExponents[i % 4]);
+    const BoxEdge edge = RandomEdge();
+    LandmarkJacobian1 jacobian, expected_jacobian;
+    const double expected =
+        Tangency(edge, landmark, FindTangentDepth(edge, landmark), 0.0, &expected_jacobian);
+    const auto found = TangencyAtOwnDepth(edge, landmark, &jacobian);
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(*found, expected, 1e-12 * (1.0 + std::abs(expected)));
+    EXPECT_LT((jacobian - expected_jacobian).norm(), 1e-9 * expected_jacobian.norm());
+  }
+}
+
+TEST(TangencyAtOwnDepth, IsNoneBehindTheCamera) {
+  Landmark landmark = RandomLandmarkInCamera();
+  landmark.frame_from_object.translation = {0.0, 0.0, -5.0};
+  const BoxEdge edge = RandomEdge();
+  EXPECT_FALSE(TangencyAtOwnDepth(edge, landmark, nullptr));
+  LandmarkJacobian1 jacobian;
+  EXPECT_TRUE(std::isnan(OutlineExcess(edge, landmark, &jacobian)));
+  EXPECT_TRUE(jacobian.array().isNaN().all());
+}
+
 TEST(Tangency, IsZeroForTheOutlineBoxAndGrowsByPixels) {
   const Camera camera = TestCamera();
   for (const ShapeExponents& p : kShapeExponents) {
@@ -119,7 +143,7 @@ TEST(Tangency, BiasShiftsTheEdge) {
   }
 }
 
-TEST(Tangency, OfABoundCountsOnlyWhatIsMissing) {
+TEST(Tangency, OfAOneSidedEdgeCountsOnlyWhatIsMissing) {
   int reached = 0;
   for (int i = 0; i < 100; ++i) {
     const Landmark landmark = WithShape(RandomLandmarkInCamera(), RandomUniform(1, 2));
@@ -188,7 +212,7 @@ struct View {
 };
 
 TEST(TangencyResidual, HasCorrectJacobiansWithoutItsCurvatureRows) {
-  const bool with_curvature = false;
+  const bool for_solver = false;
   for (int i = 0; i < 30; ++i) {
     View view;
     // Sharper bodies have derivatives that numbers do not follow.
@@ -196,7 +220,7 @@ TEST(TangencyResidual, HasCorrectJacobiansWithoutItsCurvatureRows) {
     const LandmarkBlock landmark = view.LandmarkInWorld();
     BoxEdge edge = RandomEdge();
     edge.is_one_sided = i % 2 == 0;
-    const TangencyResidual residual(edge, view.initial_in_camera, &with_curvature);
+    const TangencyResidual residual(edge, view.initial_in_camera, &for_solver);
     ExpectCorrectJacobians(residual,
                            {view.pose.data(), landmark.data(), &view.bias_px, &view.misfit});
   }
@@ -233,10 +257,10 @@ TEST(TangencyResidual, CurvatureRowsAddToTheInformationAlone) {
 
 // A tenth of the initial depth is the least that counts.
 TEST(TangencyResidual, ComparesABodyBehindTheCameraAtATenthOfItsDepth) {
-  const bool with_curvature = true;
+  const bool for_solver = true;
   const View view;
   const BoxEdge edge = RandomEdge();
-  const TangencyResidual residual(edge, view.initial_in_camera, &with_curvature);
+  const TangencyResidual residual(edge, view.initial_in_camera, &for_solver);
   Landmark behind = view.initial_in_camera;
   behind.frame_from_object.translation.z() = -1.0;
   const LandmarkBlock landmark = ToParameterBlock(Transform(UnpackPose(view.pose.data()), behind));
@@ -254,7 +278,7 @@ TEST(TangencyResidual, ComparesABodyBehindTheCameraAtATenthOfItsDepth) {
 }
 
 TEST(TangencyResidual, RefusesHalfAxesBeyondNumbers) {
-  const bool with_curvature = true;
+  const bool for_solver = true;
   const View view;
   LandmarkBlock landmark = view.LandmarkInWorld();
   landmark[8] = 1000.0;
@@ -263,7 +287,7 @@ TEST(TangencyResidual, RefusesHalfAxesBeyondNumbers) {
   for (const bool is_one_sided : {false, true}) {
     BoxEdge edge = RandomEdge();
     edge.is_one_sided = is_one_sided;
-    const TangencyResidual residual(edge, view.initial_in_camera, &with_curvature);
+    const TangencyResidual residual(edge, view.initial_in_camera, &for_solver);
     EXPECT_FALSE(residual.Evaluate(blocks, values.data(), nullptr));
   }
 }

@@ -55,7 +55,7 @@ TEST(SupportFunction, DerivativesAgreeWithNumbers) {
   }
 }
 
-TEST(SupportHessian, IsTheDerivativeOfTheContact) {
+TEST(SupportHessian, IsTheDerivativeOfTheSupportPoint) {
   constexpr double kStep = 1e-6;
   for (size_t i = 0; i < kCases; ++i) {
     RandomCase random(i);
@@ -86,7 +86,7 @@ TEST(SupportHessian, IsPositiveSemidefiniteWithItsDirectionInTheNullSpace) {
   EXPECT_TRUE(SupportHessian({0, 0, 1}, 2.0, {1, 0, 0}).isZero(0.0));  // no extent
 }
 
-TEST(SupportFunction, TheContactReachesAsFarAsTheExtentInAnyDirection) {
+TEST(SupportFunction, TheSupportPointReachesAsFarAsTheExtentInAnyDirection) {
   for (size_t i = 0; i < kCases; ++i) {
     const RandomCase random(i);
     for (const Eigen::Vector3d& direction : {random.direction, Eigen::Vector3d(0, 0, -2)}) {

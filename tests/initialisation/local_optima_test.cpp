@@ -135,7 +135,7 @@ TEST(LocalOptima, FollowTheExtraCostToATenthOfTheGridsStep) {
     const StandingBody body(RandomUniform(1, 2), /*ratio_log_sigma=*/0.5);
     const double yaw = RandomYaw();
     YawObjective objective;
-    objective.extra_cost = [&](const Landmark& landmark) {
+    objective.compared_cost = [&](const Landmark& landmark) {
       const double turn = Yaw(body.plane.normal, landmark.frame_from_object.rotation) - yaw;
       return 1e4 * std::pow(std::sin(turn), 2);
     };
@@ -146,7 +146,7 @@ TEST(LocalOptima, FollowTheExtraCostToATenthOfTheGridsStep) {
     EXPECT_LT(std::abs(YawDifferenceModuloPi(
                   Yaw(body.plane.normal, best.frame_from_object.rotation), yaw)),
               0.1 * kStep);
-    EXPECT_GE(optima.front().cost, objective.extra_cost(best));
+    EXPECT_GE(optima.front().cost, objective.compared_cost(best));
   }
 }
 

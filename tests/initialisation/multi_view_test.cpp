@@ -42,7 +42,7 @@ struct World {
   }
   MultiViewObservation Observation(const std::optional<ShapePrior>& prior) const {
     return MakeMultiViewObservation(sequence, DetectionsByObject(sequence)[0], prior,
-                                    kSigmaFraction, 0.0);
+                                    kSigmaFraction);
   }
   double TrueYaw() const { return Yaw(Eigen::Vector3d::UnitZ(), truth.frame_from_object.rotation); }
 
@@ -57,6 +57,21 @@ void ExpectSame(const Landmark& found, const Landmark& expected, double toleranc
 }
 
 // The plane is given one metre too low.
+TEST(WeighViews, APlaneCountsOnlyWhereItsHeightIsKnown) {
+  const World world(kCuboidExponent, Arc(5));
+  const auto weights_at = [&](double offset, bool height_is_free) {
+    MultiViewObservation observation = world.Observation(world.Prior(0.3));
+    observation.plane_in_world.offset = offset;
+    observation.height_is_free = height_is_free;
+    WeighViews(0.3, &observation);
+    std::vector<double> weights;
+    for (const BoxView& view : observation.views) weights.push_back(view.weight);
+    return weights;
+  };
+  EXPECT_EQ(weights_at(0.0, true), weights_at(3.0, true));
+  EXPECT_NE(weights_at(0.0, false), weights_at(3.0, false));
+}
+
 TEST(SolveViewsAtYaw, FindsTheHeightOfTheFootWhereItIsFree) {
   for (const double exponent : {kCuboidExponent, 1.4, kEllipsoidExponent}) {
     World world(exponent, Arc(8));
@@ -138,7 +153,7 @@ TEST(SolveViewsAtYaw, IsNotMisledByOneWrongBox) {
   EXPECT_GT(BoxIou(found->landmark, world.truth), 0.9);
 }
 
-TEST(SolveViewsAtYaw, TakesBoundsForBounds) {
+TEST(SolveViewsAtYaw, LetsTheBodyReachBeyondOneSidedEdges) {
   World world(kCuboidExponent, Arc(8));
   for (Detection& detection : world.sequence.detections) {
     detection.box.y_max -= 0.3 * detection.box.Height();

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "initialisation/view_weights.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,7 +9,6 @@
 #include <vector>
 
 #include "geometry/angles.h"
-#include "initialisation/multi_view.h"
 #include "support/random.h"
 
 namespace soslam {

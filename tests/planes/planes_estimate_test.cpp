@@ -208,7 +208,7 @@ MultiViewObservation RandomObservation(int seed, bool noise = true) {
   scene.noise.box_edge_sigma = 0.02;
   const Sequence sequence = SyntheticSequence(scene, noise);
   return MakeMultiViewObservation(sequence, DetectionsByObject(sequence)[0],
-                                  TrueCuboidPriors(sequence, 0.1)[0], 0.02, 0.0);
+                                  TrueCuboidPriors(sequence, 0.1)[0], 0.02);
 }
 
 // After a body is carried along, it is as upright on its plane as before.

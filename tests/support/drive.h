@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "initialisation/semantic_table.h"
+#include "model/semantic_table.h"
 #include "model/sequence.h"
 
 namespace soslam {

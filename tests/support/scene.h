@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "initialisation/semantic_table.h"
+#include "model/semantic_table.h"
 #include "model/sequence.h"
 #include "synthesis/simulate.h"
 
