@@ -63,8 +63,8 @@ struct LandmarkEstimates {
 
 // Summary of all solves. Texture and edges are added once boxes alone have converged: initial_cost
 // is that of the first solve over all frames, without them; final_cost is that of the last solve,
-// with them; iterations are the sum over all solves, except those of a start in parts. `converged`:
-// the last solve converged, and a new selection of texture and edges changed nothing.
+// with them; iterations are the sum over all solves. `converged`: the last solve converged, and a
+// new selection of texture and edges changed nothing.
 struct SolverSummary {
   double initial_cost = 0.0;
   double final_cost = 0.0;
