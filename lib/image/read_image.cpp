@@ -114,7 +114,7 @@ cv::Mat ReadImage(const std::filesystem::path& path, int mode, ImageOrientation 
                                  path.string(), format->name));
   }
   const bool is_upright = orientation == ImageOrientation::kUpright;
-  const cv::Mat image = is_upright ? TurnUpright(stored, header.orientation) : stored;
+  cv::Mat image = is_upright ? TurnUpright(stored, header.orientation) : stored;
   if (!size || image.size() == *size) return image;
   std::string hint;
   if (header.IsTurnedByAQuarter() && image.cols == size->height && image.rows == size->width) {
