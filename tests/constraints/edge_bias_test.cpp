@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "constraints/tangency.h"
+#include "support/random.h"
 
 namespace soslam {
 namespace {

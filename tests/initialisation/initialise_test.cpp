@@ -8,6 +8,7 @@
 
 #include "support/level_sequence.h"
 #include "support/scene.h"
+#include "support/shape_exponents.h"
 #include "support/upright_bodies.h"
 #include "synthesis/simulate.h"
 
