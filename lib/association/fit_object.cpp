@@ -15,7 +15,7 @@
 namespace soslam {
 namespace {
 
-// The parameters of UprightVector and the height of the contact point over the plane (m), which is
+// The parameters of UprightVector and the height of the foot over the plane (m), which is
 // free without a plane.
 constexpr int kMaxParameters = 7;
 using Information =
@@ -24,7 +24,7 @@ using ParameterJacobian =
     Eigen::Matrix<double, kLandmarkDof, Eigen::Dynamic, 0, kLandmarkDof, kMaxParameters>;
 
 // Weak prior that keeps the information regular, as standard deviations: yaw uniform over half a
-// turn, contact point anywhere (m), log half axes 1.
+// turn, foot anywhere (m), log half axes 1.
 Information PriorInformation(Eigen::Index parameters) {
   Eigen::Matrix<double, kMaxParameters, 1> sigmas;
   sigmas << std::numbers::pi / std::sqrt(12.0), 1e3, 1e3, 1.0, 1.0, 1.0, 1e3;

@@ -47,7 +47,8 @@ TEST(BoxEdges, PointOutOfTheBoxAndMeasurePixels) {
 
 TEST(TangencyAtOwnDepth, IsThatAtTheTangentPointsDepth) {
   for (int i = 0; i < 50; ++i) {
-    const Landmark landmark = WithShape(RandomLandmarkInCamera(), kShapeExponents[i % 4]);
+    const Landmark landmark =
+        WithShape(RandomLandmarkInCamera(), kShapeExponents[i % kShapeExponents.size()]);
     const BoxEdge edge = RandomEdge();
     LandmarkJacobian1 jacobian, expected_jacobian;
     const double expected =
