@@ -9,8 +9,8 @@
 namespace soslam {
 
 // Support constraint, eq. (5)-(8): the landmark's x and y axes are orthogonal to the support normal
-// (cosines, no unit), and the support plane is tangent to it (pi^T Q* pi, m^2). Each residual is
-// divided by the square root of its variance.
+// (cosines, no unit), and the support plane is tangent to it (QuadricTangency, m^2). Each residual
+// is divided by the square root of its variance.
 //
 // Residuals: 3 (x axis, y axis, tangency). Block: landmark in the world. Defined everywhere;
 // it distinguishes neither up from down nor above the plane from below: the initial guess decides.

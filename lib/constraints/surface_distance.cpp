@@ -78,8 +78,9 @@ double SurfaceDistance(const Landmark& landmark, const Eigen::Vector3d& point,
   if (normal != nullptr) *normal = rotation * distance.normal;
   if (jacobian != nullptr) {
     const Eigen::Vector3d d_point = rotation * distance.d_point;
-    *jacobian << d_point.cross(from_centre).transpose(), -d_point.transpose(),
-        distance.d_log_half_axes.transpose();
+    jacobian->head<3>() = d_point.cross(from_centre);
+    jacobian->segment<3>(3) = -d_point;
+    jacobian->tail<3>() = distance.d_log_half_axes;
   }
   return distance.value;
 }

@@ -25,8 +25,7 @@ constexpr double kMinSigmaPx = 1.0;
 
 constexpr double kMinDepthShare = 0.1;  // of the initial depth
 
-constexpr int kMaxNewtonSteps = 20;
-constexpr double kSettledExcess = 1e-6;  // px / sigma; the error after such a step is near rounding
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
@@ -69,8 +68,9 @@ double TangencyOf(const EdgeSupport& support, const BoxEdge& edge,
   const double residual = outside - bias_px / edge.sigma_px;
   const bool is_free = edge.is_one_sided && residual > 0.0;
   if (jacobian != nullptr) {
-    *jacobian << support.from_centre.cross(edge.plane).transpose(), edge.plane.transpose(),
-        support.value.d_log_half_axes.transpose();
+    jacobian->head<3>() = support.from_centre.cross(edge.plane);
+    jacobian->segment<3>(3) = edge.plane;
+    jacobian->tail<3>() = support.value.d_log_half_axes;
     *jacobian *= weight;
     (*jacobian)[5] -= outside / depth.depth_m * depth.d_centre_depth;
     if (is_free) jacobian->setZero();
@@ -122,26 +122,22 @@ TangentDepth FindTangentDepth(const BoxEdge& edge, const Landmark& landmark_in_c
   return {FindSupportPoint(landmark_in_camera, edge.plane).point.z()};
 }
 
-// Newton's method for the outward shift of the edge at which it is tangent to the silhouette. The
-// distance to the tangent plane is convex in the shift, so steps do not overshoot after the first.
 double OutlineExcess(const BoxEdge& edge, const Landmark& landmark_in_camera,
                      LandmarkJacobian1* jacobian) {
-  BoxEdge moved = edge;
-  moved.is_one_sided = false;
-  double excess = 0.0;
-  for (int i = 0; i < kMaxNewtonSteps; ++i) {
-    const auto step = TangencyAtOwnDepth(moved, landmark_in_camera, jacobian);
-    if (!step) {
-      if (jacobian != nullptr) jacobian->setConstant(std::numeric_limits<double>::quiet_NaN());
-      return std::numeric_limits<double>::quiet_NaN();
+  const auto silhouette = FindSilhouettePoint(
+      edge.plane, landmark_in_camera, FindSupportPoint(landmark_in_camera, edge.plane).point);
+  const double excess_px = silhouette ? silhouette->end_px : kNaN;
+  const bool is_free = edge.is_one_sided && excess_px > 0.0;
+  if (jacobian != nullptr) {
+    jacobian->setConstant(silhouette ? 0.0 : kNaN);
+    if (silhouette && !is_free) {
+      BoxEdge tangent = edge;
+      tangent.is_one_sided = false;
+      tangent.plane.z() -= excess_px;
+      Tangency(tangent, landmark_in_camera, {silhouette->point.z()}, 0.0, jacobian);
     }
-    excess += *step;
-    moved.plane.z() -= *step * edge.sigma_px;
-    if (!(std::abs(*step) > kSettledExcess)) break;
   }
-  if (!edge.is_one_sided || !(excess > 0.0)) return excess;
-  if (jacobian != nullptr) jacobian->setZero();
-  return 0.0;
+  return is_free ? 0.0 : excess_px / edge.sigma_px;
 }
 
 TangencyResidual::TangencyResidual(const BoxEdge& edge, const Landmark& initial_in_camera,

@@ -34,7 +34,7 @@ Eigen::Vector3d HorizontalReference(const Eigen::Vector3d& normal) {
   return (seed - normal * normal.dot(seed)).normalized();
 }
 
-constexpr double kOutlineTolerancePx = 1e-9;
+constexpr double kSettledStepPx = 1e-6;  // the error after such a step of Newton's is near rounding
 constexpr int kMaxOutlineSteps = 50;
 
 }  // namespace
@@ -113,21 +113,25 @@ std::optional<SilhouettePoint> FindSilhouettePoint(const Camera& camera,
                                                    const Landmark& landmark_in_camera,
                                                    const Eigen::Vector2d& direction,
                                                    const Eigen::Vector3d& start) {
+  const Eigen::Vector3d line(direction.x(), direction.y(), 0.0);
+  return FindSilhouettePoint(camera.Intrinsics().transpose() * line, landmark_in_camera, start);
+}
+
+std::optional<SilhouettePoint> FindSilhouettePoint(const Eigen::Vector3d& plane,
+                                                   const Landmark& landmark_in_camera,
+                                                   const Eigen::Vector3d& start) {
   // All points of the body project inside its silhouette. The support point for the plane through
-  // the camera centre and the image line direction . u = t projects beyond that line, until the
-  // plane is tangent: Newton's method for a convex function of t.
-  const Eigen::Matrix3d to_plane = camera.Intrinsics().transpose();
-  Eigen::Vector3d line(direction.x(), direction.y(), 0.0);
+  // the camera centre and a line parallel to l projects beyond that line, until the plane is
+  // tangent: Newton's method for a convex function of the line's distance from l.
   SilhouettePoint outline{start, -std::numeric_limits<double>::infinity()};
   for (int i = 0; i < kMaxOutlineSteps; ++i) {
-    const auto pixel = camera.Project(outline.point);
-    if (!pixel) return std::nullopt;
-    const double end_px = direction.dot(*pixel);
-    const bool settled = std::abs(end_px - outline.end_px) < kOutlineTolerancePx;
+    if (!(outline.point.z() > 0.0)) return std::nullopt;
+    const double end_px = plane.dot(outline.point) / outline.point.z();
+    const bool settled = std::abs(end_px - outline.end_px) < kSettledStepPx;
     outline.end_px = end_px;
     if (settled) break;
-    line.z() = -end_px;
-    outline.point = FindSupportPoint(landmark_in_camera, to_plane * line).point;
+    const Eigen::Vector3d parallel = plane - end_px * Eigen::Vector3d::UnitZ();
+    outline.point = FindSupportPoint(landmark_in_camera, parallel).point;
   }
   return outline;
 }

@@ -100,6 +100,11 @@ std::optional<SilhouettePoint> FindSilhouettePoint(const Camera& camera,
                                                    const Landmark& landmark_in_camera,
                                                    const Eigen::Vector2d& direction,
                                                    const Eigen::Vector3d& start);
+// The same beyond the line l of an image: `plane` is K^T l, and `end_px` the largest plane . x /
+// x_z.
+std::optional<SilhouettePoint> FindSilhouettePoint(const Eigen::Vector3d& plane,
+                                                   const Landmark& landmark_in_camera,
+                                                   const Eigen::Vector3d& start);
 
 // The tight box around the landmark's silhouette; not cut at the image border. None unless the
 // whole landmark is in front of the camera.

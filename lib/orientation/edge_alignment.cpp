@@ -142,9 +142,10 @@ double EdgeTerm::Residual(const Landmark& landmark, const Eigen::Matrix3d& rotat
       RobustifyResidual(GemanMcClureLoss(options_.edge_truncation_px), distance->value);
   if (jacobian != nullptr) {
     const Eigen::Vector3d d_point =
-        robust.slope * camera_.ProjectionJacobian(in_camera).transpose() * distance->gradient;
-    *jacobian << from_centre.cross(d_point).transpose(), d_point.transpose(),
-        (rotation.transpose() * d_point).cwiseProduct(in_object).transpose();
+        camera_.ProjectionJacobian(in_camera).transpose() * (robust.slope * distance->gradient);
+    jacobian->head<3>() = from_centre.cross(d_point);
+    jacobian->segment<3>(3) = d_point;
+    jacobian->tail<3>() = (rotation.transpose() * d_point).cwiseProduct(in_object);
   }
   return robust.value;
 }

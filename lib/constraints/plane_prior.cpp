@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "constraints/plane_normal.h"
+#include "constraints/plane_prior.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -20,6 +20,17 @@ bool PlaneNormalResidual::Evaluate(double const* const* blocks, double* residual
     Eigen::Map<RowMajor> d_normal(jacobians[0]);
     d_normal = root_;
   }
+  return true;
+}
+
+bool PlaneHeightResidual::Evaluate(double const* const* blocks, double* residuals,
+                                   double** jacobians) const {
+  const Eigen::Vector3d d_normal = side_ / prior_.sigma_m * prior_.point_in_world;
+  residuals[0] =
+      d_normal.dot(Eigen::Map<const Eigen::Vector3d>(blocks[0])) + blocks[1][0] / prior_.sigma_m;
+  if (jacobians == nullptr) return true;
+  if (jacobians[0] != nullptr) Eigen::Map<Eigen::Vector3d>{jacobians[0]} = d_normal;
+  if (jacobians[1] != nullptr) jacobians[1][0] = 1.0 / prior_.sigma_m;
   return true;
 }
 
