@@ -113,9 +113,11 @@ cv::Mat DistanceMap(const cv::Mat& nearest_edge) {
 namespace {
 
 cv::Mat DetectEdges(const cv::Mat& grey, const EdgesOptions& options) {
-  cv::Mat blurred = grey;
+  cv::Mat blurred;  // with pixels of its own: the blur must not reach the image
   if (options.blur_sigma_px > 0.0) {
     cv::GaussianBlur(grey, blurred, cv::Size(), options.blur_sigma_px);
+  } else {
+    blurred = grey;
   }
   cv::Mat edges;
   constexpr int kSobelSize = 3;

@@ -35,6 +35,15 @@ TEST(EdgeMapsTest, EdgesLieOnTheOutlineOfARectangle) {
   EXPECT_LT(cv::countNonZero(maps.edges), 130);
 }
 
+TEST(EdgeMapsTest, TheBlurReachesOnlyTheEdges) {
+  const cv::Mat grey = Rectangle();
+  EdgesOptions options;
+  options.blur_sigma_px = 2.0;
+  const EdgeMaps maps = ComputeEdgeMaps(grey, options);
+  EXPECT_EQ(cv::norm(grey, Rectangle(), cv::NORM_INF), 0.0);
+  EXPECT_EQ(cv::norm(maps.grey, Rectangle(), cv::NORM_INF), 0.0);
+}
+
 TEST(EdgeMapsTest, CornersAreTheRectanglesCorners) {
   const EdgeMaps maps = ComputeEdgeMaps(Rectangle(), {});
   ASSERT_EQ(maps.corners.size(), 4U);
