@@ -12,9 +12,6 @@ namespace soslam {
 // Convergence tolerance, relative to 1 + cost: steps that lower the cost by less are not worth
 // taking.
 inline constexpr double kNegligibleDecrease = 1e-11;
-// The same where derivatives jump, as those of an image do from pixel to pixel: near the minimum
-// the steps oscillate with decreasing length, and would take most of the time.
-inline constexpr double kNegligibleDecreaseAtKinks = 1e-6;
 
 struct LevenbergMarquardtOptions {
   int max_iterations = 50;

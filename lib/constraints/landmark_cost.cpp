@@ -21,9 +21,12 @@ double TotalCost(const LandmarkCosts& costs, const Landmark& landmark) {
 }
 
 double NegligibleDecrease(const LandmarkCosts& costs) {
-  const bool has_kinks =
-      std::ranges::any_of(costs, [](const auto& cost) { return cost->HasKinks(); });
-  return has_kinks ? kNegligibleDecreaseAtKinks : kNegligibleDecrease;
+  // Where convergence is slow, the last steps would take most of the time. A step that is left out
+  // changes the likelihood by a thousandth at most.
+  constexpr double kNegligibleDecreaseWhereSlow = 1e-5;
+  const bool is_slow =
+      std::ranges::any_of(costs, [](const auto& cost) { return cost->ConvergesSlowly(); });
+  return is_slow ? kNegligibleDecreaseWhereSlow : kNegligibleDecrease;
 }
 
 ViewCost::ViewCost(std::unique_ptr<const LandmarkCost> in_camera,

@@ -65,8 +65,9 @@ class LandmarkCost {
   // Part of the cost that does not depend on the landmark, but may depend on what the cost was
   // constructed from.
   virtual double ConstantCost() const { return 0.0; }
-  // True if the derivatives jump from pixel to pixel of an image.
-  virtual bool HasKinks() const { return false; }
+  // True if many steps near a minimum gain little: where derivatives jump from pixel to pixel of an
+  // image, or second derivatives are those of expectation maximisation.
+  virtual bool ConvergesSlowly() const { return false; }
 };
 
 using LandmarkCosts = std::vector<std::unique_ptr<const LandmarkCost>>;
@@ -84,7 +85,7 @@ class ViewCost final : public LandmarkCost {
   double Value(const Landmark& landmark_in_reference) const override;
   void AddTo(const Landmark& landmark_in_reference, LandmarkModel* sum) const override;
   double ConstantCost() const override { return weight_ * in_camera_->ConstantCost(); }
-  bool HasKinks() const override { return in_camera_->HasKinks(); }
+  bool ConvergesSlowly() const override { return in_camera_->ConvergesSlowly(); }
 
  private:
   std::unique_ptr<const LandmarkCost> in_camera_;

@@ -89,6 +89,7 @@ class PointTerm final : public LandmarkCost {
 
   double Value(const Landmark& landmark_in_camera) const override;
   void AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) const override;
+  bool ConvergesSlowly() const override { return true; }
 
   // In the order of the points.
   std::vector<PointPosterior> Posteriors(const Landmark& landmark_in_camera) const;

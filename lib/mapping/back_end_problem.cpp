@@ -305,7 +305,7 @@ void BackEndProblem::Solve(int max_iterations) {
     // step, each is optimised alone.
     options.inner_iteration_ordering = LandmarkOrdering();
     options.use_inner_iterations = options.inner_iteration_ordering->NumElements() > 0;
-    options.inner_iteration_tolerance = 1e-6;
+    options.inner_iteration_tolerance = options.function_tolerance;  // until the end
   }
   IterationProgress progress;
   options.callbacks.push_back(&progress);

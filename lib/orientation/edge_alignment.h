@@ -68,7 +68,7 @@ class EdgeTerm final : public LandmarkCost {
   double Value(const Landmark& landmark_in_camera) const override;
   void AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) const override;
   double ConstantCost() const override { return points_that_do_not_count_ * LargestCost(); }
-  bool HasKinks() const override { return true; }
+  bool ConvergesSlowly() const override { return true; }
 
  private:
   bool Counts(const ModelPoint& point, const Landmark& start_in_camera) const;

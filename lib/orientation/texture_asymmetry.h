@@ -65,7 +65,7 @@ class AsymmetryTerm final : public LandmarkCost {
 
   double Value(const Landmark& landmark_in_camera) const override;
   void AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) const override;
-  bool HasKinks() const override { return true; }
+  bool ConvergesSlowly() const override { return true; }
 
  private:
   SymmetryDescriptor DescriptorOf(const Landmark& landmark_in_camera) const;
