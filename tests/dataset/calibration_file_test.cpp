@@ -165,6 +165,13 @@ Camera.width: 640
 Camera.height: 480
 )";
 
+// Of a camera whose distortion has another name.
+constexpr const char* kDistCoeff = R"(width: 640
+height: 480
+K: [500, 0, 319.5, 0, 510, 239.5, 0, 0, 1]
+dist_coeff: [[0.1, -0.2, 0.003, -0.004]]
+)";
+
 constexpr const char* kOpenCvXml = R"(<?xml version="1.0"?>
 <opencv_storage>
 <image_Width>640</image_Width>
@@ -205,7 +212,8 @@ TEST_F(CalibrationFileTest, AllToolsSayTheSameCamera) {
            {kOpenCvXml, "opencv.xml", lens},
            {kKalibr, "camchain.yaml", lens_of_four},
            {kEuroc, "sensor.yaml", lens_of_four},
-           {kOrbSlam, "orb.yaml", lens_of_four}}) {
+           {kOrbSlam, "orb.yaml", lens_of_four},
+           {kDistCoeff, "dist_coeff.yaml", lens_of_four}}) {
     const LensCamera read = Read(text, name).camera;
     EXPECT_EQ(read.camera, kCamera) << name;
     EXPECT_EQ(read.distortion, distortion) << name;
@@ -262,15 +270,6 @@ TEST_F(CalibrationFileTest, WhatSaysNothingOfTheCameraIsOfNoMatter) {
       "fisheye_model: 0\nbinning_x: 1\nbinning_y: 0\nmin_dist: 30\n"
       "roi: {x_offset: 0, y_offset: 0, width: 640, height: 480, do_rectify: false}\n";
   EXPECT_EQ(Read(text).camera.camera, kCamera);
-}
-
-TEST_F(CalibrationFileTest, DistCoeffIsDistortion) {
-  const LensCamera read =
-      Read(
-          "width: 640\nheight: 480\nK: [500, 0, 319.5, 0, 510, 239.5, 0, 0, 1]\n"
-          "dist_coeff: [[0.1, -0.2, 0.003, -0.004]]\n")
-          .camera;
-  EXPECT_EQ(read.distortion, (Distortion{0.1, -0.2, 0.003, -0.004}));
 }
 
 TEST_F(CalibrationFileTest, TransposedMotionIsRefused) {

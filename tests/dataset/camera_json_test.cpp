@@ -20,6 +20,13 @@ class CameraJsonTest : public testing::Test {
   void ExpectRefused(const std::string& more, const std::vector<std::string>& words) {
     ExpectError<InputError>([&] { Read(more); }, words);
   }
+  auto Planes(const std::string& text) {
+    return ReadPlanes(WriteBytes(folder_ / "planes.json", text));
+  }
+  void ExpectObjectsRefused(const std::string& text, const std::vector<std::string>& words) {
+    WriteBytes(folder_ / "objects.json", text);
+    ExpectError<InputError>([&] { ReadObjects(folder_ / "objects.json"); }, words);
+  }
   TemporaryFolder folder_;
 };
 
@@ -63,48 +70,44 @@ TEST_F(CameraJsonTest, UnknownKeysAreRefusedWithWhatTheyMayMean) {
 }
 
 TEST_F(CameraJsonTest, UnknownKeysOfPlanesAndObjectsAreRefused) {
-  WriteBytes(folder_ / "planes.json", R"([{"id": 0, "normal": [0, 0, 1], "offset": 0}])");
-  ExpectError<InputError>([&] { ReadPlanes(folder_ / "planes.json"); },
+  ExpectError<InputError>([&] { Planes(R"([{"id": 0, "normal": [0, 0, 1], "offset": 0}])"); },
                           {"planes.json[0]: unknown key \"offset\"", "normal . x + d = 0"});
   for (const auto& [key, words] : std::vector<std::pair<std::string, std::string>>{
            {"yaw", "quaternion_xyzw"},
            {"size", "half_axes"},
            {"position", "\"center\""},
            {"mirror_symetric", "did you mean \"mirror_symmetric\"?"}}) {
-    WriteBytes(folder_ / "objects.json",
-               R"([{"id": 0, "label": "cup"}, {"id": 1, "label": "cup", ")" + key + "\": 0.3}]");
-    ExpectError<InputError>([&] { ReadObjects(folder_ / "objects.json"); },
-                            {"objects.json[1]: unknown key \"" + key + "\"", words});
+    ExpectObjectsRefused(
+        R"([{"id": 0, "label": "cup"}, {"id": 1, "label": "cup", ")" + key + "\": 0.3}]",
+        {"objects.json[1]: unknown key \"" + key + "\"", words});
   }
 }
 
 TEST_F(CameraJsonTest, IgnoredThingsSayWhatTheyAre) {
-  const auto refused = [&](const std::string& text, std::vector<std::string> words) {
-    WriteBytes(folder_ / "objects.json", text);
-    ExpectError<InputError>([&] { ReadObjects(folder_ / "objects.json"); }, words);
-  };
-  refused(R"({"objects": [], "ignored": [{"comment": "?"}]})",
-          {"objects.json#/ignored[0]: says nothing", "a label, or center"});
-  refused(R"({"objects": [], "ignored": [{"label": "cup", "center": [0, 0, 0]}]})",
-          {"objects.json#/ignored[0]: quaternion_xyzw is missing"});
-  refused(R"({"objects": [], "ignored": [{"label": "cup", "size": 3}]})",
-          {"#/ignored[0]: unknown key \"size\"", "half_axes"});
-  refused(R"({"objects": [], "ignored": {"label": "cup"}})", {"#/ignored: is not a list"});
-  refused(R"({"ignored": []})", {"objects is missing"});
-  refused(R"({"objects": [], "ignore": []})", {"unknown key \"ignore\"", "\"ignored\"?"});
-  refused(R"({"objects": [{"id": 0}]})", {"objects.json#/objects[0]: label is missing"});
-  refused(R"([{"id": 0, "label": "cup", "ignored": true}])", {"listed beside the objects"});
-  refused(R"("cup")", {"objects.json: is not a list"});
+  ExpectObjectsRefused(R"({"objects": [], "ignored": [{"comment": "?"}]})",
+                       {"objects.json#/ignored[0]: says nothing", "a label, or center"});
+  ExpectObjectsRefused(R"({"objects": [], "ignored": [{"label": "cup", "center": [0, 0, 0]}]})",
+                       {"objects.json#/ignored[0]: quaternion_xyzw is missing"});
+  ExpectObjectsRefused(R"({"objects": [], "ignored": [{"label": "cup", "size": 3}]})",
+                       {"#/ignored[0]: unknown key \"size\"", "half_axes"});
+  ExpectObjectsRefused(R"({"objects": [], "ignored": {"label": "cup"}})",
+                       {"#/ignored: is not a list"});
+  ExpectObjectsRefused(R"({"ignored": []})", {"objects is missing"});
+  ExpectObjectsRefused(R"({"objects": [], "ignore": []})",
+                       {"unknown key \"ignore\"", "\"ignored\"?"});
+  ExpectObjectsRefused(R"({"objects": [{"id": 0}]})",
+                       {"objects.json#/objects[0]: label is missing"});
+  ExpectObjectsRefused(R"([{"id": 0, "label": "cup", "ignored": true}])",
+                       {"listed beside the objects"});
+  ExpectObjectsRefused(R"("cup")", {"objects.json: is not a list"});
 }
 
 TEST_F(CameraJsonTest, SceneAxisOfAPlaneIsProjectedOntoIt) {
-  WriteBytes(folder_ / "planes.json",
-             R"([{"id": 0, "normal": [0, 0, 2], "d": 0, "scene_axis": [0, 3, 1]}])");
-  const std::vector<SupportPlane> planes = ReadPlanes(folder_ / "planes.json");
-  EXPECT_EQ(planes.front().scene_axis_in_world, Eigen::Vector3d(0, 1, 0));
-  WriteBytes(folder_ / "planes.json",
-             R"([{"id": 0, "normal": [0, 0, 2], "d": 0, "scene_axis": [0, 0, 1]}])");
-  ExpectError<InputError>([&] { ReadPlanes(folder_ / "planes.json"); },
+  const auto planes = [&](const std::string& axis) {
+    return Planes(R"([{"id": 0, "normal": [0, 0, 2], "d": 0, "scene_axis": )" + axis + "}]");
+  };
+  EXPECT_EQ(planes("[0, 3, 1]").front().scene_axis_in_world, Eigen::Vector3d(0, 1, 0));
+  ExpectError<InputError>([&] { planes("[0, 0, 1]"); },
                           {"planes.json", "scene_axis", "not along its normal"});
 }
 

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -20,14 +19,8 @@ namespace {
 class ColmapBytes {
  public:
   template <typename Number>
-  ColmapBytes& Add(Number number) {
-    std::string bytes(sizeof(Number), '\0');
-    std::memcpy(bytes.data(), &number, sizeof(Number));
-    bytes_ += bytes;
-    return *this;
-  }
-  ColmapBytes& Reals(const std::vector<double>& numbers) {
-    for (const double number : numbers) Add(number);
+  ColmapBytes& Add(const std::vector<Number>& numbers) {
+    bytes_.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number));
     return *this;
   }
   ColmapBytes& Text(const std::string& text) {
@@ -42,12 +35,10 @@ class ColmapBytes {
 
 std::string ColmapCamerasBinary(int model, const std::vector<double>& parameters) {
   return ColmapBytes()
-      .Add<std::uint64_t>(1)
-      .Add<std::uint32_t>(1)
-      .Add<std::int32_t>(model)
-      .Add<std::uint64_t>(640)
-      .Add<std::uint64_t>(480)
-      .Reals(parameters);
+      .Add<std::uint64_t>({1})
+      .Add<std::int32_t>({1, model})
+      .Add<std::uint64_t>({640, 480})
+      .Add(parameters);
 }
 
 class ColmapModelTest : public testing::Test {
@@ -110,12 +101,10 @@ TEST_F(ColmapModelTest, PosesAreInvertedAndPointsSkipped) {
   ASSERT_EQ(poses.size(), 3u);
   EXPECT_EQ(poses[0].image, "photos/a b.jpg");
   EXPECT_EQ(poses[0].place, (folder_ / "images.txt").string() + ":2");
-  EXPECT_TRUE(
-      (poses[0].world_from_camera * Eigen::Vector3d::Zero()).isApprox(Eigen::Vector3d(1, 2, 3)));
-  EXPECT_TRUE(
-      (poses[0].world_from_camera * Eigen::Vector3d(0, 0, 5)).isApprox(Eigen::Vector3d(6, 2, 3)));
-  EXPECT_TRUE(
-      (poses[0].world_from_camera * Eigen::Vector3d(5, 0, 0)).isApprox(Eigen::Vector3d(1, -3, 3)));
+  const Rigid3d& pose = poses[0].world_from_camera;
+  EXPECT_TRUE(pose.translation.isApprox(Eigen::Vector3d(1, 2, 3)));
+  EXPECT_TRUE((pose * Eigen::Vector3d(0, 0, 5)).isApprox(Eigen::Vector3d(6, 2, 3)));
+  EXPECT_TRUE((pose * Eigen::Vector3d(5, 0, 0)).isApprox(Eigen::Vector3d(1, -3, 3)));
   EXPECT_EQ(poses[1].image, "c.jpg");
   EXPECT_EQ(poses[1].world_from_camera.translation.x(), 4.0);
   EXPECT_EQ(poses[2].image, "d.jpg");
@@ -147,47 +136,38 @@ class WholeModelTest : public testing::Test {
   // The bytes of a file of the binary model.
   static std::string Images() {
     return ColmapBytes()
-        .Add<std::uint64_t>(2)
-        .Add<std::uint32_t>(3)
-        .Reals({0.5, 0.5, -0.5, 0.5, 2, 3, -1})
-        .Add<std::uint32_t>(1)
+        .Add<std::uint64_t>({2})
+        .Add<std::uint32_t>({3})
+        .Add<double>({0.5, 0.5, -0.5, 0.5, 2, 3, -1})
+        .Add<std::uint32_t>({1})
         .Text("rgb/a b.jpg")
-        .Add<std::uint64_t>(2)
-        .Reals({10.5, 20.5})
-        .Add<std::int64_t>(-1)
-        .Reals({1.5, 2.5})
-        .Add<std::int64_t>(7)
-        .Add<std::uint32_t>(4)
-        .Reals({1, 0, 0, 0, -4, 0, 0})
-        .Add<std::uint32_t>(1)
+        .Add<std::uint64_t>({2})
+        .Add<double>({10.5, 20.5})
+        .Add<std::int64_t>({-1})
+        .Add<double>({1.5, 2.5})
+        .Add<std::int64_t>({7})
+        .Add<std::uint32_t>({4})
+        .Add<double>({1, 0, 0, 0, -4, 0, 0})
+        .Add<std::uint32_t>({1})
         .Text("rgb/c.jpg")
-        .Add<std::uint64_t>(1)
-        .Reals({3, 4})
-        .Add<std::int64_t>(7);
+        .Add<std::uint64_t>({1})
+        .Add<double>({3, 4})
+        .Add<std::int64_t>({7});
   }
   static std::string Points(double z = 6.0, std::uint32_t image = 4) {
     return ColmapBytes()
-        .Add<std::uint64_t>(2)
-        .Add<std::uint64_t>(9)
-        .Reals({4, 5, z})
-        .Add<std::uint8_t>(255)
-        .Add<std::uint16_t>(0)
-        .Reals({-1})
-        .Add<std::uint64_t>(2)
-        .Add<std::uint32_t>(image)
-        .Add<std::uint32_t>(0)
-        .Add<std::uint32_t>(3)
-        .Add<std::uint32_t>(0)
-        .Add<std::uint64_t>(7)
-        .Reals({1, 2, 3})
-        .Add<std::uint8_t>(0)
-        .Add<std::uint16_t>(0)
-        .Reals({0.25})
-        .Add<std::uint64_t>(2)
-        .Add<std::uint32_t>(3)
-        .Add<std::uint32_t>(1)
-        .Add<std::uint32_t>(4)
-        .Add<std::uint32_t>(0);
+        .Add<std::uint64_t>({2, 9})
+        .Add<double>({4, 5, z})
+        .Add<std::uint8_t>({255, 0, 0})
+        .Add<double>({-1})
+        .Add<std::uint64_t>({2})
+        .Add<std::uint32_t>({image, 0, 3, 0})
+        .Add<std::uint64_t>({7})
+        .Add<double>({1, 2, 3})
+        .Add<std::uint8_t>({0, 0, 0})
+        .Add<double>({0.25})
+        .Add<std::uint64_t>({2})
+        .Add<std::uint32_t>({3, 1, 4, 0});
   }
   void WriteBinary() {
     WriteBytes(folder_ / "cameras.bin", ColmapCamerasBinary(2, {500, 320, 240, 0.1}));
@@ -248,7 +228,7 @@ TEST_F(WholeModelTest, BinaryNumbersThatCannotBeAreRefused) {
   WriteBinary();
   WriteBytes(folder_ / "points3D.bin", Points(std::nan("")));
   ExpectRefused({"points3D.bin: point 1", "nan"});
-  WriteBytes(folder_ / "points3D.bin", ColmapBytes().Add<std::uint64_t>(1ull << 60));
+  WriteBytes(folder_ / "points3D.bin", ColmapBytes().Add<std::uint64_t>({1ull << 60}));
   ExpectRefused({"points3D.bin", "1152921504606846976 points", "damaged"});
   WriteBytes(folder_ / "cameras.bin", ColmapCamerasBinary(8, {500, 320, 240, 0.1}));
   ExpectRefused({"cameras.bin: camera 1", "'SIMPLE_RADIAL_FISHEYE'", "image_undistorter"});

@@ -3,17 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "base/error.h"
 #include "dataset/dataset_content.h"
 #include "model/occlusion.h"
-#include "support/dataset_fixture.h"
-#include "support/expect_error.h"
+#include "support/imported_folder.h"
 #include "support/labelled_boxes.h"
 #include "support/run_command.h"
-#include "support/temporary_folder.h"
 
 namespace soslam {
 // Folders of images in the formats of others, down to the imported sequence.
@@ -21,7 +18,7 @@ namespace {
 
 // Four colour images, paired with depth images, of which the first is there; true poses that are
 // 4 ms late, none near the last image; no planes, no object ids.
-class FolderFormatsTest : public testing::Test {
+class FolderFormatsTest : public ImportedFolderTest {
  protected:
   FolderFormatsTest() {
     options_.format = DatasetFormat::kTumRgbd;
@@ -40,17 +37,12 @@ class FolderFormatsTest : public testing::Test {
           "1,book,0.9,101,100,201,200\n3,cup,0.9,103,100,203,200\n");
   }
 
-  void Write(const std::string& name, const std::string& text) const {
-    std::filesystem::create_directories((folder_ / name).parent_path());
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-  }
   // Puts folder txts into the archive txts.tar.gz.
   void PackTxts() const {
     const std::string archive = (folder_ / "txts.tar.gz").string();
     EXPECT_EQ(RunCommand({"tar", "czf", archive, "-C", folder_.string(), "txts"}).exit_code, 0);
     std::filesystem::remove_all(folder_ / "txts");
   }
-  Sequence Import() const { return ImportDataset(folder_, options_); }
   // Imports detections of this format, of which there has to be one.
   Detection ImportOne(DetectionsFormat format, const std::string& name) {
     options_.folder.detections_format = format;
@@ -60,10 +52,6 @@ class FolderFormatsTest : public testing::Test {
     EXPECT_EQ(sequence.ObjectOf(sequence.detections.at(0)).label, "cup");
     return sequence.detections.at(0);
   }
-
-  TemporaryFolder temporary_;
-  std::filesystem::path folder_ = temporary_ / "folder";
-  ImportOptions options_;
 };
 
 namespace fs = std::filesystem;
@@ -123,7 +111,7 @@ TEST_F(FolderFormatsTest, OdometryOfItsOwnWorldIsAligned) {
   EXPECT_TRUE(
       sequence.frames[1].world_from_camera.translation.isApprox(Eigen::Vector3d(0.1, 0, 1), 1e-6));
   options_.folder.odometry = "absent.txt";
-  ExpectError<InputError>([&] { Import(); }, {"absent.txt", "missing"});
+  ExpectRefused({"absent.txt", "missing"});
 }
 
 TEST_F(FolderFormatsTest, KittiTrajectoriesAreInTheOrderOfTheList) {
@@ -132,7 +120,7 @@ TEST_F(FolderFormatsTest, KittiTrajectoriesAreInTheOrderOfTheList) {
   Write("groundtruth.txt", pose + pose + pose + pose);
   EXPECT_EQ(Import().frames[3].world_from_camera.translation.x(), 0.5);
   Write("groundtruth.txt", pose + pose);
-  ExpectError<InputError>([&] { Import(); }, {"groundtruth.txt", "has 2 poses", "expected 4"});
+  ExpectRefused({"groundtruth.txt", "has 2 poses", "expected 4"});
 }
 
 TEST_F(FolderFormatsTest, ColmapNamesItsImages) {
@@ -154,10 +142,9 @@ TEST_F(FolderFormatsTest, ColmapNamesItsImages) {
   EXPECT_EQ(sequence.camera.cx, 319.5);
   EXPECT_EQ(sequence.image_distortion, Distortion{0.1});
   Write("sparse/images.txt", "7 1 0 0 0 -4 0 0 1 2.0.png\n\n8 1 0 0 0 -4 0 0 1 2.0.png\n\n");
-  ExpectError<InputError>([&] { Import(); }, {"images.txt:3", "second pose", "2.0.png"});
+  ExpectRefused({"images.txt:3", "second pose", "2.0.png"});
   Write("sparse/images.txt", "7 1 0 0 0 -4 0 0 1 none.png\n\n");
-  ExpectError<InputError>([&] { Import(); },
-                          {"images.txt:1", "(none.png)", "those that are listed (", "renamed"});
+  ExpectRefused({"images.txt:1", "(none.png)", "those that are listed (", "renamed"});
 }
 
 TEST_F(FolderFormatsTest, GroundTruthMayHaveAFormatOfItsOwn) {
@@ -191,7 +178,7 @@ TEST_F(FolderFormatsTest, NerfstudioIsListTrajectoryAndCamera) {
   EXPECT_TRUE((sequence.frames[1].world_from_camera * Eigen::Vector3d(0, 0, 1))
                   .isApprox(Eigen::Vector3d(4, 2, 2)));
   options_.folder.camera = "640 480 500 510 319.5 239.5";
-  ExpectError<SettingsError>([&] { Import(); }, {"camera_file", "both"});
+  ExpectRefused<SettingsError>({"camera_file", "both"});
 }
 
 TEST_F(FolderFormatsTest, EurocsListOfImages) {
@@ -206,9 +193,9 @@ TEST_F(FolderFormatsTest, EurocsListOfImages) {
   Write("cam0/data.csv", "1 rgb/a,1.png\n2 rgb/2.png\n");
   EXPECT_EQ(Import().frames.at(1).image, "rgb/2.png");
   Write("cam0/data.csv", "1.5,1.png\n");
-  ExpectError<InputError>([&] { Import(); }, {"data.csv:1", "timestamp is 1.5", "nanoseconds"});
+  ExpectRefused({"data.csv:1", "timestamp is 1.5", "nanoseconds"});
   Write("cam0/data.csv", "1,5 1.png\n");
-  ExpectError<InputError>([&] { Import(); }, {"timestamp is '1,5'", "decimal point"});
+  ExpectRefused({"timestamp is '1,5'", "decimal point"});
 }
 
 TEST_F(FolderFormatsTest, EurocsBodyIsNotItsCamera) {
@@ -245,21 +232,21 @@ TEST_F(FolderFormatsTest, IclNuimIsMirrored) {
   const auto pixel = sequence.camera.Project({1, -1, 4});
   EXPECT_EQ(*pixel, Eigen::Vector2d(319.5 + 481.2 / 4, 239.5 - 480.0 / 4));
   Write("pairs.txt", "0.5 rgb/0.png\n");
-  ExpectError<InputError>([&] { Import(); }, {"pairs.txt", "0.5", "number of a frame"});
+  ExpectRefused({"pairs.txt", "0.5", "number of a frame"});
   options_.folder.camera = "640 480 481.2 480 319.5 239.5";
-  ExpectError<SettingsError>([&] { Import(); }, {"camera", "below 0"});
+  ExpectRefused<SettingsError>({"camera", "below 0"});
 }
 
 TEST_F(FolderFormatsTest, SettingsThatCannotBeAreRefused) {
   options_.folder.camera = "640 480 500";
-  ExpectError<SettingsError>([&] { Import(); }, {"camera", "'640 480 500'", "fx fy cx cy"});
+  ExpectRefused<SettingsError>({"camera", "'640 480 500'", "fx fy cx cy"});
   options_.folder.camera = "640.5 480 500 500 320 240";
-  ExpectError<SettingsError>([&] { Import(); }, {"camera", "640.5"});
+  ExpectRefused<SettingsError>({"camera", "640.5"});
   options_.folder.camera = "640 480 500 500 320 240";
   options_.folder.distortion = "0.1 0 0";
-  ExpectError<SettingsError>([&] { Import(); }, {"distortion", "4, 8, 12 or 14"});
+  ExpectRefused<SettingsError>({"distortion", "4, 8, 12 or 14"});
   options_.folder.distortion = "0.1 k2 0 0 0";
-  ExpectError<SettingsError>([&] { Import(); }, {"distortion", "k1 k2 p1 p2 k3"});
+  ExpectRefused<SettingsError>({"distortion", "k1 k2 p1 p2 k3"});
 }
 
 TEST_F(FolderFormatsTest, AllThatIsMissingIsNamedAtOnce) {
@@ -331,7 +318,7 @@ TEST_F(FolderFormatsTest, OaSlamWithImagesThatAreNotListed) {
   EXPECT_EQ(ImportOne(DetectionsFormat::kOaSlam, "oa.json").frame_index, 2);
   EXPECT_EQ(Import().rejected_detections.at("frame_not_listed"), 1);
   Write("oa.json", "[" + unlisted + "]");
-  ExpectError<InputError>([&] { Import(); }, {"oa.json#/0", "3.2.png", "pairs.txt"});
+  ExpectRefused({"oa.json#/0", "3.2.png", "pairs.txt"});
 }
 
 TEST_F(FolderFormatsTest, KittiBoxesByClass) {
@@ -340,7 +327,7 @@ TEST_F(FolderFormatsTest, KittiBoxesByClass) {
   ExpectBox(ImportOne(DetectionsFormat::kKitti, "boxes/cup/0001.txt").box, {10, 20, 30, 40});
   Write("boxes/cup/0002.txt", "");
   options_.detections = "boxes";
-  ExpectError<InputError>([&] { Import(); }, {"boxes/cup", "2 files"});
+  ExpectRefused({"boxes/cup", "2 files"});
 }
 
 // A lens that pulls everything inwards: its images show more than a camera without it would see.
@@ -385,7 +372,7 @@ TEST_F(FolderFormatsTest, DamagedArchivesAreRefused) {
   Write("boxes.tar.gz", "this is no archive");
   options_.folder.detections_format = DetectionsFormat::kYolo;
   options_.detections = "boxes.tar.gz";
-  ExpectError<InputError>([&] { Import(); }, {"boxes.tar.gz", "expected an archive"});
+  ExpectRefused({"boxes.tar.gz", "expected an archive"});
 }
 
 }  // namespace

@@ -7,10 +7,8 @@
 #include "base/error.h"
 #include "dataset/dataset_content.h"
 #include "dataset/kitti_label.h"
-#include "support/expect_error.h"
+#include "support/imported_folder.h"
 #include "support/kitti_fixture.h"
-#include "support/labelled_boxes.h"
-#include "support/temporary_folder.h"
 
 namespace soslam {
 namespace {
@@ -18,42 +16,39 @@ namespace {
 using testing::ElementsAre;
 using testing::Pair;
 
-class KittiTrackingTest : public testing::Test {
+class KittiTrackingTest : public ImportedFolderTest {
  protected:
   KittiTrackingTest() {
-    options.format = DatasetFormat::kKittiTracking;
-    options.border_px = 0.0;
-    options.min_observations = 1;
-    options.kitti.translation_scale = "0.5";
-    options.kitti.static_min_views = KittiTrackingFixture::kFrames;
-    options.kitti.static_radius_m = 0.1;
+    options_.format = DatasetFormat::kKittiTracking;
+    options_.border_px = 0.0;
+    options_.min_observations = 1;
+    options_.kitti.translation_scale = "0.5";
+    options_.kitti.static_min_views = KittiTrackingFixture::kFrames;
+    options_.kitti.static_radius_m = 0.1;
   }
 
-  Sequence Import() {
-    fixture.Write(folder);
-    return ImportDataset(folder, options);
+  Sequence Import() override {
+    fixture.Write(folder_);
+    return ImportedFolderTest::Import();
   }
-  void ExpectRefused(const std::string& file, const std::string& text,
-                     const std::vector<std::string>& words) {
+  void ExpectRefusedWith(const std::string& file, const std::string& text,
+                         const std::vector<std::string>& words) {
     const std::string before = fixture.files[file];
     fixture.files[file] = text;
-    ExpectError<InputError>([&] { Import(); }, words);
+    ExpectRefused(words);
     fixture.files[file] = before;
   }
   void WriteImage(const std::string& name, int width, int height) {
-    std::filesystem::create_directories((folder / name).parent_path());
-    cv::imwrite((folder / name).string(), cv::Mat(height, width, CV_8UC1, cv::Scalar(90)));
+    std::filesystem::create_directories((folder_ / name).parent_path());
+    cv::imwrite((folder_ / name).string(), cv::Mat(height, width, CV_8UC1, cv::Scalar(90)));
   }
 
   KittiTrackingFixture fixture;
-  ImportOptions options;
-  TemporaryFolder temporary_;
-  std::filesystem::path folder = temporary_ / "kitti";
 };
 
 TEST_F(KittiTrackingTest, EachRecordingIsASegment) {
   const Sequence sequence = Import();
-  EXPECT_EQ(sequence.name, "kitti");
+  EXPECT_EQ(sequence.name, "small");
   EXPECT_EQ(sequence.camera.width, 1242);
   EXPECT_EQ(sequence.camera.fx, kKittiFocal);
   ASSERT_EQ(sequence.frames.size(), 8u);
@@ -112,8 +107,8 @@ TEST_F(KittiTrackingTest, WhatIsTrueDoesNotDependOnWhatIsDetected) {
   for (const Detection& detection : all.detections) {
     EXPECT_EQ(detection.true_object_id, all.ObjectOf(detection).id);
   }
-  options.max_occlusion = 0;
-  options.labels = "car, van";
+  options_.max_occlusion = 0;
+  options_.labels = "car, van";
   const Sequence some = Import();
   EXPECT_EQ(some.truth_in_frames.size(), all.truth_in_frames.size());
   ASSERT_EQ(some.rejected.size(), 1u);
@@ -127,24 +122,24 @@ TEST_F(KittiTrackingTest, WhatIsTrueDoesNotDependOnWhatIsDetected) {
 }
 
 TEST_F(KittiTrackingTest, SomeRecordingsOnly) {
-  options.kitti.sequences = "0005-0009";
+  options_.kitti.sequences = "0005-0009";
   EXPECT_EQ(Import().frames.size(), 4u);
-  options.kitti.sequences = "0003 0003-0007";
+  options_.kitti.sequences = "0003 0003-0007";
   EXPECT_EQ(Import().frames.size(), 8u);
-  options.kitti.sequences = "0004";
-  ExpectError<SettingsError>([&] { Import(); }, {"sequences", "0004"});
+  options_.kitti.sequences = "0004";
+  ExpectRefused<SettingsError>({"sequences", "0004"});
 }
 
 TEST_F(KittiTrackingTest, FiltersAreCountedByReason) {
-  options.labels = "car, van";
-  options.max_occlusion = 0;
+  options_.labels = "car, van";
+  options_.max_occlusion = 0;
   EXPECT_THAT(Import().rejected_detections, ElementsAre(Pair("other_label", 1)));
-  options.labels = "";
+  options_.labels = "";
   EXPECT_THAT(Import().rejected_detections, ElementsAre(Pair("occluded", 1)));
   // What is parked comes nearer: 84, 91, 100 and 111 px high.
-  options.min_box_height_px = 95.0;
+  options_.min_box_height_px = 95.0;
   EXPECT_EQ(Import().rejected_detections.at("low_box"), 4);
-  options.frame_stride = 2;
+  options_.frame_stride = 2;
   const Sequence sequence = Import();
   EXPECT_EQ(sequence.frames.size(), 4u);
   EXPECT_EQ(sequence.frames[3].id, 70002);
@@ -163,7 +158,7 @@ TEST_F(KittiTrackingTest, ADetectorsBoxesTakeTheObjectsOfTheLabels) {
   // Where the van is, and no car.
   fixture.files["rrc/Car/0007.txt"] =
       row(2, parked.x_min, parked.y_min, parked.x_max, parked.y_max, 1);
-  options.detections = "rrc";
+  options_.detections = "rrc";
   const Sequence sequence = Import();
   ASSERT_EQ(sequence.detections.size(), 1u);
   const Detection& detection = sequence.detections[0];
@@ -178,12 +173,12 @@ TEST_F(KittiTrackingTest, ADetectorsBoxesTakeTheObjectsOfTheLabels) {
   EXPECT_EQ(sequence.frames[sequence.rejected[0].frame_index].id, 30001);
 
   fixture.files["rrc/Car/0007.txt"] = "0,1,2,3\n";
-  ExpectError<InputError>([&] { Import(); }, {"Car/0007.txt:1", "4 fields"});
-  std::filesystem::remove_all(folder / "rrc/Car");
+  ExpectRefused({"Car/0007.txt:1", "4 fields"});
+  std::filesystem::remove_all(folder_ / "rrc/Car");
   fixture.files.erase("rrc/Car/0007.txt");
-  ExpectError<InputError>([&] { Import(); }, {"Car/0007.txt", "missing"});
-  options.detections = "yolo";
-  ExpectError<InputError>([&] { Import(); }, {"yolo", "folder"});
+  ExpectRefused({"Car/0007.txt", "missing"});
+  options_.detections = "yolo";
+  ExpectRefused({"yolo", "folder"});
 }
 
 TEST_F(KittiTrackingTest, ImagesAreNamedWhereTheyAre) {
@@ -197,7 +192,7 @@ TEST_F(KittiTrackingTest, ImagesAreNamedWhereTheyAre) {
   EXPECT_EQ(all.CameraOf(all.frames[5]).width, 1200);
   EXPECT_EQ(all.CameraOf(all.frames[6]).height, 360);
   EXPECT_EQ(all.CameraOf(all.frames[6]).fx, kKittiFocal);
-  options.images_only = true;
+  options_.images_only = true;
   const Sequence some = Import();
   EXPECT_EQ(some.frames.size(), 2u);
   EXPECT_EQ(some.detections.size(), 2u);
@@ -205,49 +200,39 @@ TEST_F(KittiTrackingTest, ImagesAreNamedWhereTheyAre) {
 }
 
 TEST_F(KittiTrackingTest, BadInputIsRefused) {
-  ExpectRefused("label_02/0003.txt", "4 0 " + KittiBox().Columns(),
-                {"label_02/0003.txt:1", "frame is 4", "0 to 3"});
-  ExpectRefused("label_02/0003.txt", "0 -1 " + KittiBox().Columns(), {"track is -1"});
-  ExpectRefused("label_02/0003.txt", "0 10000 " + KittiBox().Columns(), {"track is 10000"});
-  ExpectRefused("label_02/0003.txt",
-                "0 5 " + KittiBox().Columns() + "1 5 " + KittiBox().Columns("Van"),
-                {"label_02/0003.txt:2", "track 5", "Van", "Car"});
-  ExpectRefused("label_02/0003.txt", KittiBox().Columns(), {"15 values", "frame track"});
-  ExpectRefused("poses/0007.txt", "", {"poses/0007.txt", "no pose"});
-  ExpectRefused("calib/0007.txt", "", {"calib/0007.txt", "P2"});
-  options.kitti.translation_scale = "0003:1";
-  ExpectError<SettingsError>([&] { Import(); }, {"translation_scale", "0007"});
-  options.kitti.translation_scale = "1";
-  options.kitti.poses = "no_poses";
-  ExpectError<InputError>([&] { Import(); }, {"no_poses/0003.txt", "missing"});
-  ExpectError<InputError>([&] { ImportDataset(folder / "calib", options); }, {"label_02"});
+  ExpectRefusedWith("label_02/0003.txt", "4 0 " + KittiBox().Columns(),
+                    {"label_02/0003.txt:1", "frame is 4", "0 to 3"});
+  ExpectRefusedWith("label_02/0003.txt", "0 -1 " + KittiBox().Columns(), {"track is -1"});
+  ExpectRefusedWith("label_02/0003.txt", "0 10000 " + KittiBox().Columns(), {"track is 10000"});
+  ExpectRefusedWith("label_02/0003.txt",
+                    "0 5 " + KittiBox().Columns() + "1 5 " + KittiBox().Columns("Van"),
+                    {"label_02/0003.txt:2", "track 5", "Van", "Car"});
+  ExpectRefusedWith("label_02/0003.txt", KittiBox().Columns(), {"15 values", "frame track"});
+  ExpectRefusedWith("poses/0007.txt", "", {"poses/0007.txt", "no pose"});
+  ExpectRefusedWith("calib/0007.txt", "", {"calib/0007.txt", "P2"});
+  options_.kitti.translation_scale = "0003:1";
+  ExpectRefused<SettingsError>({"translation_scale", "0007"});
+  options_.kitti.translation_scale = "1";
+  options_.kitti.poses = "no_poses";
+  ExpectRefused({"no_poses/0003.txt", "missing"});
+  ExpectError<InputError>([&] { ImportDataset(folder_ / "calib", options_); }, {"label_02"});
 }
 
-class KittiObjectTest : public testing::Test {
+class KittiObjectTest : public ImportedFolderTest {
  protected:
   KittiObjectTest() {
-    options.format = DatasetFormat::kKittiObject;
-    options.border_px = 0.0;
-    options.min_observations = 1;
-    for (const char* folder_name : {"label_2", "calib", "image_2"}) {
-      std::filesystem::create_directories(folder / folder_name);
-    }
+    options_.format = DatasetFormat::kKittiObject;
+    options_.border_px = 0.0;
+    options_.min_observations = 1;
+    std::filesystem::create_directories(folder_ / "image_2");
     Write("calib/000003.txt", KittiCalibrationText());
     Write("calib/000011.txt", KittiCalibrationText());
     Write("label_2/000003.txt", KittiBox{2, 1.6, 12, 0.5}.Columns() + kKittiDontCare +
                                     KittiBox{-3, 1.6, 15, 0.1}.Columns("Car", "0.40", 1));
     Write("label_2/000011.txt", KittiBox{7, 1.6, 11, 0.5}.Columns());
-    cv::imwrite((folder / "image_2/000011.png").string(),
+    cv::imwrite((folder_ / "image_2/000011.png").string(),
                 cv::Mat(360, 1100, CV_8UC1, cv::Scalar(90)));
   }
-  void Write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder / name, std::ios::binary) << text;
-  }
-  Sequence Import() const { return ImportDataset(folder, options); }
-
-  ImportOptions options;
-  TemporaryFolder temporary_;
-  std::filesystem::path folder = temporary_ / "kitti_object";
 };
 
 TEST_F(KittiObjectTest, EachFrameIsASegment) {
@@ -285,9 +270,8 @@ TEST_F(KittiObjectTest, BoxesEndWhereACroppedImageDoes) {
 }
 
 TEST_F(KittiObjectTest, TruncationIsAShare) {
-  ImportOptions whole = options;
-  whole.max_truncation = 0.39;
-  const Sequence sequence = ImportDataset(folder, whole);
+  options_.max_truncation = 0.39;
+  const Sequence sequence = Import();
   EXPECT_EQ(sequence.detections.size(), 2u);
   EXPECT_EQ(sequence.rejected_detections.at("truncated"), 1);
 }
@@ -299,7 +283,7 @@ TEST_F(KittiObjectTest, AFrameWithoutLabelsIsAFrame) {
 }
 
 TEST(KittiBoxesTest, BadLinesAreNamed) {
-  const TemporaryFolder folder;
+  const TemporaryFolder folder_;
   const BadTexts cases = {{"1,2,3,4,5", {"has 5 fields", "frame,x1,y1,x2,y2,score"}},
                           {"1 2 3 4 5 6", {"has 1 fields"}},
                           {"1.5,1,2,3,4,1", {"frame is '1.5'"}},
@@ -308,7 +292,7 @@ TEST(KittiBoxesTest, BadLinesAreNamed) {
                           {"1,1,2,3,4,", {"score is ''"}},
                           {"1,10,2,3,4,1", {"box is 10 2 3 4", "x1 <= x2"}}};
   ExpectBadTexts(cases, "0000.txt:2", [&](const std::string& line) {
-    ReadKittiBoxes(WriteBytes(folder / "0000.txt", "0,1,2,3,4,1\r\n" + line + "\r\n"));
+    ReadKittiBoxes(WriteBytes(folder_ / "0000.txt", "0,1,2,3,4,1\r\n" + line + "\r\n"));
   });
 }
 

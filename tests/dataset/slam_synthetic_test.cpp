@@ -3,19 +3,17 @@
 
 #include "base/error.h"
 #include "dataset/dataset_content.h"
-#include "support/dataset_fixture.h"
-#include "support/expect_error.h"
-#include "support/temporary_folder.h"
+#include "support/imported_folder.h"
 
 namespace soslam {
 namespace {
 
-class SlamSyntheticTest : public testing::Test {
+class SlamSyntheticTest : public ImportedFolderTest {
  protected:
   SlamSyntheticTest() {
     options_.format = DatasetFormat::kSlamSynthetic;
-    Write("A", Problem("0.5"));
-    Write("B", Problem("0.7"));
+    Write("A.json", Problem("0.5"));
+    Write("B.json", Problem("0.7"));
   }
 
   // Three frames and one object, the first dead reckoning with this x.
@@ -33,14 +31,6 @@ class SlamSyntheticTest : public testing::Test {
                {"frame": 1, "object": 0, "box": [101, 100, 201, 200]},
                {"frame": 2, "object": 0, "box": [102, 100, 202, 200]}]})";
   }
-  void Write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / (name + ".json")) << text;
-  }
-  Sequence Import() const { return ImportDataset(folder_, options_); }
-
-  TemporaryFolder temporary_;
-  std::filesystem::path folder_ = temporary_.path();
-  ImportOptions options_;
 };
 
 TEST_F(SlamSyntheticTest, AProblemIsASegment) {
@@ -70,22 +60,20 @@ TEST_F(SlamSyntheticTest, ProblemsAreChosenByName) {
   EXPECT_EQ(sequence.frames[0].id, 10000);  // whatever else is chosen
   EXPECT_EQ(sequence.frames[0].world_from_camera.translation.x(), 0.0);
   options_.kitti.sequences = "B C";
-  ExpectError<SettingsError>([&] { Import(); }, {"sequences", "'C'"});
+  ExpectRefused<SettingsError>({"sequences", "'C'"});
 }
 
 TEST_F(SlamSyntheticTest, BadInputIsRefused) {
-  const auto replaced = [](std::string text, const std::string& from, const std::string& to) {
-    return text.replace(text.find(from), from.size(), to);
+  const auto refused = [&](const std::string& from, const std::string& to,
+                           const std::vector<std::string>& words) {
+    std::string text = Problem("0.5");
+    Write("A.json", text.replace(text.find(from), from.size(), to));
+    ExpectRefused(words);
   };
-  const std::string good = Problem("0.5");
-  Write("A", replaced(good, "\"object\": 0", "\"object\": 1"));
-  ExpectError<InputError>([&] { Import(); }, {"A.json#/boxes/0", "object is 1", "0 to 0"});
-  Write("A", replaced(good, "[[1,0,0,0]", "[[2,0,0,0]"));
-  ExpectError<InputError>([&] { Import(); }, {"A.json#/T_wc/0", "not orthonormal"});
-  Write("A", replaced(good, "[[1,0,0,0]", "[[0,0,0]"));
-  ExpectError<InputError>([&] { Import(); }, {"A.json#/T_wc/0", "4 rows of 4 numbers"});
-  Write("A", replaced(good, "\"half\": [0.1", "\"half\": [0"));
-  ExpectError<InputError>([&] { Import(); }, {"A.json#/objects/0", "half"});
+  refused("\"object\": 0", "\"object\": 1", {"A.json#/boxes/0", "object is 1", "0 to 0"});
+  refused("[[1,0,0,0]", "[[2,0,0,0]", {"A.json#/T_wc/0", "not orthonormal"});
+  refused("[[1,0,0,0]", "[[0,0,0]", {"A.json#/T_wc/0", "4 rows of 4 numbers"});
+  refused("\"half\": [0.1", "\"half\": [0", {"A.json#/objects/0", "half"});
 }
 
 }  // namespace

@@ -21,7 +21,6 @@
 #include "geometry/box.h"
 #include "geometry/camera.h"
 #include "geometry/rigid3.h"
-#include "support/dataset_fixture.h"
 #include "support/image_files.h"
 #include "support/looking_at.h"
 #include "support/temporary_folder.h"
@@ -110,7 +109,7 @@ struct PlausibleDataset {
   void Write(const std::filesystem::path& folder) const {
     std::filesystem::create_directories(folder);
     const auto write = [&](const std::string& name, const std::string& text) {
-      std::ofstream(folder / name, std::ios::binary) << text;
+      WriteBytes(folder / name, text);
     };
     const Camera& c = written_camera;
     write("camera.json",
@@ -192,6 +191,12 @@ class DatasetChecksTest : public testing::Test {
     const std::vector<std::string> warnings = Warnings();
     ASSERT_EQ(warnings.size(), 1u) << testing::PrintToString(warnings);
     for (const std::string& word : words) EXPECT_THAT(warnings[0], testing::HasSubstr(word));
+  }
+  // Expects a warning with these words, and maybe others.
+  void ExpectAmongWarnings(const std::vector<std::string>& words) {
+    std::vector<testing::Matcher<std::string>> has_all;
+    for (const std::string& word : words) has_all.push_back(testing::HasSubstr(word));
+    EXPECT_THAT(Warnings(), testing::Contains(testing::AllOfArray(has_all)));
   }
   void ExpectRefusal(const std::vector<std::string>& words) {
     const std::string refusal = Refusal();

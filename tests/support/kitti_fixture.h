@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,7 +13,7 @@
 #include <map>
 #include <string>
 
-#include "support/dataset_fixture.h"
+#include "geometry/box.h"
 
 namespace soslam {
 
