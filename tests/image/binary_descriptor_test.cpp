@@ -74,81 +74,73 @@ cv::Mat RandomTexture(const cv::Size& size = {kWidth, kHeight}, int brightest = 
   return grey;
 }
 
-Eigen::Vector2d RandomInnerPixel() {
-  return {RandomUniform(15, kWidth - 16), RandomUniform(15, kHeight - 16)};
-}
+struct Brief {
+  static constexpr int kRadius = 15;  // of the patch, px
+  static auto At(const cv::Mat& grey, const Eigen::Vector2d& pixel, bool mirrored = false) {
+    return BriefDescriptor(SmoothForBrief(grey), pixel, mirrored);
+  }
+};
 
-TEST(BriefTest, MirroredDescriptorAtTheMirrorPixelIsTheSame) {
+struct Freak {
+  static constexpr int kRadius = 22;
+  static auto At(const cv::Mat& grey, const Eigen::Vector2d& pixel, bool mirrored = false) {
+    return FreakDescriptor(SmoothForFreak(grey), pixel, mirrored);
+  }
+};
+
+template <typename Descriptor>
+class DescriptorTest : public testing::Test {
+ protected:
+  static constexpr int kRadius = Descriptor::kRadius;
+
+  static Eigen::Vector2d PixelWithPatch() {
+    return {RandomUniform(kRadius, kWidth - kRadius - 1),
+            RandomUniform(kRadius, kHeight - kRadius - 1)};
+  }
+};
+using Descriptors = testing::Types<Brief, Freak>;
+TYPED_TEST_SUITE(DescriptorTest, Descriptors);
+
+TYPED_TEST(DescriptorTest, MirroredDescriptorAtTheMirrorPixelIsTheSame) {
   const cv::Mat grey = RandomTexture();
   cv::Mat flipped;
   cv::flip(grey, flipped, 1);
-  const cv::Mat smoothed = SmoothForBrief(grey);
-  const cv::Mat smoothed_flipped = SmoothForBrief(flipped);
   for (int i = 0; i < 100; ++i) {
-    const Eigen::Vector2d pixel = RandomInnerPixel();
+    const Eigen::Vector2d pixel = this->PixelWithPatch();
     const Eigen::Vector2d mirror_pixel(kWidth - 1 - pixel.x(), pixel.y());
-    const auto plain = BriefDescriptor(smoothed, pixel, false);
-    const auto mirrored = BriefDescriptor(smoothed_flipped, mirror_pixel, true);
+    const auto plain = TypeParam::At(grey, pixel);
+    const auto mirrored = TypeParam::At(flipped, mirror_pixel, true);
     ASSERT_TRUE(plain && mirrored);
     EXPECT_EQ(*plain, *mirrored);
-    EXPECT_NE(*plain, *BriefDescriptor(smoothed_flipped, mirror_pixel, false));
+    EXPECT_GT(HammingDistance(*plain, *TypeParam::At(flipped, mirror_pixel, false)), 0.1);
   }
 }
 
-TEST(BriefTest, IgnoresBrightness) {
-  cv::Mat grey = RandomTexture() / 2;
-  const cv::Mat brighter = grey + 100;
-  const Eigen::Vector2d pixel = RandomInnerPixel();
-  EXPECT_EQ(*BriefDescriptor(grey, pixel, false), *BriefDescriptor(brighter, pixel, false));
+TYPED_TEST(DescriptorTest, IgnoresBrightness) {
+  const cv::Mat grey = RandomTexture({kWidth, kHeight}, 155);
+  for (int i = 0; i < 10; ++i) {
+    const Eigen::Vector2d pixel = this->PixelWithPatch();
+    const auto plain = TypeParam::At(grey, pixel);
+    ASSERT_TRUE(plain);
+    EXPECT_EQ(plain, TypeParam::At(grey + RandomUniform(1, 100), pixel));
+  }
 }
 
-TEST(BriefTest, NoneWhereThePatchReachesOut) {
+TYPED_TEST(DescriptorTest, NoneWhereThePatchReachesOut) {
+  constexpr int kRadius = TypeParam::kRadius;
   const cv::Mat grey = RandomTexture();
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const bool mirrored : {false, true}) {
-    EXPECT_TRUE(BriefDescriptor(grey, {14.5, 15}, mirrored));
-    EXPECT_TRUE(BriefDescriptor(grey, {kWidth - 15.6, kHeight - 15.6}, mirrored));
+    EXPECT_TRUE(TypeParam::At(grey, {kRadius - 0.5, kRadius}, mirrored));
+    EXPECT_TRUE(TypeParam::At(grey, {kWidth - kRadius - 0.6, kHeight - kRadius - 0.6}, mirrored));
     for (const Eigen::Vector2d& pixel :
-         {Eigen::Vector2d(14.4, 20), Eigen::Vector2d(kWidth - 15.5, 20), Eigen::Vector2d(20, 14.4),
-          Eigen::Vector2d(20, kHeight - 15.5), Eigen::Vector2d(nan, 20), Eigen::Vector2d(20, nan),
-          Eigen::Vector2d(1e300, 20)}) {
-      EXPECT_FALSE(BriefDescriptor(grey, pixel, mirrored)) << pixel.transpose();
+         {Eigen::Vector2d(kRadius - 0.6, 30), Eigen::Vector2d(kWidth - kRadius - 0.5, 30),
+          Eigen::Vector2d(30, kRadius - 0.6), Eigen::Vector2d(30, kHeight - kRadius - 0.5),
+          Eigen::Vector2d(nan, 30), Eigen::Vector2d(30, nan), Eigen::Vector2d(1e300, 30)}) {
+      EXPECT_FALSE(TypeParam::At(grey, pixel, mirrored)) << pixel.transpose();
     }
-    EXPECT_FALSE(BriefDescriptor(cv::Mat(30, 30, CV_8UC1, cv::Scalar(0)), {15, 15}, mirrored));
-  }
-}
-
-constexpr int kRadius = 22;  // of the patch, px
-
-Eigen::Vector2d PixelWithPatch() {
-  return {RandomUniform(kRadius, kWidth - kRadius - 1),
-          RandomUniform(kRadius, kHeight - kRadius - 1)};
-}
-
-FreakBits FreakAt(const cv::Mat& grey, const Eigen::Vector2d& pixel, bool mirrored = false) {
-  const auto bits = FreakDescriptor(SmoothForFreak(grey), pixel, mirrored);
-  EXPECT_TRUE(bits);
-  return bits.value_or(FreakBits());
-}
-
-TEST(FreakTest, MirroredDescriptorAtTheMirrorPixelIsTheSame) {
-  const cv::Mat grey = RandomTexture();
-  cv::Mat flipped;
-  cv::flip(grey, flipped, 1);
-  for (int i = 0; i < 10; ++i) {
-    const Eigen::Vector2d pixel = PixelWithPatch();
-    const Eigen::Vector2d mirror_pixel(kWidth - 1 - pixel.x(), pixel.y());
-    const FreakBits plain = FreakAt(grey, pixel);
-    EXPECT_EQ(HammingDistance(plain, FreakAt(flipped, mirror_pixel, true)), 0.0);
-    EXPECT_GT(HammingDistance(plain, FreakAt(flipped, mirror_pixel, false)), 0.1);
-  }
-}
-
-TEST(FreakTest, IgnoresBrightness) {
-  const cv::Mat grey = RandomTexture({kWidth, kHeight}, 155);
-  for (int i = 0; i < 10; ++i) {
-    const Eigen::Vector2d pixel = PixelWithPatch();
-    EXPECT_EQ(FreakAt(grey, pixel), FreakAt(grey + RandomUniform(1, 100), pixel));
+    const cv::Mat small(2 * kRadius, 2 * kRadius, CV_8UC1, cv::Scalar(0));
+    EXPECT_FALSE(TypeParam::At(small, {kRadius, kRadius}, mirrored));
   }
 }
 
@@ -167,23 +159,6 @@ TEST(FreakTest, BitsAreDifferentAndEachIsSetInHalfOfAllPatches) {
     EXPECT_LT(set, 0.6 * kPatches);
   }
   EXPECT_EQ(std::set<std::string>(values.begin(), values.end()).size(), values.size());
-}
-
-TEST(FreakTest, NoneWhereThePatchReachesOut) {
-  const FreakImage smoothed = SmoothForFreak(RandomTexture());
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const bool mirrored : {false, true}) {
-    EXPECT_TRUE(FreakDescriptor(smoothed, {21.5, 22}, mirrored));
-    EXPECT_TRUE(FreakDescriptor(smoothed, {kWidth - 22.6, kHeight - 22.6}, mirrored));
-    for (const Eigen::Vector2d& pixel :
-         {Eigen::Vector2d(21.4, 30), Eigen::Vector2d(kWidth - 22.5, 30), Eigen::Vector2d(30, 21.4),
-          Eigen::Vector2d(30, kHeight - 22.5), Eigen::Vector2d(nan, 30), Eigen::Vector2d(30, nan),
-          Eigen::Vector2d(1e300, 30)}) {
-      EXPECT_FALSE(FreakDescriptor(smoothed, pixel, mirrored)) << pixel.transpose();
-    }
-    const FreakImage small = SmoothForFreak(cv::Mat(44, 44, CV_8UC1, cv::Scalar(0)));
-    EXPECT_FALSE(FreakDescriptor(small, {22, 22}, mirrored));
-  }
 }
 
 }  // namespace
