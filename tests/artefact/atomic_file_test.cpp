@@ -9,10 +9,10 @@
 #include <csignal>
 #include <opencv2/core/version.hpp>
 
-#include "artefact/json_file.h"
 #include "artefact/run_file.h"
 #include "base/error.h"
 #include "base/hash.h"
+#include "support/edited_json.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 
@@ -107,8 +107,6 @@ TEST_F(AtomicFileTest, UnusableTargetsAreRefused) {
   EXPECT_EQ(FilesInFolder(), 0);
 }
 
-using nlohmann::json;
-
 RunRecord SmallRecord() {
   RunRecord record;
   record.stage = "soslam-planes";
@@ -131,15 +129,6 @@ RunRecord SmallRecord() {
 
 class RunFileTest : public testing::Test {
  protected:
-  // Reads the small record after a change of its JSON.
-  RunRecord ReadChanged(const std::function<void(json*)>& change) const {
-    WriteRun(file_, SmallRecord());
-    json document = ParseJsonFile(file_);
-    change(&document);
-    WriteBytes(file_, document.dump());
-    return ReadRun(file_);
-  }
-
   TemporaryFolder folder_;
   std::filesystem::path file_ = folder_ / "run.json";
 };
@@ -174,22 +163,18 @@ TEST_F(RunFileTest, KeepsAFailure) {
 }
 
 TEST_F(RunFileTest, RefusesDamagedRecordsByName) {
-  const std::vector<std::pair<std::function<void(json*)>, std::string>> cases = {
-      {[](json* run) { run->erase("inputs"); }, "inputs"},
-      {[](json* run) { (*run)["inputs"][0]["sha256"] = "ABC"; }, "/inputs/0/sha256"},
-      {[](json* run) { (*run)["inputs"][0]["relative_to"] = "nowhere"; }, "/inputs/0/relative_to"},
-      {[](json* run) { (*run)["outputs"][0]["relative_to"] = "table"; }, "/outputs/0/relative_to"},
-      {[](json* run) { (*run)["settings"]["count"]["origin"] = "fate"; }, "/settings/count/origin"},
-      {[](json* run) { (*run)["exit_code"] = -1; }, "exit_code"},
-      {[](json* run) { (*run)["stage"] = "rm -r"; }, "stage"},
-      {[](json* run) { (*run)["artefact"]["kind"] = "map"; }, "expected \"run\""},
-      {[](json* run) {
-         (*run)["artefact"]["schema_version"] = {9, 0};
-       },
-       "version [9, 0]"}};
-  for (const auto& [change, word] : cases) {
-    ExpectError<InputError>([&, &change = change] { ReadChanged(change); }, {"run.json", word});
-  }
+  WriteRun(file_, SmallRecord());
+  ExpectEditsRefused(file_,
+                     {{"/inputs", nullptr, "inputs"},
+                      {"/inputs/0/sha256", "\"ABC\"", "/inputs/0/sha256"},
+                      {"/inputs/0/relative_to", "\"nowhere\"", "/inputs/0/relative_to"},
+                      {"/outputs/0/relative_to", "\"table\"", "/outputs/0/relative_to"},
+                      {"/settings/count/origin", "\"fate\"", "/settings/count/origin"},
+                      {"/exit_code", "-1", "exit_code"},
+                      {"/stage", "\"rm -r\"", "stage"},
+                      {"/artefact/kind", "\"map\"", "expected \"run\""},
+                      {"/artefact/schema_version", "[9, 0]", "version [9, 0]"}},
+                     [&] { ReadRun(file_); });
   WriteBytes(file_, "{");
   ExpectError<InputError>([&] { ReadRun(file_); }, {"run.json"});
 }

@@ -10,6 +10,7 @@
 #include "artefact/model_json.h"
 #include "base/error.h"
 #include "model/occlusion.h"
+#include "support/edited_json.h"
 #include "support/expect_error.h"
 #include "support/random_estimates.h"
 #include "support/temporary_folder.h"
@@ -63,11 +64,10 @@ TEST_F(ArtefactFilesTest, MapsSayWhatAnObjectMayBe) {
 
 TEST_F(ArtefactFilesTest, PlanesAreKnownForAllOrNone) {
   WriteSequence(file, sequence, {});
-  nlohmann::json edited = ParseJsonFile(file);
-  edited["detections"][1]["plane_in_camera"] = nullptr;
-  std::ofstream(file) << edited;
-  ExpectError<InputError>([&] { ReadSequence(file); },
-                          {"/detections/1/plane_in_camera is null", "expected a plane"});
+  ExpectEditsRefused(file,
+                     {{"/detections/1/plane_in_camera", "null",
+                       "/detections/1/plane_in_camera is null; expected a plane"}},
+                     [&] { ReadSequence(file); });
 }
 
 TEST_F(ArtefactFilesTest, WhatASequenceMayHaveComesBack) {
@@ -99,16 +99,11 @@ TEST_F(ArtefactFilesTest, WhatASequenceMayHaveComesBack) {
 TEST_F(ArtefactFilesTest, RowsOfRejectedDetectionsAreChecked) {
   sequence.rejected = {{0, "cup", 0.5, {1, 2, 3, 4}, {}, RejectingStage::kImport, "low_box"}};
   WriteSequence(file, sequence, {});
-  const nlohmann::json good = ParseJsonFile(file);
-  const auto refused = [&](size_t field, int value, std::vector<std::string> words) {
-    nlohmann::json edited = good;
-    edited["rejected"]["rows"][0][field] = value;
-    std::ofstream(file) << edited;
-    ExpectError<InputError>([&] { ReadSequence(file); }, words);
-  };
-  refused(0, 99999, {"frame", "99999"});
-  refused(1, 1, {"/rejected/rows/0/1 is 1; expected less than 1"});
-  refused(2, 7, {"/rejected/rows/0/2 is 7"});
+  ExpectEditsRefused(file,
+                     {{"/rejected/rows/0/0", "99999", "frame 99999"},
+                      {"/rejected/rows/0/1", "1", "/rejected/rows/0/1 is 1; expected less than 1"},
+                      {"/rejected/rows/0/2", "7", "/rejected/rows/0/2 is 7"}},
+                     [&] { ReadSequence(file); });
 }
 
 TEST_F(ArtefactFilesTest, BeforeVersion17ObjectsSaidWhatIsTrue) {

@@ -18,14 +18,45 @@ class Hdf5ChecksTest : public testing::Test {
  protected:
   Hdf5ChecksTest() { file_ = H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT); }
   // A data set of float64 in which nothing is written.
-  void CreateDataSet(const ArrayShape& shape, hid_t creation, const char* name = "/values") const {
+  Hdf5Handle CreateDataSet(const ArrayShape& shape, hid_t creation,
+                           const std::string& name = "/values") const {
     const std::vector<hsize_t> sizes(shape.begin(), shape.end());
     const Hdf5Handle space{H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr),
                            &H5Sclose};
-    const Hdf5Handle data_set{
-        H5Dcreate2(file_, name, H5T_IEEE_F64LE, space.id(), H5P_DEFAULT, creation, H5P_DEFAULT),
-        &H5Dclose};
-    ASSERT_TRUE(data_set.valid());
+    Hdf5Handle data_set{H5Dcreate2(file_, name.c_str(), H5T_IEEE_F64LE, space.id(), H5P_DEFAULT,
+                                   creation, H5P_DEFAULT),
+                        &H5Dclose};
+    EXPECT_TRUE(data_set.valid());
+    return data_set;
+  }
+  // Properties of a data set in chunks that are packed by these filters, in this order.
+  static Hdf5Handle Chunks(hsize_t size, const std::vector<H5Z_filter_t>& filters = {}) {
+    Hdf5Handle creation{H5Pcreate(H5P_DATASET_CREATE), &H5Pclose};
+    H5Pset_chunk(creation.id(), 1, &size);
+    for (const H5Z_filter_t filter : filters) {
+      filter == H5Z_FILTER_DEFLATE ? H5Pset_deflate(creation.id(), 9)
+                                   : H5Pset_shuffle(creation.id());
+    }
+    return creation;
+  }
+  // The bytes that the library stores for so many numbers.
+  std::string Packed(hsize_t count) const {
+    const Hdf5Handle data_set = CreateDataSet({count}, Hdf5DataSetCreation({count}).id(),
+                                              "/packed_" + std::to_string(count));
+    WriteValues(data_set, std::vector<double>(count, 1.0 / 3.0));
+    H5Fflush(file_, H5F_SCOPE_LOCAL);
+    const hsize_t begin = 0;
+    hsize_t size = 0;
+    H5Dget_chunk_storage_size(data_set.id(), &begin, &size);
+    std::string bytes(size, '\0');
+    std::uint32_t filters = 0;
+    H5Dread_chunk(data_set.id(), H5P_DEFAULT, &begin, &filters, bytes.data());
+    return bytes;
+  }
+  static void WriteValues(const Hdf5Handle& data_set, const std::vector<double>& values) {
+    ASSERT_GE(
+        H5Dwrite(data_set.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+        0);
   }
   void Write(const std::string& name) const {
     Hdf5File file = Hdf5File::Create(folder_ / name);
@@ -107,12 +138,7 @@ TEST_F(Hdf5ChecksTest, GroupsNestedWithoutEnd) {
 
 // A file of five kilobytes that fills a gigabyte.
 TEST_F(Hdf5ChecksTest, PackedTwice) {
-  const Hdf5Handle creation{H5Pcreate(H5P_DATASET_CREATE), &H5Pclose};
-  const hsize_t chunk = 2;
-  H5Pset_chunk(creation.id(), 1, &chunk);
-  H5Pset_deflate(creation.id(), 9);
-  H5Pset_deflate(creation.id(), 9);
-  CreateDataSet({2}, creation.id());
+  CreateDataSet({2}, Chunks(2, {H5Z_FILTER_DEFLATE, H5Z_FILTER_DEFLATE}).id());
   ExpectRefused({"bad.h5", "/values", "packed"});
 }
 
@@ -120,72 +146,29 @@ TEST_F(Hdf5ChecksTest, PackedTwice) {
 TEST_F(Hdf5ChecksTest, AnyPackingOfTheLibraryIsRead) {
   const std::vector<double> values = {1.0 / 3.0, -2.0, 5e-324, 4.0};
   const auto expect_read = [&](const char* name, hid_t creation) {
-    CreateDataSet({values.size()}, creation, name);
-    const Hdf5Handle data_set{H5Dopen2(file_, name, H5P_DEFAULT), &H5Dclose};
-    ASSERT_GE(
-        H5Dwrite(data_set.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
-        0);
+    WriteValues(CreateDataSet({values.size()}, creation, name), values);
     H5Fflush(file_, H5F_SCOPE_LOCAL);
     EXPECT_EQ(Hdf5File::Open(path_).ReadVector<double>(name), values) << name;
   };
   expect_read("/in_one_piece", H5P_DEFAULT);
   expect_read("/as_here", Hdf5DataSetCreation({values.size()}).id());
-  const hsize_t half = values.size() / 2;
-  const Hdf5Handle halves{H5Pcreate(H5P_DATASET_CREATE), &H5Pclose};
-  H5Pset_chunk(halves.id(), 1, &half);
-  expect_read("/in_chunks", halves.id());
-  H5Pset_shuffle(halves.id());
-  H5Pset_deflate(halves.id(), 9);
-  expect_read("/in_packed_chunks", halves.id());
-  const hsize_t whole = values.size();
-  const Hdf5Handle deflated{H5Pcreate(H5P_DATASET_CREATE), &H5Pclose};
-  H5Pset_chunk(deflated.id(), 1, &whole);
-  H5Pset_deflate(deflated.id(), 9);
-  H5Pset_shuffle(deflated.id());
-  expect_read("/in_another_order", deflated.id());
+  expect_read("/in_chunks", Chunks(2).id());
+  expect_read("/in_packed_chunks", Chunks(2, {H5Z_FILTER_SHUFFLE, H5Z_FILTER_DEFLATE}).id());
+  expect_read("/in_another_order", Chunks(4, {H5Z_FILTER_DEFLATE, H5Z_FILTER_SHUFFLE}).id());
   H5Fclose(file_);
 }
 
-// The bytes that the library stores for so many numbers.
-std::string Packed(hsize_t count) {
-  const TemporaryFolder folder;
-  const hid_t file =
-      H5Fcreate((folder / "packed.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-  const Hdf5Handle space{H5Screate_simple(1, &count, nullptr), &H5Sclose};
-  const Hdf5Handle creation = Hdf5DataSetCreation({count});
-  const Hdf5Handle data_set{H5Dcreate2(file, "values", H5T_IEEE_F64LE, space.id(), H5P_DEFAULT,
-                                       creation.id(), H5P_DEFAULT),
-                            &H5Dclose};
-  const std::vector<double> values(count, 1.0 / 3.0);
-  H5Dwrite(data_set.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
-  H5Fflush(file, H5F_SCOPE_LOCAL);
-  const hsize_t begin = 0;
-  hsize_t size = 0;
-  H5Dget_chunk_storage_size(data_set.id(), &begin, &size);
-  std::string bytes(size, '\0');
-  std::uint32_t filters = 0;
-  H5Dread_chunk(data_set.id(), H5P_DEFAULT, &begin, &filters, bytes.data());
-  H5Fclose(file);
-  return bytes;
-}
-
 TEST_F(Hdf5ChecksTest, DamagedPackingIsRefused) {
-  const std::vector<double> values(100, 1.0 / 3.0);
   const std::string whole = Packed(100);
-  const std::string of_fewer = Packed(99);
-  const std::string of_more = Packed(101);
-  const hid_t creation = H5Pcopy(Hdf5DataSetCreation({values.size()}).id());
   const std::map<std::string, std::string> chunks = {{"/cut", whole.substr(0, whole.size() - 3)},
-                                                     {"/of_fewer", of_fewer},
-                                                     {"/of_more", of_more},
+                                                     {"/of_fewer", Packed(99)},
+                                                     {"/of_more", Packed(101)},
                                                      {"/of_nothing_known", std::string(20, 'x')}};
   for (const auto& [name, chunk] : chunks) {
-    CreateDataSet({values.size()}, creation, name.c_str());
-    const Hdf5Handle data_set{H5Dopen2(file_, name.c_str(), H5P_DEFAULT), &H5Dclose};
+    const Hdf5Handle data_set = CreateDataSet({100}, Hdf5DataSetCreation({100}).id(), name);
     const hsize_t begin = 0;
     H5Dwrite_chunk(data_set.id(), H5P_DEFAULT, 0, &begin, chunk.size(), chunk.data());
   }
-  H5Pclose(creation);
   H5Fclose(file_);
   for (const auto& chunk : chunks) {
     ExpectError<InputError>([&] { Hdf5File::Open(path_).ReadVector<double>(chunk.first); },
