@@ -75,6 +75,15 @@ TEST(Camera, RayAndBackProjectedPlanesUndoProjection) {
   EXPECT_FALSE(camera.Project({1, 1, -1}));
 }
 
+TEST(Box, OverlapIsIntersectionOverUnion) {
+  constexpr Box kBox{0, 0, 10, 10};
+  EXPECT_EQ(BoxOverlap(kBox, kBox), 1.0);
+  EXPECT_DOUBLE_EQ(BoxOverlap(kBox, {5, 0, 15, 10}), 50.0 / 150.0);
+  EXPECT_DOUBLE_EQ(BoxOverlap(kBox, {2, 2, 4, 4}), 0.04);
+  EXPECT_EQ(BoxOverlap(kBox, {10, 0, 20, 10}), 0.0);
+  EXPECT_EQ(BoxOverlap(kBox, {3, 3, 3, 3}), 0.0);
+}
+
 TEST(Box, DistanceToBorderCountsFromThePixelEdges) {
   EXPECT_EQ(DistanceToBorder({29.5, 100, 300, 300}, 640, 480), 30.0);
   EXPECT_EQ(DistanceToBorder({100, 100, 609.5, 300}, 640, 480), 30.0);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "support/numeric_derivatives.h"
 #include "support/shape_exponents.h"
 
 namespace soslam {
@@ -60,21 +61,19 @@ TEST(SuperquadricNorm, IsDualToThatOfTheDualExponents) {
 }
 
 TEST(SuperquadricNorm, DerivativesAgreeWithNumbers) {
-  constexpr double kStep = 1e-6;
   for (const ShapeExponents& p : AllExponents()) {
     for (int i = 0; i < kCases; ++i) {
       Eigen::Array3d u = RandomVector(-1.0, 1.0);
       u = u.sign() * (0.1 + u.abs());  // off the kinks
       Eigen::Matrix3d hessian;
-      const auto [value, slopes] = SuperquadricNorm(u, p, &hessian);
-      for (int k = 0; k < 3; ++k) {
-        const Eigen::Array3d step = kStep * Eigen::Vector3d::Unit(k).array();
-        const NormValue after = SuperquadricNorm(u + step, p);
-        const NormValue before = SuperquadricNorm(u - step, p);
-        EXPECT_NEAR(slopes[k], (after.value - before.value) / (2 * kStep), 1e-7) << p;
-        const Eigen::Array3d numeric = (after.slopes - before.slopes) / (2 * kStep);
-        EXPECT_LT((hessian.col(k) - numeric.matrix()).norm(), 1e-5 * (1.0 + hessian.norm())) << p;
-      }
+      const Eigen::Vector3d slopes = SuperquadricNorm(u, p, &hessian).slopes;
+      const auto norm = [&](const Eigen::Vector3d& at) { return Norm(at, p); };
+      const auto slopes_at = [&](const Eigen::Vector3d& at) -> Eigen::Vector3d {
+        return SuperquadricNorm(at, p).slopes;
+      };
+      EXPECT_LT((slopes - NumericDerivatives(norm, u)).cwiseAbs().maxCoeff(), 1e-7) << p;
+      const Eigen::Matrix3d error = hessian - NumericDerivatives(slopes_at, u);
+      EXPECT_LT(error.colwise().norm().maxCoeff(), 1e-5 * (1.0 + hessian.norm())) << p;
     }
   }
 }

@@ -5,6 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "support/numeric_derivatives.h"
 #include "support/shape_exponents.h"
 
 namespace soslam {
@@ -20,9 +21,16 @@ struct RandomCase {
   ShapeExponents p;
   Eigen::Vector3d half_axes = RandomVector(0.1, 1.0);
   Eigen::Vector3d direction = RandomUniform(0.1, 3.0) * RandomDirection();
+
+  // With a direction off the rounded kinks, where second derivatives are up to 1 / kEdgeRounding.
+  RandomCase OffKinks(double distance) const {
+    RandomCase off = *this;
+    off.direction = direction.array().sign() * (distance + direction.array().abs());
+    return off;
+  }
 };
 
-constexpr size_t kCases = 300;
+constexpr size_t kRandomCases = 300;
 
 double Extent(const Eigen::Vector3d& half_axes, const ShapeExponents& p,
               const Eigen::Vector3d& direction) {
@@ -30,50 +38,34 @@ double Extent(const Eigen::Vector3d& half_axes, const ShapeExponents& p,
 }
 
 TEST(SupportFunction, DerivativesAgreeWithNumbers) {
-  constexpr double kStep = 1e-6;
-  for (size_t i = 0; i < kCases; ++i) {
-    RandomCase random(i);
-    // Off the rounded kinks, where second derivatives are up to 1 / kEdgeRounding.
-    random.direction = random.direction.array().sign() * (0.1 + random.direction.array().abs());
-    const auto& [p, half_axes, direction] = random;
+  for (size_t i = 0; i < kRandomCases; ++i) {
+    const auto [p, half_axes, direction] = RandomCase(i).OffKinks(0.1);
     const SupportValue value = SupportFunction(half_axes, p, direction);
-    for (int k = 0; k < 3; ++k) {
-      const Eigen::Vector3d step = kStep * Eigen::Vector3d::Unit(k);
-      EXPECT_NEAR(
-          value.point[k],
-          (Extent(half_axes, p, direction + step) - Extent(half_axes, p, direction - step)) /
-              (2 * kStep),
-          1e-8)
-          << p;
-      const Eigen::Vector3d larger = half_axes.array() * step.array().exp();
-      const Eigen::Vector3d smaller = half_axes.array() * (-step).array().exp();
-      EXPECT_NEAR(value.d_log_half_axes[k],
-                  (Extent(larger, p, direction) - Extent(smaller, p, direction)) / (2 * kStep),
-                  1e-8)
-          << p;
-    }
+    const auto towards = [&](const Eigen::Vector3d& at) { return Extent(half_axes, p, at); };
+    const auto of_log_half_axes = [&](const Eigen::Vector3d& at) {
+      return Extent(at.array().exp(), p, direction);
+    };
+    const Eigen::Vector3d point = NumericDerivatives(towards, direction);
+    const Eigen::Vector3d slopes = NumericDerivatives(of_log_half_axes, half_axes.array().log());
+    EXPECT_LT((value.point - point).cwiseAbs().maxCoeff(), 1e-8) << p;
+    EXPECT_LT((value.d_log_half_axes - slopes).cwiseAbs().maxCoeff(), 1e-8) << p;
   }
 }
 
 TEST(SupportHessian, IsTheDerivativeOfTheSupportPoint) {
-  constexpr double kStep = 1e-6;
-  for (size_t i = 0; i < kCases; ++i) {
-    RandomCase random(i);
-    random.direction = random.direction.array().sign() * (0.1 + random.direction.array().abs());
-    const auto& [p, half_axes, direction] = random;
-    const Eigen::Matrix3d hessian = SupportHessian(half_axes, p, direction);
-    for (int k = 0; k < 3; ++k) {
-      const Eigen::Vector3d step = kStep * Eigen::Vector3d::Unit(k);
-      const Eigen::Vector3d numeric = (SupportFunction(half_axes, p, direction + step).point -
-                                       SupportFunction(half_axes, p, direction - step).point) /
-                                      (2 * kStep);
-      EXPECT_LT((hessian.col(k) - numeric).norm(), 1e-7) << p;
-    }
+  for (size_t i = 0; i < kRandomCases; ++i) {
+    const auto [p, half_axes, direction] = RandomCase(i).OffKinks(0.1);
+    const auto point_towards = [&](const Eigen::Vector3d& at) {
+      return SupportFunction(half_axes, p, at).point;
+    };
+    const Eigen::Matrix3d numeric = NumericDerivatives(point_towards, direction);
+    const Eigen::Matrix3d error = SupportHessian(half_axes, p, direction) - numeric;
+    EXPECT_LT(error.colwise().norm().maxCoeff(), 1e-7) << p;
   }
 }
 
 TEST(SupportHessian, IsPositiveSemidefiniteWithItsDirectionInTheNullSpace) {
-  for (size_t i = 0; i < kCases; ++i) {
+  for (size_t i = 0; i < kRandomCases; ++i) {
     RandomCase random(i);
     if (i % 3 == 0) random.direction[static_cast<int>(i / 3 % 3)] = 0.0;
     const auto& [p, half_axes, direction] = random;
@@ -87,7 +79,7 @@ TEST(SupportHessian, IsPositiveSemidefiniteWithItsDirectionInTheNullSpace) {
 }
 
 TEST(SupportFunction, TheSupportPointReachesAsFarAsTheExtentInAnyDirection) {
-  for (size_t i = 0; i < kCases; ++i) {
+  for (size_t i = 0; i < kRandomCases; ++i) {
     const RandomCase random(i);
     for (const Eigen::Vector3d& direction : {random.direction, Eigen::Vector3d(0, 0, -2)}) {
       const SupportValue value = SupportFunction(random.half_axes, random.p, direction);
@@ -102,13 +94,11 @@ TEST(SupportFunction, TheSupportPointReachesAsFarAsTheExtentInAnyDirection) {
 }
 
 TEST(SupportFunction, TouchesTheCuboidAtItsCorners) {
-  for (size_t i = 0; i < kCases; ++i) {
-    RandomCase random(i);
-    random.direction = random.direction.array().sign() * (0.2 + random.direction.array().abs());
-    const Eigen::Vector3d corner = random.direction.array().sign() * random.half_axes.array();
-    EXPECT_LT((SupportFunction(random.half_axes, kCuboidExponent, random.direction).point - corner)
-                  .norm(),
-              0.002);
+  for (size_t i = 0; i < kRandomCases; ++i) {
+    const auto [p, half_axes, direction] = RandomCase(i).OffKinks(0.2);
+    const Eigen::Vector3d corner = direction.array().sign() * half_axes.array();
+    const SupportValue value = SupportFunction(half_axes, kCuboidExponent, direction);
+    EXPECT_LT((value.point - corner).norm(), 0.002);
   }
 }
 
