@@ -8,6 +8,8 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
+#include "support/lists.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {
@@ -15,17 +17,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class RunLogTest : public testing::Test {
+class RunLogTest : public FolderTest {
  protected:
   RunLogTest() : input_(folder_ / "input.txt") { WriteBytes(input_, "before"); }
 
   // Replaces the file like programs that write a whole file under another name first.
   void Replace(const std::string& bytes) const {
-    WriteBytes(folder_ / "new", bytes);
+    Write("new", bytes);
     fs::rename(folder_ / "new", input_);
   }
 
-  TemporaryFolder folder_;
   fs::path input_;
 };
 
@@ -42,17 +43,15 @@ TEST_F(RunLogTest, NothingIsNotedWithoutALog) {
 }
 
 TEST_F(RunLogTest, NotesWhatFilesHeld) {
-  WriteBytes(folder_ / "output.txt", "made");
+  Write("output.txt", "made");
   const RunLog log;
   RecordInput(input_);
   RecordInput(folder_.path() / "." / "input.txt");
   RecordOutput(folder_ / "output.txt");
   NoteSeed(3);
-  ASSERT_EQ(log.Inputs().size(), 1u);
-  EXPECT_EQ(log.Inputs()[0].path, input_);
-  EXPECT_EQ(log.Inputs()[0].sha256, Sha256OfText("before"));
-  ASSERT_EQ(log.Outputs().size(), 1u);
-  EXPECT_EQ(log.Outputs()[0].sha256, Sha256OfText("made"));
+  EXPECT_EQ(Only(log.Inputs()).path, input_);
+  EXPECT_EQ(Only(log.Inputs()).sha256, Sha256OfText("before"));
+  EXPECT_EQ(Only(log.Outputs()).sha256, Sha256OfText("made"));
   EXPECT_EQ(log.Seed(), 3);
 }
 

@@ -12,6 +12,8 @@
 
 #include "artefact/json_file.h"
 #include "base/error.h"
+#include "support/folder_test.h"
+#include "support/printed.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {
@@ -59,7 +61,7 @@ void RunTest(const TestOptions& options, const StageFiles& files, int threads) {
   recorded.behaviour();
 }
 
-class CommandLineTest : public testing::Test {
+class CommandLineTest : public FolderTest {
  protected:
   void SetUp() override { recorded = Recorded(); }
 
@@ -79,29 +81,24 @@ class CommandLineTest : public testing::Test {
                                        {"many", "As many inputs as you like", false, true}},
                             .outputs = {{"output", "The output", true, false, output_is_folder_}},
                             .example = "soslam-test --input a --output b"};
-    testing::internal::CaptureStdout();
-    testing::internal::CaptureStderr();
-    const int exit_code =
-        StageMain<TestOptions>(static_cast<int>(argv.size()), argv.data(), info, &RunTest);
-    stdout_ = testing::internal::GetCapturedStdout();
-    stderr_ = testing::internal::GetCapturedStderr();
+    int exit_code = -1;
+    printed_ = PrintedBy([&] {
+      exit_code =
+          StageMain<TestOptions>(static_cast<int>(argv.size()), argv.data(), info, &RunTest);
+    });
     return exit_code;
   }
-  std::string WriteSettings(const std::string& text) {
-    const fs::path path = folder_ / "settings.json";
-    WriteBytes(path, text);
-    return path.string();
+  std::string WriteSettings(const std::string& text) const {
+    return Write("settings.json", text).string();
   }
   void ExpectOneLineOfError(const std::string& part) {
-    EXPECT_THAT(stderr_, StartsWith("soslam-test: error: "));
-    EXPECT_THAT(stderr_, HasSubstr(part));
-    EXPECT_EQ(std::ranges::count(stderr_, '\n'), 1) << stderr_;
+    EXPECT_THAT(printed_.errors, StartsWith("soslam-test: error: "));
+    EXPECT_THAT(printed_.errors, HasSubstr(part));
+    EXPECT_EQ(std::ranges::count(printed_.errors, '\n'), 1) << printed_.errors;
   }
 
-  TemporaryFolder folder_;
   bool output_is_folder_ = false;
-  std::string stdout_;
-  std::string stderr_;
+  Printed printed_;
 };
 
 TEST_F(CommandLineTest, DefaultsFilesAndThreads) {
@@ -187,29 +184,31 @@ TEST_F(CommandLineTest, MissingFileArgumentIsWrongUsage) {
 TEST_F(CommandLineTest, HelpNamesEveryOptionUnderItsHeading) {
   EXPECT_EQ(RunBare({"--help"}), 0);
   for (const OptionRow& row : OptionRows<TestOptions>()) {
-    EXPECT_THAT(stdout_, HasSubstr("--" + row.name + " " + row.type));
-    EXPECT_THAT(stdout_, HasSubstr(row.doc));
+    EXPECT_THAT(printed_.output, HasSubstr("--" + row.name + " " + row.type));
+    EXPECT_THAT(printed_.output, HasSubstr(row.doc));
   }
   for (const char* part :
        {"[default 1.5; -10 to 10 m]", "[default 3; 0 to 10]", "[default true; true | false]",
         "[default \"none\"]", "[default plain; plain | spiced]"}) {
-    EXPECT_THAT(stdout_, HasSubstr(part));
+    EXPECT_THAT(printed_.output, HasSubstr(part));
   }
   for (const char* part : {"Tests the command line.", "--input", "--extra", "--settings",
                            "--threads", "soslam-test --input a --output b", "Exit codes: 0"}) {
-    EXPECT_THAT(stdout_, HasSubstr(part));
+    EXPECT_THAT(printed_.output, HasSubstr(part));
   }
-  EXPECT_EQ(stderr_, "");
+  EXPECT_EQ(printed_.errors, "");
   EXPECT_EQ(recorded.calls, 0);
-  EXPECT_THAT(stdout_, testing::ContainsRegex("\nInputs:\n  --input.*\n  --extra.*\n  --many"));
-  EXPECT_THAT(stdout_, testing::ContainsRegex("\nOutputs:\n  --output PATH \\(required\\)"));
-  EXPECT_THAT(stdout_, HasSubstr("\nOptions:\n  --offset_m"));
-  EXPECT_THAT(stdout_, HasSubstr("\nTaste (what it is like):\n  --note"));
+  EXPECT_THAT(printed_.output,
+              testing::ContainsRegex("\nInputs:\n  --input.*\n  --extra.*\n  --many"));
+  EXPECT_THAT(printed_.output,
+              testing::ContainsRegex("\nOutputs:\n  --output PATH \\(required\\)"));
+  EXPECT_THAT(printed_.output, HasSubstr("\nOptions:\n  --offset_m"));
+  EXPECT_THAT(printed_.output, HasSubstr("\nTaste (what it is like):\n  --note"));
 }
 
 TEST_F(CommandLineTest, SettingsSchemaIsThatOfTheOptions) {
   EXPECT_EQ(RunBare({"--settings_schema"}), 0);
-  const auto schema = nlohmann::ordered_json::parse(stdout_);
+  const auto schema = nlohmann::ordered_json::parse(printed_.output);
   EXPECT_EQ(schema, SettingsSchema(OptionRows<TestOptions>(), "Settings of soslam-test"));
   EXPECT_EQ(schema["properties"]["offset_m"]["unit"], "m");
   EXPECT_EQ(schema["properties"]["note"]["group"], "Taste (what it is like)");
@@ -227,7 +226,7 @@ TEST_F(CommandLineTest, FailureIsRecordedWhereItIsAskedFor) {
 
 TEST_F(CommandLineTest, Version) {
   EXPECT_EQ(RunBare({"--version"}), 0);
-  EXPECT_THAT(stdout_, testing::MatchesRegex("soslam-test [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+  EXPECT_THAT(printed_.output, testing::MatchesRegex("soslam-test [0-9]+\\.[0-9]+\\.[0-9]+\n"));
 }
 
 TEST_F(CommandLineTest, ErrorsBecomeExitCodesAndOneLine) {

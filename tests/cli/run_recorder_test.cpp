@@ -13,6 +13,8 @@
 #include "base/hash.h"
 #include "base/run_log.h"
 #include "cli/command_line.h"
+#include "support/folder_test.h"
+#include "support/lists.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {
@@ -45,31 +47,25 @@ void RunRecorded(const RecordedOptions& options, const StageFiles& files, int /*
 
 // Inputs as the pipeline has them: artefacts in folders beside that of the run, a dataset, and a
 // table elsewhere.
-class RunRecorderTest : public testing::Test {
+class RunRecorderTest : public FolderTest {
  protected:
   RunRecorderTest() {
     before_writing = [] {};
-    for (const char* folder : {"results/one", "results/two", "data/room/lists", "tables"}) {
-      fs::create_directories(folder_ / folder);
-    }
-    WriteBytes(folder_ / "results/one/sequence.json", "1");
-    WriteBytes(folder_ / "data/room/lists/rgb.json", "2");
-    WriteBytes(folder_ / "tables/table.json", "3");
-    WriteBytes(folder_ / "results/two/settings.json", R"({"count": 5})");
+    Write("results/one/sequence.json", "1");
+    Write("data/room/lists/rgb.json", "2");
+    Write("tables/table.json", "3");
+    Write("results/two/settings.json", R"({"count": 5})");
   }
 
   int Run(const std::vector<std::string>& more = {}) {
-    std::vector<std::string> words = {"soslam-test",
-                                      "--sequence",
-                                      (folder_ / "results/one/sequence.json").string(),
-                                      "--dataset",
-                                      (folder_ / "data/room").string(),
-                                      "--table",
-                                      (folder_ / "tables/table.json").string(),
-                                      "--settings",
-                                      (folder_ / "results/two/settings.json").string(),
-                                      "--output",
-                                      (folder_ / "results/two/out.json").string()};
+    std::vector<std::string> words = {"soslam-test"};
+    for (const auto& [argument, path] : {std::pair("--sequence", "results/one/sequence.json"),
+                                         {"--dataset", "data/room"},
+                                         {"--table", "tables/table.json"},
+                                         {"--settings", "results/two/settings.json"},
+                                         {"--output", "results/two/out.json"}}) {
+      words.insert(words.end(), {argument, (folder_ / path).string()});
+    }
     words.insert(words.end(), more.begin(), more.end());
     std::vector<const char*> argv;
     for (const std::string& word : words) argv.push_back(word.c_str());
@@ -90,14 +86,11 @@ class RunRecorderTest : public testing::Test {
 
   // "argument relative_to path" of each file.
   static std::vector<std::string> Places(const std::vector<RunFile>& files) {
-    std::vector<std::string> places;
-    for (const RunFile& file : files) {
-      places.push_back(file.argument + " " + file.relative_to + " " + file.path.string());
-    }
-    return places;
+    return Fields(files, [](const RunFile& file) {
+      return file.argument + " " + file.relative_to + " " + file.path.string();
+    });
   }
 
-  TemporaryFolder folder_;
   std::string errors_;
 };
 
@@ -171,11 +164,11 @@ TEST_F(RunRecorderTest, AMissingInputIsInTheErrorOnly) {
 }
 
 TEST_F(RunRecorderTest, AnInputThatIsReplacedMeanwhileFailsTheRun) {
-  WriteBytes(folder_ / "results/two/out.json", "earlier");
+  Write("results/two/out.json", "earlier");
   for (const char* input : {"results/one/sequence.json", "data/room/lists/rgb.json"}) {
     const std::string before = FileBytes(folder_ / input);
     before_writing = [&] {
-      WriteBytes(folder_ / "new", "9");
+      Write("new", "9");
       fs::rename(folder_ / "new", folder_ / input);
     };
     EXPECT_EQ(Run(), 3);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "exchange/exports.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,6 +15,7 @@
 #include "geometry/angles.h"
 #include "support/exported_world.h"
 #include "support/labelled_boxes.h"
+#include "support/lists.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {
@@ -53,10 +53,8 @@ TEST_F(CocoBoxesTest, LabelsOfCocoNeedNoDataset) {
   world_.objects.resize(2);
   world_.frames.resize(1);
   const std::vector<LabelledBox> boxes = ReadBack(false);
-  ASSERT_EQ(boxes.size(), 2u);
-  EXPECT_EQ(boxes[0].label, "dining table");
-  EXPECT_EQ(boxes[1].label, "cup");
-  EXPECT_EQ(boxes[0].frame, FrameKey(10));
+  EXPECT_EQ(Fields(boxes, &LabelledBox::label), (std::vector<std::string>{"dining table", "cup"}));
+  EXPECT_EQ(boxes.at(0).frame, FrameKey(10));
 }
 
 TEST_F(CocoBoxesTest, BoxesAreCutAtTheImageBorder) {

@@ -6,6 +6,7 @@
 
 #include "artefact/model_json.h"
 #include "support/exported_world.h"
+#include "support/lists.h"
 #include "support/random_estimates.h"
 
 namespace soslam {
@@ -13,17 +14,9 @@ namespace {
 
 using testing::ElementsAre;
 
-std::vector<int> FrameIds(const World& world) {
-  std::vector<int> ids;
-  for (const WorldFrame& frame : world.frames) ids.push_back(frame.id);
-  return ids;
-}
+std::vector<int> FrameIds(const World& world) { return Fields(world.frames, &WorldFrame::id); }
 
-std::vector<int> ObjectIds(const World& world) {
-  std::vector<int> ids;
-  for (const WorldObject& object : world.objects) ids.push_back(object.id);
-  return ids;
-}
+std::vector<int> ObjectIds(const World& world) { return Fields(world.objects, &WorldObject::id); }
 
 // Frames 10, 15, 20 are of segment 0, frames 25, 30 of segment 1; every second frame sees objects
 // -3 and 11, the others 4 and 18.
@@ -61,12 +54,11 @@ TEST_F(WorldTest, ObjectsWithoutDetectionsBelongToTheOnlySegment) {
   EXPECT_EQ(first.objects[0].estimate.failure, "unknown_segment");
   EXPECT_EQ(first.objects[2].estimate.failure, "too_few_views");
   for (Frame& frame : sequence_.frames) frame.segment = 7;
-  const std::vector<World> worlds = WorldsOfMap(sequence_, map_);
-  ASSERT_EQ(worlds.size(), 1u);
-  EXPECT_THAT(ObjectIds(worlds[0]), ElementsAre(-3, 11, 18));
-  EXPECT_EQ(worlds[0].objects[0].segment, 7);
-  EXPECT_TRUE(worlds[0].objects[0].estimate.landmark_in_world);
-  EXPECT_EQ(worlds[0].objects[0].score, 1.0);
+  const World world = Only(WorldsOfMap(sequence_, map_));
+  EXPECT_THAT(ObjectIds(world), ElementsAre(-3, 11, 18));
+  EXPECT_EQ(world.objects[0].segment, 7);
+  EXPECT_TRUE(world.objects[0].estimate.landmark_in_world);
+  EXPECT_EQ(world.objects[0].score, 1.0);
 }
 
 TEST_F(WorldTest, ScoreIsTheMeanOfTheDetections) {

@@ -4,6 +4,7 @@
 #include "image/image_format.h"
 #include "image/tiff_file.h"
 #include "support/drawn_photos.h"
+#include "support/folder_test.h"
 #include "support/image_files.h"
 #include "support/temporary_folder.h"
 
@@ -12,10 +13,10 @@ namespace {
 
 const cv::Mat kImage(40, 60, CV_8UC1, cv::Scalar(90));
 
-class ImageHeaderTest : public testing::Test {
+class ImageHeaderTest : public FolderTest {
  protected:
   std::optional<ImageHeader> Read(const std::string& bytes) {
-    return ReadImageHeader(WriteBytes(folder_ / "image", bytes));
+    return ReadImageHeader(Write("image", bytes));
   }
   void ExpectHeader(const std::string& bytes, int orientation) {
     const auto header = Read(bytes);
@@ -24,7 +25,6 @@ class ImageHeaderTest : public testing::Test {
     EXPECT_EQ(header->stored.height, 40);
     EXPECT_EQ(header->orientation, orientation);
   }
-  TemporaryFolder folder_;
 };
 
 TEST_F(ImageHeaderTest, SizesOfAllFormats) {

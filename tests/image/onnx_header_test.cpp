@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "support/expect_error.h"
+#include "support/lists.h"
 #include "support/onnx_network.h"
 
 namespace soslam {
@@ -20,10 +21,10 @@ TEST(OnnxHeaderTest, SaysWhatTheFileDeclares) {
   network.has_masks = true;
   network.opset = 17;
   const OnnxHeader header = Read(network.Onnx());
-  ASSERT_EQ(header.inputs.size(), 1u);
-  EXPECT_EQ(header.inputs[0].name, "images");
-  EXPECT_EQ(header.inputs[0].type, OnnxValue::kFloat);
-  EXPECT_EQ(header.inputs[0].shape, (Shape{1, 3, 32, 96}));
+  const OnnxValue input = Only(header.inputs);
+  EXPECT_EQ(input.name, "images");
+  EXPECT_EQ(input.type, OnnxValue::kFloat);
+  EXPECT_EQ(input.shape, (Shape{1, 3, 32, 96}));
   ASSERT_EQ(header.outputs.size(), 2u);
   EXPECT_EQ(header.outputs[0].shape, (Shape{1, 2, 7}));
   EXPECT_EQ(header.outputs[1].shape, (Shape{1, 3, 1, 1}));
@@ -36,9 +37,7 @@ TEST(OnnxHeaderTest, SaysWhatTheFileDeclares) {
 TEST(OnnxHeaderTest, WeightsAreNoInputs) {
   OnnxGraph graph;
   graph.Input("weights", {1}).Floats<float>("weights", {1}, {1}).Input("images", {0, 3, 0, 640});
-  const OnnxHeader header = Read(graph.Onnx());
-  ASSERT_EQ(header.inputs.size(), 1u);
-  EXPECT_EQ(ShapeText(header.inputs[0].shape), "[?, 3, ?, 640]");
+  EXPECT_EQ(ShapeText(Only(Read(graph.Onnx()).inputs).shape), "[?, 3, ?, 640]");
 }
 
 TEST(OnnxHeaderTest, HalfPrecisionIsFoundInWeightsAndConstants) {

@@ -5,8 +5,8 @@
 
 #include "base/error.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
 #include "support/image_files.h"
-#include "support/temporary_folder.h"
 
 namespace soslam {
 namespace {
@@ -42,11 +42,8 @@ void ExpectTurned(const cv::Mat& upright, const cv::Mat& stored, int orientation
   }
 }
 
-class ReadImageTest : public testing::Test {
+class ReadImageTest : public FolderTest {
  protected:
-  std::filesystem::path Write(const std::string& name, const std::string& bytes) {
-    return WriteBytes(folder_ / name, bytes);
-  }
   // Expects that the file is refused by its path and these words, in grey as in colour.
   static void ExpectRefused(const std::filesystem::path& path,
                             std::vector<std::string> words = {}) {
@@ -54,7 +51,6 @@ class ReadImageTest : public testing::Test {
     ExpectError<InputError>([&] { ReadGreyImage(path); }, words);
     ExpectError<InputError>([&] { ReadColourImage(path); }, words);
   }
-  TemporaryFolder folder_;
 };
 
 TEST_F(ReadImageTest, ColourBecomesGrey) {

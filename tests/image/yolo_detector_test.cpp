@@ -7,9 +7,10 @@
 
 #include "base/error.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
 #include "support/labelled_boxes.h"
+#include "support/lists.h"
 #include "support/onnx_network.h"
-#include "support/temporary_folder.h"
 
 namespace soslam {
 namespace {
@@ -40,11 +41,11 @@ TEST(LetterboxTest, FitsTheImageInGrey) {
 
 constexpr int kClasses = 2;
 
-class YoloDetectorTest : public testing::Test {
+class YoloDetectorTest : public FolderTest {
  protected:
   template <typename Network>
   std::vector<YoloDetection> Detect(const Network& network, const cv::Mat& image) {
-    WriteBytes(folder_ / "net.onnx", network.Onnx());
+    Write("net.onnx", network.Onnx());
     const NetworkFile file = ReadNetworkFile(folder_ / "net.onnx");
     const YoloFormat format = FindFormat(file, kClasses, options_, image.size());
     YoloDetector detector(file, format, {0, 1}, options_);
@@ -53,7 +54,6 @@ class YoloDetectorTest : public testing::Test {
     return detections;
   }
 
-  TemporaryFolder folder_;
   DetectorOptions options_;
   // Fills 64 x 48 of the input, from row 8 on: a pixel of the input is two of the image.
   const cv::Mat image_ = cv::Mat(96, 128, CV_8UC3, cv::Scalar(0, 0, 0));
@@ -106,8 +106,7 @@ TEST_F(YoloDetectorTest, PixelValues) {
 TEST_F(YoloDetectorTest, OnlyWhatIsInTheImageIsFound) {
   const auto boxes =
       Detect(MeanNetwork{{1, 2, 7}, {-2, 12, 12, 16, 1, 1, 0, 30, 60, 8, 6, 1, 1, 0}, {}}, image_);
-  ASSERT_EQ(boxes.size(), 1u);
-  ExpectBox(boxes[0].box, {-0.5, -0.5, 7.5, 23.5});
+  ExpectBox(Only(boxes).box, {-0.5, -0.5, 7.5, 23.5});
 }
 
 TEST_F(YoloDetectorTest, EndToEndKeepsOverlaps) {
@@ -134,16 +133,15 @@ TEST_F(YoloDetectorTest, YoloxRawAndDecoded) {
   image(cv::Rect(48, 32, 16, 16)).setTo(cv::Scalar(0, 0, 255));
   options_.input_width = options_.input_height = 64;
   for (const bool is_decoded : {false, true}) {
-    const auto boxes = Detect(GridNetwork{is_decoded}, image);
-    ASSERT_EQ(boxes.size(), 1u);
-    EXPECT_NEAR(boxes[0].score, 0.9, 1e-6);
-    ExpectBox(boxes[0].box, {39.5, 15.5, 71.5, 63.5});  // centre (28, 20), size (16, 24)
+    const YoloDetection found = Only(Detect(GridNetwork{is_decoded}, image));
+    EXPECT_NEAR(found.score, 0.9, 1e-6);
+    ExpectBox(found.box, {39.5, 15.5, 71.5, 63.5});  // centre (28, 20), size (16, 24)
   }
 }
 
 TEST_F(YoloDetectorTest, BadFilesAreNamed) {
   const auto load = [&](const std::string& bytes) {
-    WriteBytes(folder_ / "bad.onnx", bytes);
+    Write("bad.onnx", bytes);
     ReadNetworkFile(folder_ / "bad.onnx");
   };
   const std::string whole = MeanNetwork{{1, 4, 7}, kCandidates, {}}.Onnx();

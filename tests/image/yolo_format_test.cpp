@@ -4,17 +4,15 @@
 #include "base/error.h"
 #include "image/yolo_detector.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
 #include "support/onnx_network.h"
-#include "support/temporary_folder.h"
 
 namespace soslam {
 namespace {
 
-class YoloFormatTest : public testing::Test {
+class YoloFormatTest : public FolderTest {
  protected:
-  NetworkFile Read(const std::string& bytes) {
-    return ReadNetworkFile(WriteBytes(folder_ / "net.onnx", bytes));
-  }
+  NetworkFile Read(const std::string& bytes) { return ReadNetworkFile(Write("net.onnx", bytes)); }
   YoloFormat Find(const std::string& bytes, int classes = 2, const cv::Size& image = {128, 96}) {
     return FindFormat(Read(bytes), classes, options_, image);
   }
@@ -29,7 +27,6 @@ class YoloFormatTest : public testing::Test {
     ExpectError<InputError>([&] { Find(bytes); }, words);
   }
 
-  TemporaryFolder folder_;
   DetectorOptions options_;
 };
 

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "support/expect_error.h"
 #include "support/labelled_boxes.h"
+#include "support/lists.h"
 
 namespace soslam {
 namespace {
@@ -73,12 +74,11 @@ TEST(YoloOutputTest, EndToEndHasCornersScoreAndClass) {
 
 TEST(YoloOutputTest, ColumnsAfterTheClassesAreIgnored) {
   const cv::Mat v5 = Output({1, 1, 9}, {100, 50, 20, 10, 0.8F, 0.1F, 0.5F, 7, -9});
-  const auto boxes = ReadYoloOutput(v5, Format(YoloLayout::kV5, 2), 0.25, "net.onnx");
-  ASSERT_EQ(boxes.size(), 1u);
-  ExpectScored(boxes[0], 1, 0.4, {90, 45, 110, 55});
   const cv::Mat v8 = Output({1, 8, 1}, {100, 50, 20, 10, 0.1F, 0.4F, 7, -9});
-  ExpectScored(ReadYoloOutput(v8, Format(YoloLayout::kV8, 2), 0.25, "net.onnx").at(0), 1, 0.4,
-               {90, 45, 110, 55});
+  for (const auto& [layout, output] : {std::pair(YoloLayout::kV5, v5), {YoloLayout::kV8, v8}}) {
+    const auto boxes = ReadYoloOutput(output, Format(layout, 2), 0.25, "net.onnx");
+    ExpectScored(Only(boxes), 1, 0.4, {90, 45, 110, 55});
+  }
 }
 
 // Each message says what the output was taken for.
@@ -177,9 +177,7 @@ TEST(WithoutOverlapsTest, ClassesOfOneGroupCountAsOne) {
   const std::vector<YoloDetection> boxes = {
       {0, 0.5, {0, 0, 10, 10}}, {1, 0.9, {0, 0, 10, 10}}, {2, 0.6, {0, 0, 10, 10}}};
   const auto kept = WithoutOverlaps(boxes, {0, 0, 1}, 0.45);
-  ASSERT_EQ(kept.size(), 2u);
-  EXPECT_EQ(kept[0].class_index, 1);
-  EXPECT_EQ(kept[1].class_index, 2);
+  EXPECT_EQ(Fields(kept, &YoloDetection::class_index), (std::vector{1, 2}));
 }
 
 }  // namespace

@@ -9,7 +9,8 @@
 
 #include "base/error.h"
 #include "support/expect_error.h"
-#include "support/temporary_folder.h"
+#include "support/folder_test.h"
+#include "support/lists.h"
 #include "workflow/pipeline_settings.h"
 #include "workflow/plan.h"
 
@@ -25,7 +26,7 @@ using testing::IsEmpty;
 
 // A finished run of import, initialise and evaluate whose files the test writes itself, all older
 // than the stamps.
-class PlanStateTest : public testing::Test {
+class PlanStateTest : public FolderTest {
  protected:
   PlanStateTest() {
     Write("pipelines/base.json", R"({"stages": ["import", "initialise", "evaluate"]})");
@@ -52,10 +53,7 @@ class PlanStateTest : public testing::Test {
 
   // Writes a file with the time of the current minute.
   void Write(const std::string& name, const std::string& text) {
-    const fs::path path = folder_ / name;
-    fs::create_directories(path.parent_path());
-    WriteBytes(path, text);
-    fs::last_write_time(path, start_ + std::chrono::minutes(minute_));
+    fs::last_write_time(FolderTest::Write(name, text), start_ + std::chrono::minutes(minute_));
   }
   const StageInstance& InstanceOf(const std::string& stage) const {
     return *std::ranges::find(plan_.instances, stage, &StageInstance::stage);
@@ -69,14 +67,12 @@ class PlanStateTest : public testing::Test {
   // States of import, initialise and evaluate.
   std::vector<std::string> States() const {
     const auto states = StatesOf(plan_, folders_, folder_ / "bin");
-    std::vector<std::string> names;
-    for (const std::string stage : {"import", "initialise", "evaluate"}) {
-      names.emplace_back(NameOf(states.at(InstanceOf(stage).Id()).state));
-    }
-    return names;
+    const std::vector<std::string> stages = {"import", "initialise", "evaluate"};
+    return Fields(stages, [&](const std::string& stage) {
+      return std::string(NameOf(states.at(InstanceOf(stage).Id()).state));
+    });
   }
 
-  TemporaryFolder folder_;
   PlanFolders folders_ = {folder_ / "data", folder_ / "pipelines", folder_ / "results"};
   fs::file_time_type start_ = fs::file_time_type::clock::now() - std::chrono::hours(1);
   int minute_ = 0;
@@ -179,9 +175,7 @@ using testing::UnorderedElementsAre;
 constexpr const char* kPipelines = SOSLAM_SOURCE_DIR "/pipelines";
 
 std::vector<std::string> StagesOf(const Plan& plan, const std::vector<std::string>& ids) {
-  std::vector<std::string> stages;
-  for (const std::string& id : ids) stages.push_back(plan.Instance(id).stage);
-  return stages;
+  return Fields(ids, [&](const std::string& id) { return plan.Instance(id).stage; });
 }
 
 TEST(WorkUnitsTest, BranchesBeginWhereStagesTakeLong) {

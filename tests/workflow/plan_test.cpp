@@ -12,6 +12,7 @@
 #include "dataset/import_options.h"
 #include "stage/stages.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
 #include "support/temporary_folder.h"
 #include "workflow/pipeline_settings.h"
 
@@ -28,7 +29,7 @@ constexpr const char* kBase = R"({
   "stages": ["import", "initialise", "evaluate"],
   "import": {}, "edges": {}, "initialise": {}, "refine": {}, "optimise": {}, "evaluate": {}})";
 
-class PlanTest : public testing::Test {
+class PlanTest : public FolderTest {
  protected:
   void SetUp() override {
     Write("pipelines/base.json", kBase);
@@ -38,10 +39,6 @@ class PlanTest : public testing::Test {
     Write("pipelines/variants/Full.json",
           R"({"stages": ["import", "edges", "initialise", "refine", "optimise", "evaluate"],
               "optimise": {"symmetry": true}})");
-  }
-  void Write(const std::string& name, const std::string& text) {
-    fs::create_directories((folder_ / name).parent_path());
-    WriteBytes(folder_ / name, text);
   }
   std::string Read(const std::string& name) const { return FileBytes(folder_ / name); }
   Plan Make(const std::vector<std::string>& variants) const {
@@ -69,8 +66,6 @@ class PlanTest : public testing::Test {
   void ExpectRefused(const std::string& variant, const std::vector<std::string>& parts) const {
     ExpectError<SettingsError>([&] { Make({variant}); }, parts);
   }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(PlanTest, VariantsShareWhatTheyHaveInCommon) {

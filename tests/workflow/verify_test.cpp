@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {
@@ -23,7 +24,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 // Variant One imports data/room and initialises; variant Two does so with other settings.
-class VerifyTest : public testing::Test {
+class VerifyTest : public FolderTest {
  protected:
   VerifyTest() {
     Write("data/room/rgb.txt", "images");
@@ -41,10 +42,6 @@ class VerifyTest : public testing::Test {
     WriteVariant("Two", "initialise-2");
   }
 
-  void Write(const std::string& path, const std::string& bytes) const {
-    fs::create_directories((folder_ / path).parent_path());
-    WriteBytes(folder_ / path, bytes);
-  }
   void WriteRecord(const std::string& id, const RunFile& input, const std::string& output,
                    const std::string& bytes) const {
     RunRecord record;
@@ -81,8 +78,6 @@ class VerifyTest : public testing::Test {
     return AllOf(Field(&Discrepancy::text, AllOf(HasSubstr(file), HasSubstr(what))),
                  Field(&Discrepancy::variants, variants));
   }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(VerifyTest, FindsRunsInTheirOrderWithTheirVariants) {
@@ -153,7 +148,7 @@ TEST_F(VerifyTest, FailureAndCrash) {
 
 TEST_F(VerifyTest, AVariantThatShowsAnotherFileThanItsRunsMade) {
   fs::remove(folder_ / "results/room/Two/initial.json");
-  WriteBytes(folder_ / "results/room/Two/initial.json", "initialise-2");
+  Write("results/room/Two/initial.json", "initialise-2");
   EXPECT_THAT(Findings(), ElementsAre(Says("Two/initial.json",
                                            "is not the one of shared/initialise-2", {"Two"})));
 }
@@ -178,13 +173,13 @@ TEST_F(VerifyTest, PathsBeginInTheFolderOfTheCall) {
 }
 
 TEST_F(VerifyTest, AFileThatNoRunOfTheVariantWrote) {
-  WriteBytes(folder_ / "results/room/Two/metrics.json", "of somebody");
+  Write("results/room/Two/metrics.json", "of somebody");
   EXPECT_THAT(Findings(),
               ElementsAre(Says("Two/metrics.json", "no run of the variant wrote it", {"Two"})));
 }
 
 TEST_F(VerifyTest, ADamagedListOfRunsConcernsItsVariantOnly) {
-  WriteBytes(folder_ / "results/room/Two/stages.txt", "../../elsewhere\n");
+  Write("results/room/Two/stages.txt", "../../elsewhere\n");
   WriteBytes(Shared("initialise-1") / "initial.json", "other");
   EXPECT_THAT(Findings(), ElementsAre(Says("initial.json", "has changed", {"One"}),
                                       Says("stages.txt", "'../../elsewhere'", {"Two"})));
