@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "dataset/yaml_fields.h"
 #include "support/expect_error.h"
-#include "support/temporary_folder.h"
+#include "support/folder_test.h"
 
 namespace soslam {
 namespace {
@@ -31,26 +31,30 @@ TEST(LensCameraTest, NamesOfOpenCvsModelAreKnown) {
   EXPECT_EQ(ParseLens("none", std::vector<double>(5), "a"), Distortion());
 }
 
+void ExpectLensRefused(const std::string& model, const std::vector<double>& coefficients,
+                       std::vector<std::string> words) {
+  words.push_back("camera.json");
+  ExpectError<InputError>([&] { ParseLens(model, coefficients, "camera.json"); }, words);
+}
+
 TEST(LensCameraTest, WhatIsNoLensOfPinholeCamerasIsNamed) {
-  for (const char* model : {"fisheye", "equidistant", "kannala_brandt", "OPENCV_FISHEYE", "omni",
-                            "FOV", "KannalaBrandt8", "ds"}) {
-    ExpectError<InputError>([&] { ParseLens(model, kFour, "camera.json"); },
-                            {"camera.json", std::string("'") + model + "' is not supported",
-                             "undistort", "cv::fisheye::undistortImage", "image_undistorter"});
+  for (const std::string model : {"fisheye", "equidistant", "kannala_brandt", "OPENCV_FISHEYE",
+                                  "omni", "FOV", "KannalaBrandt8", "ds"}) {
+    ExpectLensRefused(model, kFour,
+                      {"'" + model + "' is not supported", "undistort",
+                       "cv::fisheye::undistortImage", "image_undistorter"});
   }
-  ExpectError<InputError>([&] { ParseLens("pinehole", kFour, "a"); },
-                          {"'pinehole' is not known", "plumb_bob"});
+  ExpectLensRefused("pinehole", kFour, {"'pinehole' is not known", "plumb_bob"});
 }
 
 TEST(LensCameraTest, NumbersOfCoefficientsAreThoseOfTheModel) {
   const std::vector<double> six(6, 0.5);
-  ExpectError<InputError>(
-      [&] { ParseLens("pinhole", six, "camera.json"); },
-      {"camera.json", "distortion has 6 numbers", "0.5 0.5", "4, 5, 8, 12, 14", "k1 k2 p1 p2 [k3"});
-  ExpectError<InputError>([&] { ParseLens("plumb_bob", kEight, "a"); }, {"8 numbers", "4, 5"});
-  ExpectError<InputError>([&] { ParseLens("rational_polynomial", kFour, "a"); }, {"8, 12, 14"});
-  ExpectError<InputError>([&] { ParseLens("radtan", {}, "a"); }, {"has 0 numbers"});
-  ExpectError<InputError>([&] { ParseLens("none", kFour, "a"); }, {"'none'", "none but 0"});
+  ExpectLensRefused("pinhole", six,
+                    {"distortion has 6 numbers", "0.5 0.5", "4, 5, 8, 12, 14", "k1 k2 p1 p2 [k3"});
+  ExpectLensRefused("plumb_bob", kEight, {"8 numbers", "4, 5"});
+  ExpectLensRefused("rational_polynomial", kFour, {"8, 12, 14"});
+  ExpectLensRefused("radtan", {}, {"has 0 numbers"});
+  ExpectLensRefused("none", kFour, {"'none'", "none but 0"});
 }
 
 // A file of ROS' camera_calibration.
@@ -187,10 +191,10 @@ constexpr const char* kOpenCvXml = R"(<?xml version="1.0"?>
 
 const Camera kCamera = {640, 480, 500, 510, 319.5, 239.5};
 
-class CalibrationFileTest : public testing::Test {
+class CalibrationFileTest : public FolderTest {
  protected:
   Calibration Read(const std::string& text, const std::string& name = "a.yaml") {
-    return ReadCameraFile(WriteBytes(folder_ / name, text));
+    return ReadCameraFile(Write(name, text));
   }
   void ExpectRefused(const std::string& from, const std::string& to,
                      const std::vector<std::string>& words) {
@@ -198,7 +202,6 @@ class CalibrationFileTest : public testing::Test {
     text.replace(text.find(from), from.size(), to);
     ExpectError<InputError>([&] { Read(text); }, words);
   }
-  TemporaryFolder folder_;
 };
 
 TEST_F(CalibrationFileTest, AllToolsSayTheSameCamera) {

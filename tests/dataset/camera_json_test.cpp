@@ -4,30 +4,26 @@
 #include "base/error.h"
 #include "dataset/dataset_json.h"
 #include "support/expect_error.h"
-#include "support/temporary_folder.h"
+#include "support/folder_test.h"
 
 namespace soslam {
 namespace {
 
-class CameraJsonTest : public testing::Test {
+class CameraJsonTest : public FolderTest {
  protected:
   LensCamera Read(const std::string& more) {
-    return ReadCamera(
-        WriteBytes(folder_ / "camera.json", R"({"width": 640, "height": 480, "fx": 500, "fy": 500,
+    return ReadCamera(Write("camera.json", R"({"width": 640, "height": 480, "fx": 500, "fy": 500,
                                             "cx": 320, "cy": 240)" +
-                                                more + "}"));
+                                               more + "}"));
   }
   void ExpectRefused(const std::string& more, const std::vector<std::string>& words) {
     ExpectError<InputError>([&] { Read(more); }, words);
   }
-  auto Planes(const std::string& text) {
-    return ReadPlanes(WriteBytes(folder_ / "planes.json", text));
-  }
+  auto Planes(const std::string& text) { return ReadPlanes(Write("planes.json", text)); }
   void ExpectObjectsRefused(const std::string& text, const std::vector<std::string>& words) {
-    WriteBytes(folder_ / "objects.json", text);
+    Write("objects.json", text);
     ExpectError<InputError>([&] { ReadObjects(folder_ / "objects.json"); }, words);
   }
-  TemporaryFolder folder_;
 };
 
 TEST_F(CameraJsonTest, CoefficientsAreInOpenCvsOrder) {

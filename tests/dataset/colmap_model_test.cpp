@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "dataset/calibration_file.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {
@@ -41,15 +42,14 @@ std::string ColmapCamerasBinary(int model, const std::vector<double>& parameters
       .Add(parameters);
 }
 
-class ColmapModelTest : public testing::Test {
+class ColmapModelTest : public FolderTest {
  protected:
   LensCamera Cameras(const std::string& lines) {
-    return ReadColmapCamera(WriteBytes(folder_ / "cameras.txt", "# Camera list\n" + lines));
+    return ReadColmapCamera(Write("cameras.txt", "# Camera list\n" + lines));
   }
   std::vector<NamedPose> Images(const std::string& lines) {
-    return ReadColmapPoses(WriteBytes(folder_ / "images.txt", "# Image list\n" + lines));
+    return ReadColmapPoses(Write("images.txt", "# Image list\n" + lines));
   }
-  TemporaryFolder folder_;
 };
 
 // COLMAP's principal point counts from the corner of the top-left pixel.
@@ -122,10 +122,10 @@ TEST_F(ColmapModelTest, BadPosesAreNamed) {
 }
 
 // Two images and two points, in both formats; the second point comes first.
-class WholeModelTest : public testing::Test {
+class WholeModelTest : public FolderTest {
  protected:
   WholeModelTest() {
-    WriteBytes(folder_ / "cameras.txt", "1 SIMPLE_RADIAL 640 480 500 320 240 0.1\n");
+    Write("cameras.txt", "1 SIMPLE_RADIAL 640 480 500 320 240 0.1\n");
     WriteBytes(folder_ / "images.txt",
                "3 0.5 0.5 -0.5 0.5 2 3 -1 1 rgb/a b.jpg\n10.5 20.5 -1 1.5 2.5 7\n"
                "4 1 0 0 0 -4 0 0 1 rgb/c.jpg\n3 4 7\n");
@@ -170,9 +170,9 @@ class WholeModelTest : public testing::Test {
         .Add<std::uint32_t>({3, 1, 4, 0});
   }
   void WriteBinary() {
-    WriteBytes(folder_ / "cameras.bin", ColmapCamerasBinary(2, {500, 320, 240, 0.1}));
-    WriteBytes(folder_ / "images.bin", Images());
-    WriteBytes(folder_ / "points3D.bin", Points());
+    Write("cameras.bin", ColmapCamerasBinary(2, {500, 320, 240, 0.1}));
+    Write("images.bin", Images());
+    Write("points3D.bin", Points());
   }
   void ExpectRefused(const std::vector<std::string>& words) {
     ExpectError<InputError>([&] { ReadColmapModel(folder_.path()); }, words);
@@ -197,14 +197,13 @@ class WholeModelTest : public testing::Test {
     EXPECT_EQ(model.points[0].track[0].pixel_index, 1);
     EXPECT_EQ(model.points[1].reprojection_error_px, -1.0);
   }
-  TemporaryFolder folder_;
 };
 
 TEST_F(WholeModelTest, TextAndBinaryAreTheSame) {
   EXPECT_TRUE(IsColmapModel(folder_.path()));
   EXPECT_FALSE(IsColmapModel(folder_ / "images.txt"));
   ExpectTheModel();
-  WriteBytes(folder_ / "images.txt", "the text is not read where there is a binary model");
+  Write("images.txt", "the text is not read where there is a binary model");
   WriteBinary();
   ExpectTheModel();
   EXPECT_EQ(ReadColmapPoses(folder_ / "images.bin")[1].image, "rgb/c.jpg");
@@ -216,43 +215,43 @@ TEST_F(WholeModelTest, BinaryFilesThatAreCutAreRefused) {
     WriteBinary();
     const std::string whole = FileBytes(folder_ / name);
     for (size_t size = 0; size < whole.size(); size += 3) {
-      WriteBytes(folder_ / name, whole.substr(0, size));
+      Write(name, whole.substr(0, size));
       ExpectRefused({name, "expected"});
     }
-    WriteBytes(folder_ / name, whole + "x");
+    Write(name, whole + "x");
     ExpectRefused({name, "1 bytes after its last entry"});
   }
 }
 
 TEST_F(WholeModelTest, BinaryNumbersThatCannotBeAreRefused) {
   WriteBinary();
-  WriteBytes(folder_ / "points3D.bin", Points(std::nan("")));
+  Write("points3D.bin", Points(std::nan("")));
   ExpectRefused({"points3D.bin: point 1", "nan"});
-  WriteBytes(folder_ / "points3D.bin", ColmapBytes().Add<std::uint64_t>({1ull << 60}));
+  Write("points3D.bin", ColmapBytes().Add<std::uint64_t>({1ull << 60}));
   ExpectRefused({"points3D.bin", "1152921504606846976 points", "damaged"});
-  WriteBytes(folder_ / "cameras.bin", ColmapCamerasBinary(8, {500, 320, 240, 0.1}));
+  Write("cameras.bin", ColmapCamerasBinary(8, {500, 320, 240, 0.1}));
   ExpectRefused({"cameras.bin: camera 1", "'SIMPLE_RADIAL_FISHEYE'", "image_undistorter"});
-  WriteBytes(folder_ / "cameras.bin", ColmapCamerasBinary(77, {}));
+  Write("cameras.bin", ColmapCamerasBinary(77, {}));
   ExpectRefused({"cameras.bin: camera 1", "model 77"});
-  WriteBytes(folder_ / "cameras.bin", ColmapCamerasBinary(2, {-500, 320, 240, 0.1}));
+  Write("cameras.bin", ColmapCamerasBinary(2, {-500, 320, 240, 0.1}));
   ExpectRefused({"cameras.bin: camera 1", "focal length above 0"});
 }
 
 TEST_F(WholeModelTest, TracksOfOtherModelsAreRefused) {
   WriteBinary();
-  WriteBytes(folder_ / "points3D.bin", Points(6.0, 5));
+  Write("points3D.bin", Points(6.0, 5));
   ExpectRefused({"points3D.bin: point 9", "image point 0 of image 5", "one model"});
   std::filesystem::remove(folder_ / "cameras.bin");
-  WriteBytes(folder_ / "points3D.txt", "7 1 2 3 0 0 0 0.25 3 2\n");
+  Write("points3D.txt", "7 1 2 3 0 0 0 0.25 3 2\n");
   ExpectRefused({"points3D.txt: point 7", "image point 2 of image 3"});
-  WriteBytes(folder_ / "points3D.txt", "7 1 2 3 0 0 0 0.25\n7 1 2 3 0 0 0 0.25\n");
+  Write("points3D.txt", "7 1 2 3 0 0 0 0.25\n7 1 2 3 0 0 0 0.25\n");
   ExpectRefused({"points3D.txt", "two points with id 7"});
-  WriteBytes(folder_ / "points3D.txt", "7 1 2 3 0 0 0 0.25 3\n");
+  Write("points3D.txt", "7 1 2 3 0 0 0 0.25 3\n");
   ExpectRefused({"points3D.txt:1", "9 words", "POINT2D_IDX"});
-  WriteBytes(folder_ / "images.txt", "3 1 0 0 0 -4 0 0 1 c.jpg\n3 4\n");
+  Write("images.txt", "3 1 0 0 0 -4 0 0 1 c.jpg\n3 4\n");
   ExpectRefused({"images.txt:2", "2 words", "POINT3D_ID"});
-  WriteBytes(folder_ / "points3D.txt", "");
-  WriteBytes(folder_ / "images.txt", "3 1 0 0 0 0 0 0 1 c.jpg\n\n3 1 0 0 0 0 0 0 1 d.jpg\n\n");
+  Write("points3D.txt", "");
+  Write("images.txt", "3 1 0 0 0 0 0 0 1 c.jpg\n\n3 1 0 0 0 0 0 0 1 d.jpg\n\n");
   ExpectRefused({"images.txt:3", "second image with id 3"});
 }
 

@@ -34,19 +34,19 @@ TEST_F(DatasetChecksTest, BoxesThatCannotBe) {
        {"boxes with y up"}}};
   for (const auto& [numbers, words] : cases) {
     dataset.box = numbers;
-    ExpectRefusal(words);
+    ExpectRefused(words);
   }
 }
 
 TEST_F(DatasetChecksTest, CornersWhereSizesBelong) {
   WriteCoco([](const Box& b) { return std::array{b.x_min, b.y_min, b.x_max, b.y_max}; });
-  ExpectRefusal({"meant as two corners"});
+  ExpectRefused({"meant as two corners"});
 }
 
 // Boxes on the right of the image reach out of it.
 TEST_F(DatasetChecksTest, CentresWhereCornersBelong) {
   WriteCoco([](const Box&) { return std::array{500.0, 300.0, 200.0, 150.0}; });
-  ExpectRefusal({"meant as centre and size"});
+  ExpectRefused({"meant as centre and size"});
 }
 
 TEST_F(DatasetChecksTest, AFewBoxesOutOfTheImage) {
@@ -79,8 +79,8 @@ TEST_F(DatasetChecksTest, ScoresInPerCent) {
 }
 
 TEST_F(DatasetChecksTest, BoxesThatTheBorderGateDrops) {
-  options.border_px = 200;
-  options.min_observations = 1;
+  options_.border_px = 200;
+  options_.min_observations = 1;
   ExpectWarning({"rejected_near_border", "border_px"});
 }
 
@@ -116,7 +116,6 @@ class ClassNamesTest : public DatasetChecksTest {
  protected:
   // YOLO's labels with these classes for the five balls, and these lines of names.
   void WriteYolo(const std::array<int, 5>& classes, const std::string& names) {
-    std::filesystem::create_directories(folder / "labels");
     for (int frame = 0; frame < PlausibleDataset::kFrames; ++frame) {
       std::string lines;
       for (size_t ball = 0; ball < classes.size(); ++ball) {
@@ -124,12 +123,12 @@ class ClassNamesTest : public DatasetChecksTest {
         lines += fmt::format("{} {} {} {} {}\n", classes[ball], (box.Centre().x() + 0.5) / 640,
                              (box.Centre().y() + 0.5) / 480, box.Width() / 640, box.Height() / 480);
       }
-      std::ofstream(folder / fmt::format("labels/{:06}.txt", frame)) << lines;
+      Write(fmt::format("labels/{:06}.txt", frame), lines);
     }
-    std::ofstream(folder / "names.txt") << names;
-    options.detections = "labels";
-    options.folder.detections_format = DetectionsFormat::kYolo;
-    options.folder.class_names = "names.txt";
+    Write("names.txt", names);
+    options_.detections = "labels";
+    options_.folder.detections_format = DetectionsFormat::kYolo;
+    options_.folder.class_names = "names.txt";
     dataset.objects = dataset.TrueObjects(/*first_id=*/1, /*unit_m=*/1.0);
   }
 };
@@ -144,8 +143,8 @@ TEST_F(ClassNamesTest, BoxesThatReachBeyondTheImage) {
   WriteYolo({0, 1, 2, 3, 4}, "ball\ncup\nvase\nbowl\nbottle\n");
   dataset.objects = "";
   for (int frame = 0; frame < PlausibleDataset::kFrames; ++frame) {
-    std::ofstream(folder / fmt::format("labels/{:06}.txt", frame))
-        << "0 0.03 0.5 0.1 0.2 0.9 -1\n1 0.5 0.5 0.1 0.2 0.9 1\n";
+    Write(fmt::format("labels/{:06}.txt", frame),
+          "0 0.03 0.5 0.1 0.2 0.9 -1\n1 0.5 0.5 0.1 0.2 0.9 1\n");
   }
   ExpectAmongWarnings({"boxes_cut: labels: 24 of 48 boxes"});
 }

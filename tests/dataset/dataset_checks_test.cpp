@@ -28,34 +28,34 @@ TEST_F(DatasetChecksTest, NothingIsFoundWithoutObjectIds) {
 
 TEST_F(DatasetChecksTest, ImagesOfAnotherSize) {
   WriteImages(320, 240);
-  ExpectRefusal(
+  ExpectRefused(
       {"24 of 24 images are of 320 x 240", "640 x 480", "smaller or larger", "times 0.5"});
 }
 
 TEST_F(DatasetChecksTest, ImagesOfSwappedSides) {
   WriteImages(480, 640);
-  ExpectRefusal({"width and height swapped"});
+  ExpectRefused({"width and height swapped"});
 }
 
 TEST_F(DatasetChecksTest, ImagesThatAreTurnedByAQuarterAreOfTheSizeThatIsShown) {
   WriteImages(480, 640, /*exif_orientation=*/6);
   EXPECT_THAT(Warnings(), IsEmpty());
-  options.image_orientation = ImageOrientation::kStored;
-  ExpectRefusal({"480 x 640"});
+  options_.image_orientation = ImageOrientation::kStored;
+  ExpectRefused({"480 x 640"});
 }
 
 TEST_F(DatasetChecksTest, ImagesThatAreTurnedUpsideDown) {
   WriteImages(640, 480, /*exif_orientation=*/3);
   ExpectWarning({"24 of 24 images", "image_orientation stored"});
-  options.image_orientation = ImageOrientation::kStored;
+  options_.image_orientation = ImageOrientation::kStored;
   EXPECT_THAT(Warnings(), IsEmpty());
 }
 
 // A camera of the stored images.
 TEST_F(DatasetChecksTest, ImagesThatAreShownWithSwappedSides) {
   WriteImages(640, 480, /*exif_orientation=*/6);
-  ExpectRefusal({"480 x 640", "as they are stored", "image_orientation stored"});
-  options.image_orientation = ImageOrientation::kStored;
+  ExpectRefused({"480 x 640", "as they are stored", "image_orientation stored"});
+  options_.image_orientation = ImageOrientation::kStored;
   EXPECT_THAT(Warnings(), IsEmpty());
 }
 
@@ -77,7 +77,7 @@ TEST_F(DatasetChecksTest, CamerasThatCannotBe) {
            {{640, 480, 4.2, 4.2, 319.5, 239.5}, {"millimetres"}},
            {{640, 480, 500, 500, 319.5, 700}, {"another camera"}}}) {
     dataset.written_camera = camera;
-    ExpectRefusal(words);
+    ExpectRefused(words);
   }
 }
 
@@ -102,7 +102,7 @@ TEST_F(DatasetChecksTest, CameraOfLargerImagesThanTheBoxes) {
 
 TEST_F(DatasetChecksTest, NormalThatPointsDown) {
   dataset.plane = R"([{"id": 0, "normal": [0, 0, -1], "d": 0}])";
-  ExpectRefusal({"from below", "sign of the normal"});
+  ExpectRefused({"from below", "sign of the normal"});
 }
 
 // Boxes of one label and without ids do not tell where the balls are.
@@ -116,7 +116,7 @@ TEST_F(DatasetChecksTest, NormalThatPointsDownWhereBoxesDoNotTell) {
 TEST_F(DatasetChecksTest, OffsetOfTheOtherSign) {
   dataset.height_of_floor = -2.0;
   dataset.plane = R"([{"id": 0, "normal": [0, 0, 1], "d": -2}])";
-  ExpectRefusal({"d of the other sign"});
+  ExpectRefused({"d of the other sign"});
 }
 
 // A table that a low camera looks up to.
@@ -139,17 +139,17 @@ TEST_F(DatasetChecksTest, AFloorSeenByARolledCameraIsNoWall) {
 
 TEST_F(DatasetChecksTest, PosesInNanoseconds) {
   dataset.pose_time = [](double t) { return fmt::format("{:.0f}", 1e9 * t); };
-  ExpectRefusal({"0 of 24 images", "poses in nanoseconds", "ratio 1e+09", "divide"});
+  ExpectRefused({"0 of 24 images", "poses in nanoseconds", "ratio 1e+09", "divide"});
 }
 
 TEST_F(DatasetChecksTest, ImagesInMilliseconds) {
   dataset.image_time = [](double t) { return fmt::format("{:.0f}", 1e3 * t); };
-  ExpectRefusal({"images in milliseconds"});
+  ExpectRefused({"images in milliseconds"});
 }
 
 TEST_F(DatasetChecksTest, AnotherClock) {
   dataset.pose_time = [](double t) { return fmt::format("{:.6f}", t + 5000.0); };
-  ExpectRefusal({"other clocks", "5000.000 apart"});
+  ExpectRefused({"other clocks", "5000.000 apart"});
 }
 
 TEST_F(DatasetChecksTest, AClockThatJumps) {
@@ -159,7 +159,7 @@ TEST_F(DatasetChecksTest, AClockThatJumps) {
 
 TEST_F(DatasetChecksTest, EqualTimestamps) {
   dataset.image_time = [](double t) { return fmt::format("{:.0f}", std::floor(t)); };
-  options.max_time_difference_s = 0.6;
+  options_.max_time_difference_s = 0.6;
   ExpectAmongWarnings({"equal_timestamps", "12 of 24 images"});
 }
 

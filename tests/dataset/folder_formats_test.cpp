@@ -10,6 +10,7 @@
 #include "model/occlusion.h"
 #include "support/imported_folder.h"
 #include "support/labelled_boxes.h"
+#include "support/lists.h"
 #include "support/run_command.h"
 
 namespace soslam {
@@ -40,7 +41,8 @@ class FolderFormatsTest : public ImportedFolderTest {
   // Puts folder txts into the archive txts.tar.gz.
   void PackTxts() const {
     const std::string archive = (folder_ / "txts.tar.gz").string();
-    EXPECT_EQ(RunCommand({"tar", "czf", archive, "-C", folder_.string(), "txts"}).exit_code, 0);
+    EXPECT_EQ(RunCommand({"tar", "czf", archive, "-C", folder_.path().string(), "txts"}).exit_code,
+              0);
     std::filesystem::remove_all(folder_ / "txts");
   }
   // Imports detections of this format, of which there has to be one.
@@ -48,9 +50,9 @@ class FolderFormatsTest : public ImportedFolderTest {
     options_.folder.detections_format = format;
     options_.detections = name;
     const Sequence sequence = Import();
-    EXPECT_EQ(sequence.detections.size(), 1u);
-    EXPECT_EQ(sequence.ObjectOf(sequence.detections.at(0)).label, "cup");
-    return sequence.detections.at(0);
+    const Detection detection = Only(sequence.detections);
+    EXPECT_EQ(sequence.ObjectOf(detection).label, "cup");
+    return detection;
   }
 };
 
@@ -78,8 +80,7 @@ TEST_F(FolderFormatsTest, FirstFrameAndStrideThinTheList) {
   options_.first_frame = 1;
   options_.frame_stride = 2;
   const Sequence sequence = Import();
-  ASSERT_EQ(sequence.frames.size(), 1u);
-  EXPECT_EQ(sequence.frames[0].id, 1);
+  EXPECT_EQ(Only(sequence.frames).id, 1);
   EXPECT_EQ(sequence.rejected_detections.at("frame_not_used"), 2);
 }
 
@@ -87,9 +88,7 @@ TEST_F(FolderFormatsTest, WithoutPlanesWhatEndsLowerIsNearer) {
   Write("detections.csv",
         "frame,label,score,x1,y1,x2,y2\n0,cup,0.9,100,100,200,200\n0,cup,0.8,90,120,210,240\n");
   const Sequence sequence = Import();
-  const std::vector<Box> nearer = BoxesInFront(sequence, sequence.detections[0]);
-  ASSERT_EQ(nearer.size(), 1u);
-  EXPECT_EQ(nearer[0].y_max, 240.0);
+  EXPECT_EQ(Only(BoxesInFront(sequence, sequence.detections[0])).y_max, 240.0);
   EXPECT_TRUE(sequence.detections[0].is_one_sided[3]);
   EXPECT_TRUE(BoxesInFront(sequence, sequence.detections[1]).empty());
 }
@@ -152,10 +151,9 @@ TEST_F(FolderFormatsTest, GroundTruthMayHaveAFormatOfItsOwn) {
   options_.folder.trajectory_format = TrajectoryFormat::kColmap;
   options_.folder.groundtruth_format = TrajectoryFormat::kTum;
   Write("images.txt", "7 1 0 0 0 -4 0 0 1 rgb/2.0.png\n\n");
-  const Sequence sequence = Import();
-  ASSERT_EQ(sequence.frames.size(), 1u);
-  EXPECT_EQ(sequence.frames[0].world_from_camera.translation.x(), 4.0);
-  EXPECT_EQ(sequence.frames[0].true_world_from_camera->translation.x(), 0.1);
+  const Frame frame = Only(Import().frames);
+  EXPECT_EQ(frame.world_from_camera.translation.x(), 4.0);
+  EXPECT_EQ(frame.true_world_from_camera->translation.x(), 0.1);
   options_.trajectory = TrajectorySource::kGroundTruth;
   EXPECT_EQ(Import().frames.at(1).world_from_camera.translation.x(), 0.1);
 }
@@ -278,14 +276,14 @@ TEST_F(FolderFormatsTest, YoloWithNamesAndTracks) {
   options_.min_observations = 1;
   std::vector<fs::path> files;
   testing::internal::CaptureStdout();
-  const Sequence sequence = ImportDataset(folder_, options_, &files);
+  const Sequence sequence = ImportDataset(folder_.path(), options_, &files);
   EXPECT_THAT(
       testing::internal::GetCapturedStdout(),
       testing::AllOf(testing::HasSubstr("labels/classes.txt: names of 2 classes, book, cup"),
                      testing::HasSubstr("1 of 2 boxes have object_id -1")));
-  ASSERT_EQ(sequence.objects.size(), 1u);
-  EXPECT_EQ(sequence.objects[0].id, 4);
-  EXPECT_EQ(sequence.objects[0].label, "cup");
+  const Object object = Only(sequence.objects);
+  EXPECT_EQ(object.id, 4);
+  EXPECT_EQ(object.label, "cup");
   EXPECT_EQ(sequence.rejected_detections.at("without_object_id"), 1);
   EXPECT_EQ(std::ranges::count(files, folder_ / "labels/classes.txt"), 1);
 }

@@ -5,31 +5,28 @@
 
 #include "base/error.h"
 #include "support/expect_error.h"
-#include "support/temporary_folder.h"
+#include "support/folder_test.h"
 
 namespace soslam {
 namespace {
 
 namespace fs = std::filesystem;
 
-class ImagePathTest : public testing::Test {
+class ImagePathTest : public FolderTest {
  protected:
   ImagePathTest() {
-    for (const char* folder : {"dataset/rgb", "elsewhere"}) fs::create_directories(Path(folder));
-    WriteBytes(Path("dataset/rgb/0.png"), "image");
-    WriteBytes(Path("elsewhere/secret.png"), "image");
+    Write("dataset/rgb/0.png", "image");
+    Write("elsewhere/secret.png", "image");
   }
   ~ImagePathTest() override { AllowOutsidePaths(false); }
 
-  fs::path Path(const std::string& name) const { return folder_.path() / name; }
+  fs::path Path(const std::string& name) const { return folder_ / name; }
   fs::path Of(const std::string& image) const {
     return ImagePath(Path("dataset"), image, "rgb.txt");
   }
   void ExpectRefused(const std::string& image) const {
     ExpectError<InputError>([&] { Of(image); }, {"rgb.txt: image is '" + image + "'", "expected"});
   }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(ImagePathTest, IsInTheDataset) {

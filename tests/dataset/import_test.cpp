@@ -12,6 +12,7 @@
 #include "support/dataset_fixture.h"
 #include "support/imported_folder.h"
 #include "support/level_sequence.h"
+#include "support/lists.h"
 
 namespace soslam {
 namespace {
@@ -22,7 +23,7 @@ using testing::Pair;
 class ImportTest : public ImportedFolderTest {
  protected:
   Sequence Import() override {
-    dataset.Write(folder_);
+    dataset.Write(folder_.path());
     return ImportedFolderTest::Import();
   }
 
@@ -31,7 +32,7 @@ class ImportTest : public ImportedFolderTest {
 
 TEST_F(ImportTest, ReadsEverything) {
   const Sequence sequence = Import();
-  EXPECT_EQ(sequence.name, "small");
+  EXPECT_EQ(sequence.name, folder_.path().filename());
   EXPECT_EQ(sequence.camera.width, 640);
   EXPECT_EQ(sequence.camera.fy, 510.0);
   ASSERT_EQ(sequence.frames.size(), 4u);
@@ -126,11 +127,8 @@ TEST_F(ImportTest, UndetectedObjectsStayAndObjectsAreSortedById) {
            "half_axes": [1, 1, 1], "rotationally_symmetric": true},
           {"id": 1, "label": "cup"}])";
   const Sequence sequence = Import();
-  ASSERT_EQ(sequence.objects.size(), 3u);
-  EXPECT_EQ(sequence.objects[0].id, 1);
+  ASSERT_THAT(Fields(sequence.objects, &Object::id), ElementsAre(1, 2, 9));
   EXPECT_FALSE(sequence.objects[0].ground_truth.has_value());
-  EXPECT_EQ(sequence.objects[1].id, 2);
-  EXPECT_EQ(sequence.objects[2].id, 9);
   EXPECT_TRUE(sequence.objects[2].ground_truth->rotationally_symmetric);
 }
 
@@ -249,16 +247,16 @@ TEST_F(ImportTest, BoxesThatAreNotUsedHideLowerEdgesUnlessTheyMayNotBeReal) {
 
 TEST_F(ImportTest, WhatIsTrueStaysWithoutIds) {
   const Sequence with_ids = Import();
-  ASSERT_EQ(with_ids.true_objects.size(), 1u);
+  EXPECT_EQ(with_ids.true_objects.size(), 1u);
   EXPECT_EQ(with_ids.detections[0].true_object_id, 1);
   EXPECT_FALSE(with_ids.detections[1].true_object_id);  // box 2 is not in objects.json
   dataset.files["detections.csv"] =
       "frame,label,score,x1,y1,x2,y2\n0,cup,0.9,100,100,200,200\n1,cup,0.9,100,100,200,200\n";
   const Sequence sequence = Import();
-  ASSERT_EQ(sequence.true_objects.size(), 1u);
-  EXPECT_EQ(sequence.true_objects[0].id, 1);
-  EXPECT_EQ(sequence.true_objects[0].label, "cup");
-  EXPECT_EQ(sequence.true_objects[0].truth.landmark_in_world.Centre(), Eigen::Vector3d(1, 2, 3));
+  const TrueObject object = Only(sequence.true_objects);
+  EXPECT_EQ(object.id, 1);
+  EXPECT_EQ(object.label, "cup");
+  EXPECT_EQ(object.truth.landmark_in_world.Centre(), Eigen::Vector3d(1, 2, 3));
   EXPECT_FALSE(sequence.objects.at(0).ground_truth);
   EXPECT_FALSE(sequence.detections.at(0).true_object_id);
 }
@@ -290,8 +288,7 @@ TEST_F(ImportTest, HeldOutFramesKeepNoRejectedDetections) {
   dataset.files["detections.csv"] += "1,1,cup,0.7,10,100,200,200\n2,1,cup,0.7,10,100,200,200\n";
   options_.held_out = HeldOutFrames::kOdd;
   const Sequence sequence = Import();
-  ASSERT_EQ(sequence.rejected.size(), 1u);
-  EXPECT_EQ(sequence.frames.at(sequence.rejected[0].frame_index).id, 2);
+  EXPECT_EQ(sequence.frames.at(Only(sequence.rejected).frame_index).id, 2);
 }
 
 TEST_F(ImportTest, WhatNobodyMeasuredIsIgnored) {
@@ -352,9 +349,7 @@ std::vector<Bounds> BoundsOfAll(Sequence sequence, double hidden_edge_fraction =
   ImportOptions options;
   options.hidden_edge_fraction = hidden_edge_fraction;
   MarkHiddenEdges(options, &sequence);
-  std::vector<Bounds> bounds;
-  for (const Detection& detection : sequence.detections) bounds.push_back(detection.is_one_sided);
-  return bounds;
+  return Fields(sequence.detections, &Detection::is_one_sided);
 }
 
 Bounds BoundsOfFirst(const std::vector<Box>& boxes, double hidden_edge_fraction = 0.7) {

@@ -5,9 +5,9 @@
 
 #include "base/error.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
 #include "support/kitti_fixture.h"
 #include "support/random.h"
-#include "support/temporary_folder.h"
 
 namespace soslam {
 namespace {
@@ -44,19 +44,17 @@ TEST(RecordingValues, RefusesWhatIsNoValue) {
   }
 }
 
-class KittiLabelTest : public testing::Test {
+class KittiLabelTest : public FolderTest {
  protected:
   KittiLabel Read(const std::string& columns) {
-    return ReadKittiObjectLabels(WriteBytes(folder_ / "000000.txt", columns)).at(0);
+    return ReadKittiObjectLabels(Write("000000.txt", columns)).at(0);
   }
   KittiCalibration ReadCalibration(const std::string& text = KittiCalibrationText()) {
-    return ReadKittiCalibration(WriteBytes(folder_ / "calib.txt", text));
+    return ReadKittiCalibration(Write("calib.txt", text));
   }
   void ExpectRefused(const std::string& columns, const std::vector<std::string>& words) {
     ExpectError<InputError>([&] { Read(columns); }, words);
   }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(KittiLabelTest, CalibrationIsThatOfCamera2) {
@@ -84,7 +82,7 @@ TEST_F(KittiLabelTest, ResultsHaveAScore) {
   EXPECT_EQ(Read(columns + " 0.25").score, 0.25);
   ExpectRefused(columns + " high", {"000000.txt:1", "score is 'high'"});
   ExpectRefused(columns + " 0.25 1", {"17 values", "[score]"});
-  WriteBytes(folder_ / "0001.txt", "4 7 " + columns + " 0.5\n");
+  Write("0001.txt", "4 7 " + columns + " 0.5\n");
   EXPECT_EQ(ReadKittiTrackingLabels(folder_ / "0001.txt").at(0).score, 0.5);
 }
 
@@ -141,14 +139,14 @@ TEST_F(KittiLabelTest, BadLabelsAreRefused) {
 }
 
 TEST_F(KittiLabelTest, FilesAreNumbered) {
-  WriteBytes(folder_ / "0010.txt", "");
-  WriteBytes(folder_ / "0002.txt", "");
-  WriteBytes(folder_ / "notes.md", "");
+  Write("0010.txt", "");
+  Write("0002.txt", "");
+  Write("notes.md", "");
   const auto files = NumberedFiles(folder_.path(), ".txt");
   ASSERT_EQ(files.size(), 2u);
   EXPECT_EQ(files[0].number, 2);
   EXPECT_EQ(files[1].path.filename(), "0010.txt");
-  WriteBytes(folder_ / "readme.txt", "");
+  Write("readme.txt", "");
   ExpectError<InputError>([&] { NumberedFiles(folder_.path(), ".txt"); }, {"readme"});
   ExpectError<InputError>([&] { NumberedFiles(folder_ / "absent", ".txt"); }, {"absent", ".txt"});
 }

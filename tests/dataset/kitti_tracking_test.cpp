@@ -2,13 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <opencv2/imgcodecs.hpp>
-
 #include "base/error.h"
 #include "dataset/dataset_content.h"
 #include "dataset/kitti_label.h"
+#include "support/image_files.h"
 #include "support/imported_folder.h"
 #include "support/kitti_fixture.h"
+#include "support/lists.h"
 
 namespace soslam {
 namespace {
@@ -28,7 +28,7 @@ class KittiTrackingTest : public ImportedFolderTest {
   }
 
   Sequence Import() override {
-    fixture.Write(folder_);
+    fixture.Write(folder_.path());
     return ImportedFolderTest::Import();
   }
   void ExpectRefusedWith(const std::string& file, const std::string& text,
@@ -38,17 +38,13 @@ class KittiTrackingTest : public ImportedFolderTest {
     ExpectRefused(words);
     fixture.files[file] = before;
   }
-  void WriteImage(const std::string& name, int width, int height) {
-    std::filesystem::create_directories((folder_ / name).parent_path());
-    cv::imwrite((folder_ / name).string(), cv::Mat(height, width, CV_8UC1, cv::Scalar(90)));
-  }
 
   KittiTrackingFixture fixture;
 };
 
 TEST_F(KittiTrackingTest, EachRecordingIsASegment) {
   const Sequence sequence = Import();
-  EXPECT_EQ(sequence.name, "small");
+  EXPECT_EQ(sequence.name, folder_.path().filename());
   EXPECT_EQ(sequence.camera.width, 1242);
   EXPECT_EQ(sequence.camera.fx, kKittiFocal);
   ASSERT_EQ(sequence.frames.size(), 8u);
@@ -65,16 +61,14 @@ TEST_F(KittiTrackingTest, EachRecordingIsASegment) {
 
 TEST_F(KittiTrackingTest, ObjectsKnowWhetherTheyStand) {
   const Sequence sequence = Import();
-  ASSERT_EQ(sequence.objects.size(), 4u);
-  const std::vector<std::pair<int, std::string>> expected = {
-      {30000, "car"}, {30001, "car"}, {30002, "pedestrian"}, {70000, "van"}};
-  const std::vector<bool> is_static = {true, false, false, true};
-  for (size_t i = 0; i < expected.size(); ++i) {
-    EXPECT_EQ(sequence.objects[i].id, expected[i].first);
-    EXPECT_EQ(sequence.objects[i].label, expected[i].second);
-    EXPECT_EQ(sequence.objects[i].is_static, is_static[i]);
-    EXPECT_EQ(sequence.planes[sequence.objects[i].plane_index].id, expected[i].first);
-  }
+  const auto plane_id = [&](const Object& object) {
+    return sequence.planes[object.plane_index].id;
+  };
+  ASSERT_THAT(Fields(sequence.objects, &Object::id), ElementsAre(30000, 30001, 30002, 70000));
+  EXPECT_EQ(Fields(sequence.objects, plane_id), Fields(sequence.objects, &Object::id));
+  EXPECT_THAT(Fields(sequence.objects, &Object::label),
+              ElementsAre("car", "car", "pedestrian", "van"));
+  EXPECT_THAT(Fields(sequence.objects, &Object::is_static), ElementsAre(true, false, false, true));
   // The parked car's bottom face: 1.6 m below camera 0, which is 0.02 m above camera 2.
   const Landmark& truth = sequence.objects[0].ground_truth->landmark_in_world;
   EXPECT_LT((truth.Centre() - Eigen::Vector3d(3.1, 1.6 - 0.02 - 0.75, 14.01)).norm(), 1e-9);
@@ -111,9 +105,9 @@ TEST_F(KittiTrackingTest, WhatIsTrueDoesNotDependOnWhatIsDetected) {
   options_.labels = "car, van";
   const Sequence some = Import();
   EXPECT_EQ(some.truth_in_frames.size(), all.truth_in_frames.size());
-  ASSERT_EQ(some.rejected.size(), 1u);
-  EXPECT_EQ(some.rejected[0].reason, "other_label");
-  EXPECT_TRUE(some.rejected[0].true_object_id);
+  const RejectedDetection rejected = Only(some.rejected);
+  EXPECT_EQ(rejected.reason, "other_label");
+  EXPECT_TRUE(rejected.true_object_id);
   for (const TrueObject& object : some.true_objects) {
     EXPECT_EQ(object.is_ignored, object.label != "car" && object.label != "van");
   }
@@ -160,8 +154,7 @@ TEST_F(KittiTrackingTest, ADetectorsBoxesTakeTheObjectsOfTheLabels) {
       row(2, parked.x_min, parked.y_min, parked.x_max, parked.y_max, 1);
   options_.detections = "rrc";
   const Sequence sequence = Import();
-  ASSERT_EQ(sequence.detections.size(), 1u);
-  const Detection& detection = sequence.detections[0];
+  const Detection detection = Only(sequence.detections);
   EXPECT_EQ(sequence.FrameOf(detection).id, 30002);
   EXPECT_EQ(sequence.ObjectOf(detection).id, 30000);
   EXPECT_EQ(detection.score, 0.75);
@@ -182,8 +175,9 @@ TEST_F(KittiTrackingTest, ADetectorsBoxesTakeTheObjectsOfTheLabels) {
 }
 
 TEST_F(KittiTrackingTest, ImagesAreNamedWhereTheyAre) {
-  WriteImage("image_02/0007/000001.png", 1200, 360);
-  WriteImage("image_02/0007/000003.png", 1200, 360);
+  const std::string image = EncodedImage(".png", cv::Mat(360, 1200, CV_8UC1, cv::Scalar(90)));
+  Write("image_02/0007/000001.png", image);
+  Write("image_02/0007/000003.png", image);
   const Sequence all = Import();
   EXPECT_EQ(all.frames.size(), 8u);
   EXPECT_EQ(all.frames[5].image, "image_02/0007/000001.png");
@@ -224,14 +218,12 @@ class KittiObjectTest : public ImportedFolderTest {
     options_.format = DatasetFormat::kKittiObject;
     options_.border_px = 0.0;
     options_.min_observations = 1;
-    std::filesystem::create_directories(folder_ / "image_2");
     Write("calib/000003.txt", KittiCalibrationText());
     Write("calib/000011.txt", KittiCalibrationText());
     Write("label_2/000003.txt", KittiBox{2, 1.6, 12, 0.5}.Columns() + kKittiDontCare +
                                     KittiBox{-3, 1.6, 15, 0.1}.Columns("Car", "0.40", 1));
     Write("label_2/000011.txt", KittiBox{7, 1.6, 11, 0.5}.Columns());
-    cv::imwrite((folder_ / "image_2/000011.png").string(),
-                cv::Mat(360, 1100, CV_8UC1, cv::Scalar(90)));
+    Write("image_2/000011.png", EncodedImage(".png", cv::Mat(360, 1100, CV_8UC1, cv::Scalar(90))));
   }
 };
 
@@ -249,10 +241,7 @@ TEST_F(KittiObjectTest, EachFrameIsASegment) {
 
 TEST_F(KittiObjectTest, EachLabelIsAnObjectOfItsOwn) {
   const Sequence sequence = Import();
-  ASSERT_EQ(sequence.objects.size(), 3u);
-  EXPECT_EQ(sequence.objects[0].id, 3000);
-  EXPECT_EQ(sequence.objects[1].id, 3001);
-  EXPECT_EQ(sequence.objects[2].id, 11000);
+  EXPECT_THAT(Fields(sequence.objects, &Object::id), ElementsAre(3000, 3001, 11000));
   ASSERT_EQ(sequence.detections.size(), 3u);
   for (const Detection& detection : sequence.detections) {
     const Landmark& truth = sequence.ObjectOf(detection).ground_truth->landmark_in_world;

@@ -10,27 +10,26 @@
 #include "base/error.h"
 #include "dataset/class_names.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
 #include "support/labelled_boxes.h"
+#include "support/lists.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {
 namespace {
 
-class DetectionsCsvTest : public testing::Test {
+class DetectionsCsvTest : public FolderTest {
  protected:
-  std::filesystem::path Write(const std::string& text) {
-    return WriteBytes(folder_ / "detections.csv", text);
+  std::vector<LabelledBox> Read(const std::string& text) const {
+    return ReadDetectionsCsv(Write("detections.csv", text));
   }
-  TemporaryFolder folder_;
 };
 
 TEST_F(DetectionsCsvTest, WithAndWithoutObjectIds) {
   for (const char* text : {"frame,label,score,x1,y1,x2,y2\n3,cup,0.5,1,2,3.25,4\n",
                            "# a comment\nscore,frame,object_id,label,x1,y1,x2,y2\n"
                            "0.5,3,7,cup,1,2,3.25,4\n"}) {
-    const auto boxes = ReadDetectionsCsv(Write(text));
-    ASSERT_EQ(boxes.size(), 1u);
-    ExpectLabelledBox(boxes[0], 3, "cup", 0.5, {1, 2, 3.25, 4});
+    ExpectLabelledBox(Only(Read(text)), 3, "cup", 0.5, {1, 2, 3.25, 4});
   }
 }
 
@@ -41,12 +40,10 @@ TEST_F(DetectionsCsvTest, AsSpreadsheetsAndOtherProgramsWriteIt) {
         "frame;label;score;x1;y1;x2;y2\n3;milk carton;0.5;1;2;3.25;4\n",
         "Frame \tLABEL\tScore\tX1\ty1\tx2\ty2\n3\tmilk carton\t0.5\t1\t2\t3.25\t4\n",
         "frame,label,score,x1,y1,x2,y2\r3,milk carton,0.5,1,2,3.25,4\r"}) {
-    const auto boxes = ReadDetectionsCsv(Write(text));
-    ASSERT_EQ(boxes.size(), 1u) << text;
-    ExpectLabelledBox(boxes[0], 3, "milk carton", 0.5, {1, 2, 3.25, 4});
+    SCOPED_TRACE(text);
+    ExpectLabelledBox(Only(Read(text)), 3, "milk carton", 0.5, {1, 2, 3.25, 4});
   }
-  const auto boxes =
-      ReadDetectionsCsv(Write("frame,Object ID,label,score,x1,y1,x2,y2\n3,7.0,cup,0.5,1,2,3,4\n"));
+  const auto boxes = Read("frame,Object ID,label,score,x1,y1,x2,y2\n3,7.0,cup,0.5,1,2,3,4\n");
   EXPECT_EQ(boxes.at(0).object_id, 7);
 }
 
@@ -57,35 +54,31 @@ TEST_F(DetectionsCsvTest, WrittenBoxesComeBackRounded) {
             "frame,label,score,x1,y1,x2,y2\n"
             "0,milk carton,0.1235,-0.50,10.13,20.00,30.00\n"
             "12,cup,1.0000,1.00,2.00,3.00,4.00\n");
-  const auto boxes = ReadDetectionsCsv(Write(text));
+  const auto boxes = Read(text);
   ASSERT_EQ(boxes.size(), 2u);
   ExpectLabelledBox(boxes[0], 0, "milk carton", 0.1235, {-0.5, 10.13, 20, 30});
 }
 
 TEST_F(DetectionsCsvTest, LabelsWithCommasAndQuotesComeBack) {
   for (const char* label : {"box, large", "12\" screen", "\"cup\""}) {
-    const auto boxes =
-        ReadDetectionsCsv(Write(LabelledBoxesText({{"", 0, label, 1, {1, 2, 3, 4}}})));
-    ASSERT_EQ(boxes.size(), 1u);
-    EXPECT_EQ(boxes[0].label, label);
+    EXPECT_EQ(Only(Read(LabelledBoxesText({{"", 0, label, 1, {1, 2, 3, 4}}}))).label, label);
   }
 }
 
 TEST_F(DetectionsCsvTest, FirstAndLastFieldBetweenTabsMayBeEmpty) {
-  const auto boxes =
-      ReadDetectionsCsv(Write("object_id\tframe\tlabel\tscore\tx1\ty1\tx2\ty2\tnote\n"
-                              "\t3\tcup\t0.5\t1\t2\t3\t4\t\r\n\t\t\n"));
-  ASSERT_EQ(boxes.size(), 1u);
-  EXPECT_FALSE(boxes[0].object_id);
-  EXPECT_EQ(boxes[0].label, "cup");
+  const LabelledBox box =
+      Only(Read("object_id\tframe\tlabel\tscore\tx1\ty1\tx2\ty2\tnote\n"
+                "\t3\tcup\t0.5\t1\t2\t3\t4\t\r\n\t\t\n"));
+  EXPECT_FALSE(box.object_id);
+  EXPECT_EQ(box.label, "cup");
 }
 
 TEST_F(DetectionsCsvTest, OnlyRegularFilesAreRead) {
   ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
   ExpectError<InputError>([&] { ReadDetectionsCsv(folder_ / "pipe"); }, {"pipe", "cannot be read"});
-  Write("");
-  std::filesystem::resize_file(folder_ / "detections.csv", (1u << 30) + 1);  // of no blocks
-  ExpectError<InputError>([&] { ReadDetectionsCsv(folder_ / "detections.csv"); },
+  const auto large = Write("detections.csv", "");
+  std::filesystem::resize_file(large, (1u << 30) + 1);  // of no blocks
+  ExpectError<InputError>([&] { ReadDetectionsCsv(large); },
                           {"detections.csv", "1073741825 bytes", "at most 1073741824"});
 }
 
@@ -97,31 +90,27 @@ TEST_F(DetectionsCsvTest, BadFilesAreNamed) {
        {"detections.csv:2", "score is '0,5'", "a decimal point"}},
       {header + "0,\"cup,0.5,1,2,3,4\n", {"detections.csv:2", "not closed"}},
       {header + "0,\"cup\"s,0.5,1,2,3,4\n", {"detections.csv:2", "'s' after a quoted field"}}};
-  ExpectBadTexts(cases, "detections.csv",
-                 [&](const std::string& text) { ReadDetectionsCsv(Write(text)); });
+  ExpectBadTexts(cases, "detections.csv", [&](const std::string& text) { Read(text); });
 }
 
 constexpr const char* kDataset = R"({
     "images": [{"id": 7, "file_name": "rgb/a.png"}, {"id": 3, "file_name": "rgb/b.png"}],
     "categories": [{"id": 1, "name": "milk carton"}, {"id": 2, "name": "cup"}]})";
 
-class CocoResultsTest : public testing::Test {
+class CocoResultsTest : public FolderTest {
  protected:
   std::vector<LabelledBox> Read(const std::string& results) {
-    return ReadCocoResults(WriteBytes(folder_ / "results.json", results));
+    return ReadCocoResults(Write("results.json", results));
   }
   std::vector<LabelledBox> ReadWith(const std::string& dataset, const std::string& results) {
-    return ReadCocoResults(WriteBytes(folder_ / "results.json", results),
-                           WriteBytes(folder_ / "dataset.json", dataset));
+    return ReadCocoResults(Write("results.json", results), Write("dataset.json", dataset));
   }
-  TemporaryFolder folder_;
 };
 
 TEST_F(CocoResultsTest, DatasetSaysWhatIdsMean) {
   const auto boxes = ReadWith(
       kDataset, R"([{"image_id": 3, "category_id": 1, "bbox": [1, 2, 3, 4], "score": 0.5}])");
-  ASSERT_EQ(boxes.size(), 1u);
-  ExpectLabelledBox(boxes[0], "rgb/b.png", "milk carton", 0.5, {0.5, 1.5, 3.5, 5.5});
+  ExpectLabelledBox(Only(boxes), "rgb/b.png", "milk carton", 0.5, {0.5, 1.5, 3.5, 5.5});
 }
 
 TEST_F(CocoResultsTest, WithoutScoreItIsOne) {
@@ -213,12 +202,11 @@ TEST(OaSlamBoxesTest, BadFilesAreNamed) {
   });
 }
 
-class LabelFileTest : public testing::Test {
+class LabelFileTest : public FolderTest {
  protected:
   std::vector<std::string> Read(const std::string& text) {
-    return ReadLabelFile(WriteBytes(folder_ / "labels.txt", text));
+    return ReadLabelFile(Write("labels.txt", text));
   }
-  TemporaryFolder folder_;
 };
 
 TEST_F(LabelFileTest, BadFilesAreNamed) {
@@ -250,20 +238,19 @@ TEST_F(LabelFileTest, LatinLettersOfOneByteAreRefused) {
 TEST_F(LabelFileTest, IsFoundAmongOrAroundLabels) {
   const auto dataset = folder_ / "dataset";
   const auto labels = dataset / "labels" / "train";
-  std::filesystem::create_directories(labels);
-  WriteBytes(folder_ / "classes.txt", "of another\n");
+  Write("dataset/labels/train/1.txt", "");
+  Write("classes.txt", "of another\n");
   EXPECT_FALSE(FindLabelFile(labels, dataset));
-  WriteBytes(dataset / "data.yaml", "names: [cup]\n");
+  Write("dataset/data.yaml", "names: [cup]\n");
   EXPECT_EQ(FindLabelFile(labels, dataset), dataset / "data.yaml");
   EXPECT_EQ(FindLabelFile(dataset / "labels.zip", dataset), dataset / "data.yaml");
-  WriteBytes(labels / "obj.names", "cup\n");
-  WriteBytes(labels / "classes.txt", "cup\n");
+  Write("dataset/labels/train/obj.names", "cup\n");
+  Write("dataset/labels/train/classes.txt", "cup\n");
   EXPECT_EQ(FindLabelFile(labels, dataset), labels / "classes.txt");
-  std::filesystem::create_directories(folder_ / "elsewhere" / "labels");
-  EXPECT_FALSE(FindLabelFile(folder_ / "elsewhere" / "labels", dataset));
-  WriteBytes(folder_ / "elsewhere" / "classes.txt", "cup\n");
-  EXPECT_EQ(FindLabelFile(folder_ / "elsewhere" / "labels", dataset),
-            folder_ / "elsewhere" / "classes.txt");
+  const auto elsewhere = Write("elsewhere/labels/1.txt", "").parent_path();
+  EXPECT_FALSE(FindLabelFile(elsewhere, dataset));
+  const auto classes = Write("elsewhere/classes.txt", "cup\n");
+  EXPECT_EQ(FindLabelFile(elsewhere, dataset), classes);
 }
 
 // Indices as detectors give them, and category ids as COCO's annotation files have them.

@@ -9,20 +9,18 @@
 #include "base/error.h"
 #include "dataset/calibration_file.h"
 #include "support/expect_error.h"
-#include "support/temporary_folder.h"
+#include "support/folder_test.h"
+#include "support/lists.h"
 
 namespace soslam {
 namespace {
 
 using nlohmann::json;
 
-class NerfstudioTest : public testing::Test {
+class NerfstudioTest : public FolderTest {
  protected:
-  std::filesystem::path Write() {
-    WriteBytes(folder_ / "transforms.json", document_.dump());
-    return folder_ / "transforms.json";
-  }
-  LensCamera Camera() { return ReadCameraFile(Write()).camera; }
+  std::filesystem::path WriteDocument() { return Write("transforms.json", document_.dump()); }
+  LensCamera Camera() { return ReadCameraFile(WriteDocument()).camera; }
   void ExpectRefused(const char* pointer, const json& value,
                      const std::vector<std::string>& words) {
     const json before = document_;
@@ -30,7 +28,7 @@ class NerfstudioTest : public testing::Test {
     ExpectError<InputError>(
         [&] {
           Camera();
-          ReadNerfstudioPoses(Write(), &findings_);
+          ReadNerfstudioPoses(WriteDocument(), &findings_);
         },
         words);
     document_ = before;
@@ -51,7 +49,6 @@ class NerfstudioTest : public testing::Test {
        {{{"file_path", "./images/a.jpg"},
          {"transform_matrix", {{0, 0, 1, 1}, {1, 0, 0, 2}, {0, 1, 0, 3}, {0, 0, 0, 1}}}}}}};
   std::vector<Finding> findings_;
-  TemporaryFolder folder_;
 };
 
 TEST_F(NerfstudioTest, CameraCountsFromTheCorner) {
@@ -72,10 +69,9 @@ TEST_F(NerfstudioTest, WhatIsAbsentHasItsUsualValue) {
 }
 
 TEST_F(NerfstudioTest, PosesHaveOpenGlAxes) {
-  const auto poses = ReadNerfstudioPoses(Write(), &findings_);
-  ASSERT_EQ(poses.size(), 1u);
-  EXPECT_EQ(poses[0].image, "./images/a.jpg");
-  const Rigid3d& pose = poses[0].world_from_camera;
+  const NamedPose named = Only(ReadNerfstudioPoses(WriteDocument(), &findings_));
+  EXPECT_EQ(named.image, "./images/a.jpg");
+  const Rigid3d& pose = named.world_from_camera;
   EXPECT_TRUE((pose * Eigen::Vector3d(0, 0, 5)).isApprox(Eigen::Vector3d(-4, 2, 3)));
   EXPECT_TRUE((pose * Eigen::Vector3d(0, 5, 0)).isApprox(Eigen::Vector3d(1, 2, -2)));
   EXPECT_TRUE((pose * Eigen::Vector3d(5, 0, 0)).isApprox(Eigen::Vector3d(1, 7, 3)));
@@ -85,29 +81,27 @@ TEST_F(NerfstudioTest, PosesHaveOpenGlAxes) {
 TEST_F(NerfstudioTest, AnotherScaleIsAFinding) {
   document_["applied_transform"] = {{1, 0, 0, 0}, {0, 0, 1, 0}, {0, -1, 0, 0}};
   document_["applied_scale"] = 1.0;
-  ReadNerfstudioPoses(Write(), &findings_);
+  ReadNerfstudioPoses(WriteDocument(), &findings_);
   EXPECT_THAT(findings_, testing::IsEmpty());
   document_["applied_scale"] = 0.25;
-  ReadNerfstudioPoses(Write(), &findings_);
-  ASSERT_EQ(findings_.size(), 1u);
-  EXPECT_THAT(findings_[0].found, testing::HasSubstr("transforms.json: applied_scale is 0.25"));
-  EXPECT_THAT(findings_[0].remedy, testing::HasSubstr("multiply translations by 4"));
+  ReadNerfstudioPoses(WriteDocument(), &findings_);
+  const Finding finding = Only(findings_);
+  EXPECT_THAT(finding.found, testing::HasSubstr("transforms.json: applied_scale is 0.25"));
+  EXPECT_THAT(finding.remedy, testing::HasSubstr("multiply translations by 4"));
 }
 
 TEST_F(NerfstudioTest, FramesAreAListOfImages) {
-  const auto images = ReadNerfstudioImages(Write());
-  ASSERT_EQ(images.size(), 1u);
-  EXPECT_EQ(images[0].image, "./images/a.jpg");
-  EXPECT_EQ(images[0].timestamp, 0.0);
+  const auto listed = Only(ReadNerfstudioImages(WriteDocument()));
+  EXPECT_EQ(listed.image, "./images/a.jpg");
+  EXPECT_EQ(listed.timestamp, 0.0);
 }
 
 TEST_F(NerfstudioTest, ImagesAreSortedByName) {
   document_["frames"] = {{{"file_path", "images/b.jpg"}}, {{"file_path", "images/a.jpg"}}};
-  const auto images = ReadNerfstudioImages(Write());
-  ASSERT_EQ(images.size(), 2u);
-  EXPECT_EQ(images[0].image, "images/a.jpg");
-  EXPECT_EQ(images[1].image, "images/b.jpg");
-  EXPECT_EQ(images[1].timestamp, 1.0);
+  const auto images = ReadNerfstudioImages(WriteDocument());
+  EXPECT_THAT(Fields(images, &ListedImage::image),
+              testing::ElementsAre("images/a.jpg", "images/b.jpg"));
+  EXPECT_EQ(images.back().timestamp, 1.0);
 }
 
 TEST_F(NerfstudioTest, BadFilesAreNamed) {

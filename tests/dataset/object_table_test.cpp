@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "dataset/soslam_folder.h"
+#include "support/lists.h"
 
 namespace soslam {
 namespace {
@@ -72,9 +73,9 @@ TEST_F(ObjectIdsTest, ATableWithoutTracksHasNoIds) {
            {{-1, -1}, {-1, -2}}, {{0, 0}, {0, -1}}}) {
     EXPECT_THAT(Ids(frames), IsEmpty());
     EXPECT_EQ(boxes_.size(), 4u);
-    ASSERT_EQ(findings_.size(), 1u);
-    EXPECT_THAT(findings_[0].found, HasSubstr("detections.csv: all 4 boxes have object_id"));
-    EXPECT_THAT(findings_[0].remedy, HasSubstr("let association be estimated"));
+    const Finding finding = Only(findings_);
+    EXPECT_THAT(finding.found, HasSubstr("detections.csv: all 4 boxes have object_id"));
+    EXPECT_THAT(finding.remedy, HasSubstr("let association be estimated"));
   }
   EXPECT_TRUE(left_out_.empty());
 }
@@ -92,9 +93,7 @@ class TrackLabelsTest : public testing::Test {
  protected:
   std::vector<std::string> Labels(std::vector<DetectionRow> rows) {
     changed_ = UnifyLabels({}, &rows);
-    std::vector<std::string> labels;
-    for (const DetectionRow& row : rows) labels.push_back(row.label);
-    return labels;
+    return Fields(rows, &DetectionRow::label);
   }
 
   int changed_ = 0;

@@ -6,32 +6,29 @@
 
 #include "support/drawn_photos.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
+#include "support/lists.h"
 
 namespace soslam {
 namespace {
 
-class PhotoFolderTest : public testing::Test {
+class PhotoFolderTest : public FolderTest {
  protected:
   void Add(const std::string& name, const cv::Size& size = {64, 48}, const std::string& exif = "") {
     WritePhoto(folder_ / name, DrawnView(0, size), exif);
   }
   std::vector<std::string> Names() const {
-    std::vector<std::string> names;
-    for (const Photo& photo : ListPhotos(folder_.path())) names.push_back(photo.path.filename());
-    return names;
+    return Fields(ListPhotos(folder_.path()),
+                  [](const Photo& photo) { return photo.path.filename().string(); });
   }
   std::vector<std::optional<FrameRejection>> Reasons() const {
     const auto photos = ListPhotos(folder_.path());
     const CommonCamera common = FindCommonCamera(folder_.path(), photos);
-    std::vector<std::optional<FrameRejection>> reasons;
-    for (const Photo& photo : photos) {
+    return Fields(photos, [&](const Photo& photo) {
       const auto other = FindOtherCamera(photo, common);
-      reasons.push_back(other ? std::optional(other->reason) : std::nullopt);
-    }
-    return reasons;
+      return other ? std::optional(other->reason) : std::nullopt;
+    });
   }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(PhotoFolderTest, NumbersInNamesAreNumbers) {
@@ -47,8 +44,8 @@ TEST_F(PhotoFolderTest, NumbersInNamesAreNumbers) {
 TEST_F(PhotoFolderTest, OtherFilesAreIgnored) {
   Add("1.jpg");
   Add("2.jpg");
-  WriteBytes(folder_ / "._1.jpg", "of a file system");
-  WriteBytes(folder_ / "notes.txt", "notes");
+  Write("._1.jpg", "of a file system");
+  Write("notes.txt", "notes");
   std::filesystem::create_directory(folder_ / "3.jpg");
   EXPECT_THAT(Names(), testing::ElementsAre("1.jpg", "2.jpg"));
 }
@@ -56,7 +53,7 @@ TEST_F(PhotoFolderTest, OtherFilesAreIgnored) {
 TEST_F(PhotoFolderTest, RefusesFoldersWithoutPhotos) {
   const auto list = [&] { ListPhotos(folder_.path()); };
   ExpectError<InputError>(list, {folder_.path().string(), "has 0 image(s)", "a video is given"});
-  WriteBytes(folder_ / "video.mp4", "video");
+  Write("video.mp4", "video");
   ExpectError<InputError>(list, {"has 0 image(s)", "video.mp4"});
   Add("1.jpg");
   ExpectError<InputError>(list, {"has 1 image(s)", "at least 2"});
@@ -66,12 +63,12 @@ TEST_F(PhotoFolderTest, RefusesFoldersWithoutPhotos) {
 }
 
 TEST_F(PhotoFolderTest, NamesTheConversionOfOtherFormats) {
-  WriteBytes(folder_ / "IMG_1.HEIC", std::string("\0\0\0\x18"
-                                                 "ftypheic",
-                                                 12));
-  WriteBytes(folder_ / "IMG_2.HEIC", std::string("\0\0\0\x18"
-                                                 "ftypheic",
-                                                 12));
+  Write("IMG_1.HEIC", std::string("\0\0\0\x18"
+                                  "ftypheic",
+                                  12));
+  Write("IMG_2.HEIC", std::string("\0\0\0\x18"
+                                  "ftypheic",
+                                  12));
   const auto find = [&] { FindCommonCamera(folder_.path(), ListPhotos(folder_.path())); };
   ExpectError<InputError>(find, {folder_.path().string(), "none of its 2 images", "heif-convert"});
 }
@@ -84,7 +81,7 @@ TEST_F(PhotoFolderTest, MostPhotosDecideOnSizeAndFocalLength) {
   Add("4.jpg", {48, 64}, ExifOfCamera(6, 26));  // shown upright it is 64 x 48
   Add("5.jpg", {64, 48}, ExifOfCamera(1, 13));
   Add("6.jpg", {64, 48});
-  WriteBytes(folder_ / "7.jpg", "damaged");
+  Write("7.jpg", "damaged");
   EXPECT_THAT(Reasons(),
               testing::ElementsAre(std::nullopt, std::nullopt, Rejection::kOtherSize, std::nullopt,
                                    Rejection::kOtherFocalLength, std::nullopt, std::nullopt));

@@ -6,9 +6,10 @@
 
 #include "base/error.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
 #include "support/labelled_boxes.h"
+#include "support/lists.h"
 #include "support/run_command.h"
-#include "support/temporary_folder.h"
 
 namespace soslam {
 namespace {
@@ -16,12 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 using testing::ElementsAre;
 
-class YoloTextsTest : public testing::Test {
+class YoloTextsTest : public FolderTest {
  protected:
-  void Write(const std::string& name, const std::string& text) {
-    fs::create_directories((folder_ / name).parent_path());
-    WriteBytes(folder_ / name, text);
-  }
   fs::path Pack() {
     EXPECT_EQ(RunCommand({"tar", "czf", (folder_ / "labels.tar.gz").string(), "-C",
                           folder_.path().string(), "packed"})
@@ -29,12 +26,6 @@ class YoloTextsTest : public testing::Test {
               0);
     return folder_ / "labels.tar.gz";
   }
-  static std::vector<std::string> Images(const YoloTexts& texts) {
-    std::vector<std::string> images;
-    for (const YoloText& text : texts.images) images.push_back(text.image);
-    return images;
-  }
-  TemporaryFolder folder_;
 };
 
 TEST_F(YoloTextsTest, ExtrasOfToolsAreLeftOut) {
@@ -46,7 +37,7 @@ TEST_F(YoloTextsTest, ExtrasOfToolsAreLeftOut) {
   Write("labels/.DS_Store", "x");
   Write("labels/README.roboflow.txt", "Exported\n");
   const YoloTexts texts = ReadYoloTexts(folder_ / "labels");
-  EXPECT_THAT(Images(texts), ElementsAre("1", "train"));
+  EXPECT_THAT(Fields(texts.images, &YoloText::image), ElementsAre("1", "train"));
   EXPECT_FALSE(texts.names);  // FindLabelFile finds those of folders
 }
 
@@ -58,7 +49,7 @@ TEST_F(YoloTextsTest, ArchivesOfCvatAndMacOs) {
   Write("packed/__MACOSX/obj_train_data/._1.txt", std::string("\0\5\x16\7Mac OS X", 12));
   Write("packed/__MACOSX/obj.names", "no\n");
   const YoloTexts texts = ReadYoloTexts(Pack());
-  EXPECT_THAT(Images(texts), ElementsAre("1"));
+  EXPECT_THAT(Fields(texts.images, &YoloText::image), ElementsAre("1"));
   ASSERT_TRUE(texts.names);
   EXPECT_THAT(*texts.names, ElementsAre("cup", "book"));
   EXPECT_THAT(texts.names_place, testing::EndsWith("labels.tar.gz/packed/obj.names"));
@@ -142,7 +133,7 @@ TEST(YoloColumnsTest, NoImageHasATrackTwice) {
 
 const std::vector<std::string> kLabels = {"cup", "teddy bear", "book"};
 
-class YoloBoxesTest : public testing::Test {
+class YoloBoxesTest : public FolderTest {
  protected:
   std::vector<LabelledBox> Normalised() {
     return ReadNormalisedYoloBoxes(ReadYoloTexts(folder_.path()), kLabels, 640, 480, &mended_);
@@ -150,9 +141,6 @@ class YoloBoxesTest : public testing::Test {
   std::vector<LabelledBox> Pixels() {
     return ReadPixelYoloBoxes(ReadYoloTexts(folder_.path()), kLabels);
   }
-  void Write(const std::string& name, const std::string& text) { WriteBytes(folder_ / name, text); }
-
-  TemporaryFolder folder_;
   RejectionCounts mended_;
 };
 

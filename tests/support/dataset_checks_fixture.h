@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -22,6 +21,8 @@
 #include "geometry/camera.h"
 #include "geometry/rigid3.h"
 #include "support/image_files.h"
+#include "support/imported_folder.h"
+#include "support/lists.h"
 #include "support/looking_at.h"
 #include "support/temporary_folder.h"
 
@@ -161,36 +162,25 @@ inline Rigid3d TurnedAboutOpticalAxis(const Rigid3d& world_from_camera, double d
 }
 
 // A dataset that is right, in which each test makes one of the usual mistakes.
-class DatasetChecksTest : public testing::Test {
+class DatasetChecksTest : public ImportedFolderTest {
  protected:
-  DatasetChecksTest() { options.border_px = 0; }
+  DatasetChecksTest() { options_.border_px = 0; }
+
+  Sequence Import() override {
+    dataset.Write(folder_.path());
+    return ImportedFolderTest::Import();
+  }
 
   // The warnings, each as "check: in words".
   std::vector<std::string> Warnings() {
-    dataset.Write(folder);
-    std::vector<std::string> warnings;
-    for (const Finding& finding : ImportDataset(folder, options).findings) {
-      warnings.push_back(finding.check + ": " + InWords(finding));
-    }
-    return warnings;
+    return Fields(Import().findings,
+                  [](const Finding& finding) { return finding.check + ": " + InWords(finding); });
   }
 
-  // What import says when it refuses the dataset.
-  std::string Refusal() {
-    dataset.Write(folder);
-    try {
-      ImportDataset(folder, options);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
-  }
-
-  // Expects one warning, or a refusal, with these words.
+  // Expects one warning with these words.
   void ExpectWarning(const std::vector<std::string>& words) {
-    const std::vector<std::string> warnings = Warnings();
-    ASSERT_EQ(warnings.size(), 1u) << testing::PrintToString(warnings);
-    for (const std::string& word : words) EXPECT_THAT(warnings[0], testing::HasSubstr(word));
+    const std::string warning = Only(Warnings());
+    for (const std::string& word : words) EXPECT_THAT(warning, testing::HasSubstr(word));
   }
   // Expects a warning with these words, and maybe others.
   void ExpectAmongWarnings(const std::vector<std::string>& words) {
@@ -198,19 +188,25 @@ class DatasetChecksTest : public testing::Test {
     for (const std::string& word : words) has_all.push_back(testing::HasSubstr(word));
     EXPECT_THAT(Warnings(), testing::Contains(testing::AllOfArray(has_all)));
   }
-  void ExpectRefusal(const std::vector<std::string>& words) {
-    const std::string refusal = Refusal();
-    for (const std::string& word : words) EXPECT_THAT(refusal, testing::HasSubstr(word));
+  // Expects a refusal with these words, and without others.
+  void ExpectRefusedWithout(const std::string& other, const std::vector<std::string>& words) {
+    try {
+      Import();
+      ADD_FAILURE() << "nothing was refused";
+    } catch (const InputError& error) {
+      const std::string refusal = error.what();
+      for (const std::string& word : words) EXPECT_THAT(refusal, testing::HasSubstr(word));
+      EXPECT_THAT(refusal, testing::Not(testing::HasSubstr(other)));
+    }
   }
 
   // Images that store width x height pixels.
   void WriteImages(int width, int height, int exif_orientation = 1) {
-    std::filesystem::create_directories(folder / "rgb");
     const cv::Mat image(height, width, CV_8UC1, cv::Scalar(128));
     const std::string bytes = PngWithExif(EncodedImage(".png", image), ExifOf(exif_orientation),
                                           /*is_after_pixels=*/false);
     for (int frame = 0; frame < PlausibleDataset::kFrames; ++frame) {
-      std::ofstream(folder / fmt::format("rgb/{:06}.png", frame), std::ios::binary) << bytes;
+      Write(fmt::format("rgb/{:06}.png", frame), bytes);
     }
   }
 
@@ -225,45 +221,40 @@ class DatasetChecksTest : public testing::Test {
                            {"bbox", numbers(dataset.BoxOf(ball, frame))}});
       }
     }
-    std::filesystem::create_directories(folder);
-    std::ofstream(folder / "boxes.json") << results.dump();
-    options.detections = "boxes.json";
-    options.folder.detections_format = DetectionsFormat::kCoco;
+    Write("boxes.json", results.dump());
+    options_.detections = "boxes.json";
+    options_.folder.detections_format = DetectionsFormat::kCoco;
   }
 
   // Poses in EuRoC's format, by default those of the camera.
   void WriteEuroc(const std::function<Rigid3d(const Rigid3d&)>& written = std::identity()) {
-    std::filesystem::create_directories(folder);
-    std::ofstream file(folder / "data.csv");
-    for (int frame = 0; frame < PlausibleDataset::kFrames; ++frame) {
-      const Rigid3d pose = written(dataset.WorldFromCamera(frame));
-      const Eigen::Quaterniond& q = pose.rotation;
-      file << fmt::format("{}00000000,{},{},{},{},{},{},{}\n", 1000 + 5 * frame,
-                          pose.translation.x(), pose.translation.y(), pose.translation.z(), q.w(),
-                          q.x(), q.y(), q.z());
-    }
-    options.folder.odometry = "data.csv";
-    options.folder.trajectory_format = TrajectoryFormat::kEuroc;
+    WritePoses("data.csv", TrajectoryFormat::kEuroc, [&](int frame) {
+      const auto& [q, t] = written(dataset.WorldFromCamera(frame));
+      return fmt::format("{}00000000,{},{},{},{},{},{},{}\n", 1000 + 5 * frame, t.x(), t.y(), t.z(),
+                         q.w(), q.x(), q.y(), q.z());
+    });
   }
 
   void WriteColmap() {
-    std::filesystem::create_directories(folder);
-    std::ofstream file(folder / "images.txt");
-    for (int frame = 0; frame < PlausibleDataset::kFrames; ++frame) {
-      const Rigid3d pose = dataset.WorldFromCamera(frame).Inverse();
-      const Eigen::Quaterniond& q = pose.rotation;
-      file << fmt::format("{} {} {} {} {} {} {} {} 1 {:06}.png\n\n", frame + 1, q.w(), q.x(), q.y(),
-                          q.z(), pose.translation.x(), pose.translation.y(), pose.translation.z(),
-                          frame);
-    }
-    options.folder.odometry = "images.txt";
-    options.folder.trajectory_format = TrajectoryFormat::kColmap;
+    WritePoses("images.txt", TrajectoryFormat::kColmap, [&](int frame) {
+      const auto& [q, t] = dataset.WorldFromCamera(frame).Inverse();
+      return fmt::format("{} {} {} {} {} {} {} {} 1 {:06}.png\n\n", frame + 1, q.w(), q.x(), q.y(),
+                         q.z(), t.x(), t.y(), t.z(), frame);
+    });
   }
 
   PlausibleDataset dataset;
-  ImportOptions options;
-  TemporaryFolder temporary_;
-  std::filesystem::path folder = temporary_ / "small";
+
+ private:
+  // The file of odometry, with a text for each frame.
+  void WritePoses(const std::string& name, TrajectoryFormat format,
+                  const std::function<std::string(int)>& text_of_frame) {
+    std::string text;
+    for (int frame = 0; frame < PlausibleDataset::kFrames; ++frame) text += text_of_frame(frame);
+    Write(name, text);
+    options_.folder.odometry = name;
+    options_.folder.trajectory_format = format;
+  }
 };
 
 }  // namespace soslam

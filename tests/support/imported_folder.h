@@ -1,27 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
 #include "dataset/dataset_content.h"
 #include "support/expect_error.h"
-#include "support/temporary_folder.h"
+#include "support/folder_test.h"
 
 namespace soslam {
 
 // A dataset's folder, which the test fills, and what comes of its import.
-class ImportedFolderTest : public testing::Test {
+class ImportedFolderTest : public FolderTest {
  protected:
-  void Write(const std::string& name, const std::string& text) const {
-    std::filesystem::create_directories((folder_ / name).parent_path());
-    WriteBytes(folder_ / name, text);
-  }
-  virtual Sequence Import() { return ImportDataset(folder_, options_); }
+  virtual Sequence Import() { return ImportDataset(folder_.path(), options_); }
   // Expects that the import is refused with these words.
   template <typename Error = InputError>
   void ExpectRefused(const std::vector<std::string>& words) {
@@ -29,8 +22,6 @@ class ImportedFolderTest : public testing::Test {
   }
 
   ImportOptions options_;
-  TemporaryFolder temporary_;
-  std::filesystem::path folder_ = temporary_ / "small";
 };
 
 }  // namespace soslam
