@@ -14,6 +14,7 @@
 #include "base/hash.h"
 #include "support/edited_json.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {
@@ -127,9 +128,8 @@ RunRecord SmallRecord() {
   return record;
 }
 
-class RunFileTest : public testing::Test {
+class RunFileTest : public FolderTest {
  protected:
-  TemporaryFolder folder_;
   std::filesystem::path file_ = folder_ / "run.json";
 };
 

@@ -12,6 +12,7 @@
 #include "model/occlusion.h"
 #include "support/edited_json.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
 #include "support/random_estimates.h"
 #include "support/temporary_folder.h"
 
@@ -21,11 +22,10 @@ namespace {
 using testing::HasSubstr;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-class ArtefactFilesTest : public testing::Test {
+class ArtefactFilesTest : public FolderTest {
  protected:
-  TemporaryFolder folder;
-  std::filesystem::path file = folder / "artefact.json";
-  std::filesystem::path again = folder / "again.json";
+  std::filesystem::path file = folder_ / "artefact.json";
+  std::filesystem::path again = folder_ / "again.json";
   Sequence sequence = RandomSequence();
 };
 

@@ -5,8 +5,8 @@
 #include "artefact/json_file.h"
 #include "artefact/run_file.h"
 #include "support/edited_json.h"
+#include "support/folder_test.h"
 #include "support/random_estimates.h"
-#include "support/temporary_folder.h"
 
 namespace soslam {
 // Files of every schema version that was ever released stay readable.
@@ -163,10 +163,9 @@ TEST(GoldenTest, Run14) {
 // The three JSON artefacts of the model: a file with a mistake is refused.
 namespace {
 
-class EditedFileTest : public testing::Test {
+class EditedFileTest : public FolderTest {
  protected:
-  const TemporaryFolder folder;
-  const std::filesystem::path file = folder / "artefact.json";
+  const std::filesystem::path file = folder_ / "artefact.json";
   const Sequence sequence = RandomSequence();
 };
 

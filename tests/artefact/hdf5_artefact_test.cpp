@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
 #include "support/random.h"
 #include "support/temporary_folder.h"
 
@@ -40,7 +41,7 @@ void ExpectSame(const EdgeMaps& a, const EdgeMaps& b) {
   EXPECT_EQ(a.corners, b.corners);
 }
 
-class EdgesFileTest : public testing::Test {
+class EdgesFileTest : public FolderTest {
  protected:
   std::filesystem::path Write(const std::string& name, const EdgeMaps& maps) {
     EdgesWriter writer(folder_ / name, {});
@@ -55,7 +56,6 @@ class EdgesFileTest : public testing::Test {
     file.Close();
     return folder_ / "header.h5";
   }
-  TemporaryFolder folder_;
 };
 
 TEST_F(EdgesFileTest, FramesComeBackExactly) {
@@ -153,9 +153,8 @@ SymmetryRecord BareRecord() {
   return record;
 }
 
-class SymmetryFileTest : public testing::Test {
+class SymmetryFileTest : public FolderTest {
  protected:
-  TemporaryFolder folder_;
 };
 
 TEST_F(SymmetryFileTest, RecordsComeBackInOrder) {
@@ -197,7 +196,7 @@ std::vector<MapPoint> TwoPoints() {
           {{-1.0, 0.5, 1e-3}, 0.0, {{3, {-0.5, 639.0}}}}};
 }
 
-class PointsFileTest : public testing::Test {
+class PointsFileTest : public FolderTest {
  protected:
   // The error of the reader for two points, changed.
   void ExpectRefused(const std::function<void(std::vector<MapPoint>*)>& change,
@@ -219,8 +218,6 @@ class PointsFileTest : public testing::Test {
     file.WriteMatrix("/observation_pixel", cv::Mat::zeros(pixel_rows, 2, CV_64FC1));
     file.Close();
   }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(PointsFileTest, PointsComeBack) {

@@ -8,13 +8,14 @@
 #include "artefact/hdf5_types.h"
 #include "base/error.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {
 namespace {
 
 // Files that Hdf5File does not write, made with the library itself.
-class Hdf5ChecksTest : public testing::Test {
+class Hdf5ChecksTest : public FolderTest {
  protected:
   Hdf5ChecksTest() { file_ = H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT); }
   // A data set of float64 in which nothing is written.
@@ -68,7 +69,6 @@ class Hdf5ChecksTest : public testing::Test {
     ExpectError<InputError>([&] { Hdf5File::Open(path_).ReadVector<double>("/values"); }, words);
   }
 
-  TemporaryFolder folder_;
   std::filesystem::path path_ = folder_ / "bad.h5";
   hid_t file_ = -1;
 };

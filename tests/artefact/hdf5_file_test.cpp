@@ -10,23 +10,23 @@
 
 #include "base/error.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
 #include "support/random.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {
 namespace {
 
-class Hdf5FileTest : public testing::Test {
+class Hdf5FileTest : public FolderTest {
  protected:
   // A file with whatever `fill` writes into it.
   template <typename Fill>
-  std::filesystem::path Write(const std::string& name, Fill fill) {
+  std::filesystem::path Make(const std::string& name, Fill fill) {
     Hdf5File file = Hdf5File::Create(folder_ / name);
     fill(file);
     file.Close();
     return folder_ / name;
   }
-  TemporaryFolder folder_;
 };
 
 cv::Mat RandomMatrix(int rows, int columns, int type) {
@@ -40,7 +40,7 @@ TEST_F(Hdf5FileTest, MatricesComeBackExactly) {
   for (const int type : {CV_8UC1, CV_16SC1, CV_16SC2, CV_32SC1, CV_32FC1, CV_32FC2, CV_64FC1}) {
     for (const cv::Size size : {cv::Size(7, 5), cv::Size(1, 1), cv::Size(2, 0)}) {
       const cv::Mat matrix = RandomMatrix(size.height, size.width, type);
-      const auto path = Write("a.h5", [&](Hdf5File& file) { file.WriteMatrix("/a/b/c", matrix); });
+      const auto path = Make("a.h5", [&](Hdf5File& file) { file.WriteMatrix("/a/b/c", matrix); });
       const cv::Mat read = Hdf5File::Open(path).ReadMatrix("/a/b/c", type);
       ASSERT_EQ(read.type(), type);
       ASSERT_EQ(read.size(), size);
@@ -54,7 +54,7 @@ TEST_F(Hdf5FileTest, MatricesComeBackExactly) {
 TEST_F(Hdf5FileTest, AnyReaderOfHdf5ReadsTheNumbers) {
   for (const int type : {CV_8UC1, CV_16SC2, CV_32FC1, CV_64FC1}) {
     const cv::Mat matrix = RandomMatrix(7, 5, type);
-    const auto path = Write("a.h5", [&](Hdf5File& file) { file.WriteMatrix("/values", matrix); });
+    const auto path = Make("a.h5", [&](Hdf5File& file) { file.WriteMatrix("/values", matrix); });
     const Hdf5File::Numbers numbers = Hdf5File::Open(path).ReadNumbers("/values");
     cv::Mat expected;
     matrix.reshape(1, 1).convertTo(expected, CV_64F);
@@ -65,7 +65,7 @@ TEST_F(Hdf5FileTest, AnyReaderOfHdf5ReadsTheNumbers) {
 
 TEST_F(Hdf5FileTest, AttributesComeBackExactly) {
   const std::string long_text(300'000, 'x');  // older formats end at 64 KiB
-  const auto path = Write("a.h5", [&](Hdf5File& file) {
+  const auto path = Make("a.h5", [&](Hdf5File& file) {
     file.WriteGroup("/group");
     file.WriteText("/", "long", long_text);
     file.WriteText("/group", "name", "M\u00f6bel");
@@ -93,14 +93,14 @@ TEST_F(Hdf5FileTest, SameCallsGiveTheSameBytes) {
       file.WriteNumber(group, "number", i);
     }
   };
-  const std::string first = FileBytes(Write("a.h5", fill));
+  const std::string first = FileBytes(Make("a.h5", fill));
   const std::vector<std::string> garbage(100,
                                          std::string(10'000, '\x5a'));  // for unused heap bytes
-  EXPECT_EQ(FileBytes(Write("b.h5", fill)), first);
+  EXPECT_EQ(FileBytes(Make("b.h5", fill)), first);
 }
 
 TEST_F(Hdf5FileTest, WrongTypesAndShapesAreNamed) {
-  const auto path = Write("a.h5", [](Hdf5File& file) {
+  const auto path = Make("a.h5", [](Hdf5File& file) {
     file.WriteMatrix("/m", cv::Mat::zeros(3, 4, CV_8UC1));
     file.WriteText("/", "text", "t");
     file.WriteNumber("/", "number", 1);
@@ -122,26 +122,24 @@ TEST_F(Hdf5FileTest, WrongTypesAndShapesAreNamed) {
 // A group in the place of a data set, and the other way round.
 TEST_F(Hdf5FileTest, GroupsAndDataSetsAreToldApart) {
   const auto path =
-      Write("a.h5", [](Hdf5File& file) { file.WriteVector("/g/v", std::vector<int>{1}); });
+      Make("a.h5", [](Hdf5File& file) { file.WriteVector("/g/v", std::vector<int>{1}); });
   const Hdf5File file = Hdf5File::Open(path);
   ExpectError<InputError>([&] { file.ReadVector<int>("/g"); }, {"a.h5", "/g"});
   ExpectError<InputError>([&] { file.Children("/g/v"); }, {"a.h5", "/g/v"});
 }
 
 TEST_F(Hdf5FileTest, BadFilesAreNamed) {
-  ExpectError<InputError>([&] { Hdf5File::Open(folder_ / "none.h5"); },
-                          {"none.h5", "no such file"});
-  ExpectError<InputError>([&] { Hdf5File::Open(folder_.path()); }, {folder_.path().string()});
-  WriteBytes(folder_ / "empty.h5", "");
-  ExpectError<InputError>([&] { Hdf5File::Open(folder_ / "empty.h5"); },
-                          {"empty.h5", "not an HDF5 file"});
-  WriteBytes(folder_ / "text.h5", "hello");
-  ExpectError<InputError>([&] { Hdf5File::Open(folder_ / "text.h5"); },
-                          {"text.h5", "not an HDF5 file"});
-  const std::string whole = FileBytes(Write(
-      "a.h5", [](Hdf5File& file) { file.WriteMatrix("/m", RandomMatrix(20, 20, CV_64FC1)); }));
-  WriteBytes(folder_ / "cut.h5", whole.substr(0, whole.size() - 1));
-  ExpectError<InputError>([&] { Hdf5File::Open(folder_ / "cut.h5"); }, {"cut.h5", "cut short"});
+  const auto refused = [](const std::filesystem::path& file, std::vector<std::string> words) {
+    words.push_back(file.string());
+    ExpectError<InputError>([&] { Hdf5File::Open(file); }, words);
+  };
+  refused(folder_ / "none.h5", {"no such file"});
+  refused(folder_.path(), {});
+  refused(Write("empty.h5", ""), {"not an HDF5 file"});
+  refused(Write("text.h5", "hello"), {"not an HDF5 file"});
+  const std::string whole = FileBytes(
+      Make("a.h5", [](Hdf5File& file) { file.WriteMatrix("/m", RandomMatrix(20, 20, CV_64FC1)); }));
+  refused(Write("cut.h5", whole.substr(0, whole.size() - 1)), {"cut short"});
 }
 
 TEST_F(Hdf5FileTest, CannotBeWritten) {
@@ -165,7 +163,7 @@ TEST_F(Hdf5FileTest, FullDiskIsAnErrorAndNotACrash) {
     const rlimit limit{20'000, 20'000};
     setrlimit(RLIMIT_FSIZE, &limit);
     try {
-      Write("a.h5", [](Hdf5File& file) {
+      Make("a.h5", [](Hdf5File& file) {
         for (int i = 0; i < 10; ++i) {
           file.WriteMatrix("/m" + std::to_string(i), RandomMatrix(100, 100, CV_64FC1));
         }

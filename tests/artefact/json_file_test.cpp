@@ -10,71 +10,54 @@
 
 #include "base/error.h"
 #include "support/expect_error.h"
-#include "support/temporary_folder.h"
+#include "support/folder_test.h"
 
 namespace soslam {
 namespace {
 
 using nlohmann::json;
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
 
 const json kEmptyLandmarks = {
     {"observations", json::array()}, {"objects", json::array()}, {"failures", json::object()}};
 
-class JsonFileTest : public testing::Test {
+class JsonFileTest : public FolderTest {
  protected:
-  // What the InputError says; empty when there is none.
-  template <typename Action>
-  std::string InputErrorOf(const Action& action) {
-    try {
-      action();
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
-  }
-  std::string ParseErrorOf(const std::string& text) {
-    std::ofstream(file) << text;
-    return InputErrorOf([&] { ParseJsonFile(file); });
-  }
-  std::string ReadErrorWithHeader(const json& header) {
+  json Parse(const std::string& text) const { return ParseJsonFile(Write("some.json", text)); }
+  json ReadWithHeader(const json& header) const {
     json document = kEmptyLandmarks;
     document["artefact"] = header;
-    std::ofstream(file) << document;
-    return InputErrorOf([&] { ReadArtefact(file, "landmarks"); });
+    return ReadArtefact(Write("some.json", document.dump()), "landmarks");
+  }
+  static json HeaderOfVersion(const json& version) {
+    json header = ArtefactHeader("landmarks", {});
+    header["schema_version"] = version;
+    return header;
   }
 
-  TemporaryFolder folder;
-  std::filesystem::path file = folder / "some.json";
+  std::filesystem::path file = folder_ / "some.json";
 };
 
-TEST_F(JsonFileTest, UnreadableTextIsRefusedOnOneLine) {
-  EXPECT_THAT(InputErrorOf([&] { ParseJsonFile(folder / "none.json"); }), HasSubstr("none.json"));
-  EXPECT_THAT(InputErrorOf([&] { ParseJsonFile(folder.path()); }), HasSubstr("cannot be read"));
-  EXPECT_THAT(ParseErrorOf(""), HasSubstr("is empty"));
-  EXPECT_THAT(ParseErrorOf("{\n\"a\": nan}"),
-              AllOf(HasSubstr("some.json: parse error at line 2"), Not(HasSubstr("\n"))));
-  EXPECT_THAT(ParseErrorOf("{} {}"), HasSubstr("parse error at line 1"));
-  EXPECT_THAT(ParseErrorOf("{\"a\": [{\"b\": 1, \"b\": 2}]}"), HasSubstr("key \"b\" twice"));
-  EXPECT_EQ(ParseErrorOf("{\"a\": {\"b\": 1}, \"b\": {\"b\": 2}}"), "");
-}
-
-TEST_F(JsonFileTest, DeepNestingIsRefused) {
+TEST_F(JsonFileTest, UnreadableTextIsRefused) {
   const auto nested = [](size_t levels) {
     return std::string(levels, '[') + std::string(levels, ']');
   };
-  EXPECT_EQ(ParseErrorOf(nested(100)), "");
-  EXPECT_THAT(ParseErrorOf(nested(101)), HasSubstr("some.json: is nested more than 100 levels"));
-  EXPECT_THAT(ParseErrorOf(nested(1'000'000)), HasSubstr("more than 100 levels"));
+  ExpectBadTexts({{"", {"is empty"}},
+                  {"{\n\"a\": nan}", {"parse error at line 2"}},
+                  {"{} {}", {"parse error at line 1"}},
+                  {"{\"a\": [{\"b\": 1, \"b\": 2}]}", {"key \"b\" twice"}},
+                  {nested(101), {"is nested more than 100 levels"}},
+                  {nested(1'000'000), {"is nested more than 100 levels"}}},
+                 "some.json: ", [&](const std::string& text) { Parse(text); });
+  EXPECT_NO_THROW(Parse("{\"a\": {\"b\": 1}, \"b\": {\"b\": 2}}"));
+  EXPECT_NO_THROW(Parse(nested(100)));
+  ExpectError<InputError>([&] { ParseJsonFile(folder_ / "none.json"); }, {"none.json"});
+  ExpectError<InputError>([&] { ParseJsonFile(folder_.path()); }, {"cannot be read"});
 }
 
 TEST_F(JsonFileTest, HeaderNamesWhatShapedTheArtefact) {
-  std::ofstream(folder / "b.txt") << "b";
-  std::ofstream(folder / "a.txt") << "abc";
-  WriteArtefact(file, "landmarks", {{{"yaw", 3}}, {folder / "b.txt", folder / "a.txt"}},
-                kEmptyLandmarks);
+  const auto b = Write("b.txt", "b");
+  const auto a = Write("a.txt", "abc");
+  WriteArtefact(file, "landmarks", {{{"yaw", 3}}, {b, a}}, kEmptyLandmarks);
   const json header = ReadArtefact(file, "landmarks").at("artefact");
   EXPECT_EQ(header.at("kind"), "landmarks");
   EXPECT_EQ(header.at("schema_version"), json({1, 8}));
@@ -87,8 +70,7 @@ TEST_F(JsonFileTest, HeaderNamesWhatShapedTheArtefact) {
 }
 
 TEST_F(JsonFileTest, NamesOfFilesNeedNotBeUtf8) {
-  const std::filesystem::path input = folder / "caf\xe9.txt";
-  std::ofstream(input) << "bytes";
+  const std::filesystem::path input = Write("caf\xe9.txt", "bytes");
   WriteArtefact(file, "landmarks", {{{"labels", "\xe9"}}, {input}}, kEmptyLandmarks);
   const json header = ReadArtefact(file, "landmarks").at("artefact");
   EXPECT_EQ(header["inputs"][0]["file"], "caf\xef\xbf\xbd.txt");
@@ -96,26 +78,22 @@ TEST_F(JsonFileTest, NamesOfFilesNeedNotBeUtf8) {
 }
 
 TEST_F(JsonFileTest, HeadersThatAreNotOursAreRefused) {
-  json header = ArtefactHeader("landmarks", {});
-  EXPECT_EQ(ReadErrorWithHeader(header), "");
-  header["schema_version"] = {2, 0};
-  EXPECT_THAT(ReadErrorWithHeader(header),
-              HasSubstr("some.json: has schema version [2, 0] of kind 'landmarks'; this software "
-                        "reads up to [1, 8]"));
-  header["schema_version"] = {1, 9};
-  EXPECT_THAT(ReadErrorWithHeader(header), HasSubstr("[1, 8]"));
-  header["schema_version"] = {1, 0};
-  EXPECT_EQ(ReadErrorWithHeader(header), "");
-  header["schema_version"] = "1.0";
-  EXPECT_THAT(ReadErrorWithHeader(header), HasSubstr("schema_version is \"1.0\""));
-  header["schema_version"] = {1, -1};
-  EXPECT_THAT(ReadErrorWithHeader(header), HasSubstr("schema_version is [1,-1]"));
-  EXPECT_THAT(ReadErrorWithHeader(ArtefactHeader("map", {})),
-              HasSubstr("kind is \"map\"; expected \"landmarks\""));
-  EXPECT_THAT(ReadErrorWithHeader(nullptr), HasSubstr("no artefact header"));
-  EXPECT_THAT(ParseErrorOf("[1]"), "");
-  EXPECT_THAT(InputErrorOf([&] { ReadArtefact(file, "landmarks"); }),
-              HasSubstr("no artefact header"));
+  EXPECT_NO_THROW(ReadWithHeader(ArtefactHeader("landmarks", {})));
+  EXPECT_NO_THROW(ReadWithHeader(HeaderOfVersion({1, 0})));
+  for (const auto& [header, words] : std::vector<std::pair<json, std::string>>{
+           {HeaderOfVersion({2, 0}),
+            "has schema version [2, 0] of kind 'landmarks'; this software "
+            "reads up to [1, 8]"},
+           {HeaderOfVersion({1, 9}), "[1, 8]"},
+           {HeaderOfVersion("1.0"), "schema_version is \"1.0\""},
+           {HeaderOfVersion({1, -1}), "schema_version is [1,-1]"},
+           {ArtefactHeader("map", {}), "kind is \"map\"; expected \"landmarks\""},
+           {nullptr, "no artefact header"}}) {
+    ExpectError<InputError>([&, &header = header] { ReadWithHeader(header); },
+                            {"some.json: ", words});
+  }
+  ExpectError<InputError>([&] { ReadArtefact(Write("some.json", "[1]"), "landmarks"); },
+                          {"no artefact header"});
 }
 
 TEST_F(JsonFileTest, WritingWhatTheSchemaForbidsIsOurBug) {

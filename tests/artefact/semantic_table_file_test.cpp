@@ -4,6 +4,8 @@
 #include "artefact/files.h"
 #include "base/error.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
+#include "support/lists.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {
@@ -14,7 +16,7 @@ using nlohmann::json;
 // An entry as of before spreads and shapes.
 const json kRatioOnly = {{"a_by_c", 2.0}, {"b_by_c", 0.5}, {"source", "the test"}};
 
-class SemanticTableFileTest : public testing::Test {
+class SemanticTableFileTest : public FolderTest {
  protected:
   SemanticTable Read(const json& table) const {
     WriteBytes(file_, table.dump());
@@ -24,7 +26,6 @@ class SemanticTableFileTest : public testing::Test {
     ExpectError<InputError>([&] { Read(json{{"labels", labels}}); }, words);
   }
 
-  TemporaryFolder folder_;
   std::filesystem::path file_ = folder_ / "table.json";
 };
 
@@ -121,16 +122,16 @@ TEST_F(SemanticTableFileTest, WrittenRowsAreReadAsTheyWere) {
   WriteSemanticRows(file_, {"about cups", any, {cup}}, {});
   const SemanticRows rows = ReadSemanticRows(file_);
   EXPECT_EQ(rows.description, "about cups");
-  ASSERT_EQ(rows.rows.size(), 1u);
-  EXPECT_EQ(rows.rows[0].label, "cup");
-  EXPECT_EQ(rows.rows[0].aliases, cup.aliases);
-  EXPECT_EQ(rows.rows[0].prior.ratio, cup.prior.ratio);
-  EXPECT_EQ(rows.rows[0].prior.log_sigma, cup.prior.log_sigma);
-  EXPECT_EQ(rows.rows[0].prior.log_correlation, 0.5);
-  EXPECT_EQ(rows.rows[0].prior.height_m.value().log_sigma, 0.3);
-  EXPECT_EQ(rows.rows[0].prior.attitude, Attitude::kFree);
-  EXPECT_EQ(rows.rows[0].samples, 7);
-  EXPECT_EQ(rows.rows[0].source, "the test");
+  const SemanticRow row = Only(rows.rows);
+  EXPECT_EQ(row.label, "cup");
+  EXPECT_EQ(row.aliases, cup.aliases);
+  EXPECT_EQ(row.prior.ratio, cup.prior.ratio);
+  EXPECT_EQ(row.prior.log_sigma, cup.prior.log_sigma);
+  EXPECT_EQ(row.prior.log_correlation, 0.5);
+  EXPECT_EQ(row.prior.height_m.value().log_sigma, 0.3);
+  EXPECT_EQ(row.prior.attitude, Attitude::kFree);
+  EXPECT_EQ(row.samples, 7);
+  EXPECT_EQ(row.source, "the test");
   EXPECT_EQ(rows.default_row.value().prior.shape_exponents, 1.1);
 }
 
