@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/lists.h"
 #include "support/random.h"
 
 namespace soslam {
@@ -136,13 +137,14 @@ class AlignSegmentsTest : public testing::Test {
   static AlignmentKind AutoKind(const Sequence& sequence) {
     return Of(sequence, AlignmentChoice::kAuto).of_segment.at(0).kind;
   }
+  const Rigid3d elsewhere_{ExpRotation({0, 0, 1.5}), {9, 0, 0}};
   const Rigid3d drift_{ExpRotation({0.02, -0.01, 0.03}), {0.1, 0.0, -0.1}};
 };
 
 TEST_F(AlignSegmentsTest, AutoTellsOneWorldFromAnother) {
   EXPECT_EQ(AutoKind(Make(drift_, 1.0)), AlignmentKind::kNone);
-  EXPECT_EQ(AutoKind(Make({ExpRotation({0, 0, 1.5}), {9, 0, 0}}, 1.0)), AlignmentKind::kRigid);
-  EXPECT_EQ(AutoKind(Make({ExpRotation({0, 0, 1.5}), {9, 0, 0}}, 4.0)), AlignmentKind::kSimilarity);
+  EXPECT_EQ(AutoKind(Make(elsewhere_, 1.0)), AlignmentKind::kRigid);
+  EXPECT_EQ(AutoKind(Make(elsewhere_, 4.0)), AlignmentKind::kSimilarity);
 }
 
 // Whatever the odometry of single frames says.
@@ -154,10 +156,9 @@ TEST_F(AlignSegmentsTest, AutoIsNotMovedByAWrongPose) {
 
 TEST_F(AlignSegmentsTest, AutoScalesWhereOnlyAScaleFits) {
   for (const double scale : {0.7, 1.3}) {
-    EXPECT_EQ(AutoKind(Make({ExpRotation({0, 0, 1.5}), {9, 0, 0}}, scale)),
-              AlignmentKind::kSimilarity);
+    EXPECT_EQ(AutoKind(Make(elsewhere_, scale)), AlignmentKind::kSimilarity);
   }
-  Sequence short_path = Make({ExpRotation({0, 0, 1.5}), {9, 0, 0}}, 1.0);
+  Sequence short_path = Make(elsewhere_, 1.0);
   for (Frame& frame : short_path.frames) {
     frame.world_from_camera.translation *= 0.05;
     frame.true_world_from_camera->translation *= 0.02;
@@ -166,7 +167,7 @@ TEST_F(AlignSegmentsTest, AutoScalesWhereOnlyAScaleFits) {
 }
 
 TEST_F(AlignSegmentsTest, TwoPosesTellAnotherWorldAndNoScale) {
-  Sequence sequence = Make({ExpRotation({0, 0, 1.5}), {9, 0, 0}}, 2.0);
+  Sequence sequence = Make(elsewhere_, 2.0);
   for (size_t i = 2; i < sequence.frames.size(); ++i) {
     sequence.frames[i].true_world_from_camera.reset();
   }
@@ -176,8 +177,7 @@ TEST_F(AlignSegmentsTest, TwoPosesTellAnotherWorldAndNoScale) {
 TEST_F(AlignSegmentsTest, AnotherScaleThatIsNotTakenIsSaid) {
   const Alignments alignments = Of(Make({}, 1.25), AlignmentChoice::kAuto);
   EXPECT_EQ(alignments.of_segment.at(0).kind, AlignmentKind::kNone);
-  ASSERT_EQ(alignments.findings.size(), 1u);
-  EXPECT_EQ(alignments.findings[0].check, "alignment_scale");
+  EXPECT_EQ(Only(alignments.findings).check, "alignment_scale");
   EXPECT_TRUE(Of(Make({}, 1.25), AlignmentChoice::kSimilarity).findings.empty());
   EXPECT_TRUE(Of(Make(drift_, 1.0), AlignmentChoice::kAuto).findings.empty());
 }
@@ -200,12 +200,11 @@ TEST_F(AlignSegmentsTest, WithoutTruthNothingIsAlignedAndWhoAskedIsTold) {
   EXPECT_EQ(Of(sequence, AlignmentChoice::kAuto).findings.size(), 1u);
   const Alignments asked = Of(sequence, AlignmentChoice::kSimilarity);
   EXPECT_EQ(asked.of_segment.at(0).kind, AlignmentKind::kNone);
-  ASSERT_EQ(asked.findings.size(), 1u);
-  EXPECT_EQ(asked.findings[0].check, "alignment");
+  EXPECT_EQ(Only(asked.findings).check, "alignment");
 }
 
 TEST_F(AlignSegmentsTest, EachSegmentHasItsOwn) {
-  Sequence sequence = Make({ExpRotation({0, 0, 1.5}), {9, 0, 0}}, 1.0);
+  Sequence sequence = Make(elsewhere_, 1.0);
   const Sequence other = Make({ExpRotation({1, 0, 0}), {0, 5, 0}}, 1.0);
   for (Frame frame : other.frames) {
     frame.segment = 3;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <numbers>
 
-#include "geometry/angles.h"
 #include "support/map_quality_fixture.h"
 #include "support/random.h"
 
@@ -246,14 +245,16 @@ TEST(MatchByIou, IsTheBestOfAllWays) {
   }
 }
 
+AlignedLandmark CubeAt(double x, double half_axis) {
+  return {
+      0, 0, {{Eigen::Quaterniond::Identity(), {x, 0, 0}}, Eigen::Vector3d::Constant(half_axis)}};
+}
+
 TEST(IsIgnored, ByLabelOrVolumeOrBoth) {
   const Landmark volume{{}, {1.0, 1.0, 1.0}};
-  const AlignedLandmark inside{
-      0, 0, {{Eigen::Quaterniond::Identity(), {0.9, 0, 0}}, {0.4, 0.4, 0.4}}};
-  const AlignedLandmark outside{
-      0, 0, {{Eigen::Quaterniond::Identity(), {1.1, 0, 0}}, {0.4, 0.4, 0.4}}};
-  const AlignedLandmark larger{0, 0, {{}, {1.5, 1.5, 1.5}}};       // IoU 8 / 27
-  const AlignedLandmark much_larger{0, 0, {{}, {1.6, 1.6, 1.6}}};  // IoU 0.244
+  const AlignedLandmark inside = CubeAt(0.9, 0.4), outside = CubeAt(1.1, 0.4);
+  const AlignedLandmark larger = CubeAt(0.0, 1.5);       // IoU 8 / 27
+  const AlignedLandmark much_larger = CubeAt(0.0, 1.6);  // IoU 0.244
   const auto is_ignored = [](const std::vector<IgnoredThings>& ignored, const std::string& label,
                              const AlignedLandmark& landmark) {
     Sequence sequence;
@@ -275,7 +276,7 @@ TEST(IsIgnored, ByLabelOrVolumeOrBoth) {
 TEST(IsIgnored, ByATrueObjectOfItsSegmentThatIs) {
   Sequence sequence;
   sequence.true_objects = {{1, "van", {Landmark{{}, {1.0, 1.0, 1.0}}}, 0, true, true}};
-  AlignedLandmark landmark{0, 0, {{Eigen::Quaterniond::Identity(), {0.9, 0, 0}}, {0.4, 0.4, 0.4}}};
+  AlignedLandmark landmark = CubeAt(0.9, 0.4);
   EXPECT_TRUE(IsIgnored(sequence, "car", landmark));
   landmark.segment = 1;
   EXPECT_FALSE(IsIgnored(sequence, "car", landmark));

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "support/lists.h"
+
 namespace soslam {
 namespace {
 
@@ -75,23 +77,20 @@ TEST(CheckFailuresTest, MoreThanAThirdWithoutALandmark) {
   estimates.observations[0] = {0, {}, "no_solution"};
   EXPECT_THAT(CheckFailures(estimates), IsEmpty());
   estimates.observations[1] = {1, {}, "no_solution"};
-  ASSERT_EQ(CheckFailures(estimates).size(), 1u);
-  EXPECT_EQ(CheckFailures(estimates)[0].found, "2 of 3 tries gave no landmark: no_solution 2");
+  EXPECT_EQ(Only(CheckFailures(estimates)).found, "2 of 3 tries gave no landmark: no_solution 2");
 }
 
 TEST(CheckDegenerateTest, LandmarksThatViewsDoNotDetermine) {
   const Eigen::Vector3d low(0.2, 0.3, 0.1), flat(0.2, 0.3, 1e-9), high(0.2, 0.3, 1.0);
-  const auto findings = CheckDegenerate(Landmarks({low, flat, high}));
-  ASSERT_EQ(findings.size(), 1u);
-  EXPECT_THAT(findings[0].found, HasSubstr("1 of 3 landmarks are a hundred times"));
+  EXPECT_THAT(Only(CheckDegenerate(Landmarks({low, flat, high}))).found,
+              HasSubstr("1 of 3 landmarks are a hundred times"));
   EXPECT_THAT(CheckDegenerate(Landmarks({low, high})), IsEmpty());
 }
 
 TEST(CheckCollapsedTest, LandmarksThatShrankToAPoint) {
   const Eigen::Vector3d thin(2e-4, 3e-4, 0.1), point(2e-4, 3e-4, 1e-4), large(1.0, 1.0, 1.0);
-  const auto findings = CheckCollapsed(Landmarks({thin, point, large}));
-  ASSERT_EQ(findings.size(), 1u);
-  EXPECT_THAT(findings[0].found, HasSubstr("1 of 3 landmarks have three half axes below"));
+  EXPECT_THAT(Only(CheckCollapsed(Landmarks({thin, point, large}))).found,
+              HasSubstr("1 of 3 landmarks have three half axes below"));
   EXPECT_THAT(CheckCollapsed(Landmarks({thin, large})), IsEmpty());
 }
 
@@ -108,8 +107,7 @@ TEST(CheckCostTest, FarAboveWhatNoiseGives) {
   solver.final_cost = 199.0;
   EXPECT_THAT(CheckCost(solver), IsEmpty());
   solver.final_cost = 210.0;
-  ASSERT_EQ(CheckCost(solver).size(), 1u);
-  EXPECT_THAT(CheckCost(solver)[0].found, HasSubstr("210 of 10 boxes, 10.5 times"));
+  EXPECT_THAT(Only(CheckCost(solver)).found, HasSubstr("210 of 10 boxes, 10.5 times"));
 }
 
 // Three frames of one segment and one of another: two steps, 12 degrees of freedom, of which the
@@ -125,10 +123,9 @@ TEST(CheckPoseCorrectionsTest, FarFromTheOdometryForItsNoise) {
   poses[1].translation.x() = 0.36;  // there and back: 2 * 3.6^2 = 25.9
   EXPECT_THAT(CheckPoseCorrections(sequence, poses, noise), IsEmpty());
   poses[1].translation.x() = 0.37;  // 27.4
-  const auto findings = CheckPoseCorrections(sequence, poses, noise);
-  ASSERT_EQ(findings.size(), 1u);
-  EXPECT_THAT(findings[0].found, AllOf(HasSubstr("2 pairs"), HasSubstr("27.38")));
-  EXPECT_THAT(findings[0].expected, HasSubstr("at most 26.2"));
+  const Finding finding = Only(CheckPoseCorrections(sequence, poses, noise));
+  EXPECT_THAT(finding.found, AllOf(HasSubstr("2 pairs"), HasSubstr("27.38")));
+  EXPECT_THAT(finding.expected, HasSubstr("at most 26.2"));
 }
 
 TEST(CheckPlaneCountTest, NearlyAPlaneForEachObject) {
@@ -136,8 +133,7 @@ TEST(CheckPlaneCountTest, NearlyAPlaneForEachObject) {
   EXPECT_THAT(CheckPlaneCount(4, 24), IsEmpty());
   EXPECT_THAT(CheckPlaneCount(3, 4), IsEmpty());
   EXPECT_THAT(CheckPlaneCount(3, 5), IsEmpty());
-  ASSERT_EQ(CheckPlaneCount(4, 5).size(), 1u);
-  EXPECT_EQ(CheckPlaneCount(4, 5)[0].found, "4 planes of 5 objects");
+  EXPECT_EQ(Only(CheckPlaneCount(4, 5)).found, "4 planes of 5 objects");
 }
 
 TEST(CheckUpTest, OtherWaysToHoldTheCameraThatAreAboutAsProbable) {
@@ -146,9 +142,7 @@ TEST(CheckUpTest, OtherWaysToHoldTheCameraThatAreAboutAsProbable) {
   rolled.holding = CameraHolding::kRolled90;
   rolled.probability = 0.75;
   EXPECT_THAT(CheckUp(CameraHolding::kRolled90, {level, rolled}, 0.0), IsEmpty());
-  const auto findings = CheckUp(CameraHolding::kRolled90, {level, rolled}, 0.5);
-  ASSERT_EQ(findings.size(), 1u);
-  EXPECT_EQ(findings[0].found,
+  EXPECT_EQ(Only(CheckUp(CameraHolding::kRolled90, {level, rolled}, 0.5)).found,
             "cameras are taken to be held rolled_90; probabilities: level 0.25, rolled_90 0.75");
 }
 
