@@ -12,6 +12,7 @@
 #include "stage/stages.h"
 #include "support/association_scenes.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
 #include "support/printed.h"
 #include "support/scene.h"
 #include "support/temporary_folder.h"
@@ -21,7 +22,7 @@ namespace {
 
 using nlohmann::json;
 
-class RunAssociateTest : public testing::Test {
+class RunAssociateTest : public FolderTest {
  protected:
   RunAssociateTest() {
     WriteSequence(File("sequence"), sequence_, {});
@@ -42,9 +43,6 @@ class RunAssociateTest : public testing::Test {
 
   AssociateOptions options_ = EstimatedAssociation();
   Sequence sequence_ = SyntheticSequence(LabelledScene(7, 4, 30, {"thing", "other"}), false);
-
- private:
-  TemporaryFolder folder_;
 };
 
 TEST_F(RunAssociateTest, SaysWhatItDecided) {

@@ -2,13 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <opencv2/imgcodecs.hpp>
-
 #include "base/error.h"
 #include "dataset/labelled_box.h"
 #include "image/detector_options.h"
 #include "stage/stages.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
 #include "support/image_files.h"
 #include "support/labelled_boxes.h"
 #include "support/onnx_network.h"
@@ -24,24 +23,23 @@ constexpr int kImages = 5;
 
 // Images from dark to bright, and a network that is as sure of its cup as the image is red, and
 // half as sure of its box.
-class RunDetectTest : public testing::Test {
+class RunDetectTest : public FolderTest {
  protected:
   RunDetectTest() {
-    std::filesystem::create_directory(folder_ / "rgb");
     std::string list = "# timestamp filename\n";
     for (int i = 0; i < kImages; ++i) {
       const std::string name = "rgb/" + std::to_string(i) + ".png";
       list += std::to_string(0.1 * i) + " " + name + "\n";
       const cv::Mat image(64, 64, CV_8UC3, cv::Scalar(0, 0, 51 * i));  // red: 0, 0.2 ... 0.8
-      cv::imwrite((folder_ / name).string(), image);
+      Write(name, EncodedImage(".png", image));
     }
-    WriteBytes(folder_ / "rgb.txt", list);
-    WriteBytes(folder_ / "labels.txt", "cup\nmilk carton\n");
+    Write("rgb.txt", list);
+    Write("labels.txt", "cup\nmilk carton\n");
     MeanNetwork network = {{1, 2, 7}, {32, 32, 20, 30, 1, 0, 0, 10, 12, 8, 6, 1, 0, 0}, {}};
     network.weights.resize(14, {0.0F, 0.0F, 0.0F});
     network.weights[5][0] = 1.0F;
     network.weights[13][0] = 0.5F;
-    WriteBytes(folder_ / "net.onnx", network.Onnx());
+    Write("net.onnx", network.Onnx());
   }
 
   StageFiles Files(const std::string& output = "detections.csv") {
@@ -59,7 +57,6 @@ class RunDetectTest : public testing::Test {
     EXPECT_FALSE(std::filesystem::exists(files.at("output")));
   }
 
-  TemporaryFolder folder_;
   DetectorOptions options_;
   std::string printed_;
 };
@@ -112,7 +109,7 @@ TEST_F(RunDetectTest, BadInputIsNamedAndNothingIsWritten) {
   ExpectRefused(files, {"none.txt"});
   std::filesystem::remove(folder_ / "rgb/3.png");
   ExpectRefused(Files(), {"3.png", "no such file"});
-  WriteBytes(folder_ / "rgb.txt", "1.0 ../elsewhere.png\n");
+  Write("rgb.txt", "1.0 ../elsewhere.png\n");
   ExpectRefused(Files(), {"rgb.txt", "../elsewhere.png"});
   std::filesystem::remove(folder_ / "rgb.txt");
   ExpectRefused(Files(), {"rgb.txt"});
@@ -122,14 +119,14 @@ TEST_F(RunDetectTest, BadInputIsNamedAndNothingIsWritten) {
 TEST_F(RunDetectTest, ACrashOfOpenCvIsAnError) {
   MeanNetwork network = {{1, 1, 7}, {32, 32, 20, 30, 1, 0, 0}, {}};
   network.weights_of_conv = "nothing";
-  WriteBytes(folder_ / "net.onnx", network.Onnx());
+  Write("net.onnx", network.Onnx());
   ExpectRefused(Files(), {"net.onnx", "OpenCV"});
 }
 
 TEST_F(RunDetectTest, NamesInTheNetworkAreItsLabels) {
   MeanNetwork network = {{1, 1, 7}, {32, 32, 20, 30, 1, 0, 0.5F}, {}};
   network.metadata["names"] = "{0: 'cup', 1: 'tea pot'}";
-  WriteBytes(folder_ / "net.onnx", network.Onnx());
+  Write("net.onnx", network.Onnx());
   StageFiles files = Files();
   files.erase("labels");
   Run(files);
@@ -138,7 +135,7 @@ TEST_F(RunDetectTest, NamesInTheNetworkAreItsLabels) {
   for (const char* names : {"", "{}", "cup", "{0: 'cup'", "{0: 'cup', 2: 'book'}",
                             "['cup, saucer']", "['']", "['a\\n']", "['cup"}) {
     network.metadata["names"] = names;
-    WriteBytes(folder_ / "net.onnx", network.Onnx());
+    Write("net.onnx", network.Onnx());
     ExpectError<InputError>([&] { RunDetect(options_, files, 2); },
                             {"net.onnx", names, "--labels"});
   }
@@ -203,8 +200,8 @@ TEST(LabelsForDetectorTest, BadOptionsAreRefused) {
 TEST_F(RunDetectTest, ExifTurnsImages) {
   const cv::Mat image(32, 64, CV_8UC3, cv::Scalar(0, 0, 255));
   const std::string jpeg = EncodedImage(".jpg", image);
-  WriteBytes(folder_ / "rgb/a.jpg", JpegWithExif(jpeg, ExifOf(6)));
-  WriteBytes(folder_ / "rgb.txt", "0 rgb/a.jpg\n");
+  Write("rgb/a.jpg", JpegWithExif(jpeg, ExifOf(6)));
+  Write("rgb.txt", "0 rgb/a.jpg\n");
   options_.min_score = 0.3;  // half of the input is the image
   Run(Files());
   // (22, 17) to (42, 47) of the input, whose columns 16 to 48 are the upright image of 32 x 64.
@@ -217,7 +214,7 @@ TEST_F(RunDetectTest, ExifTurnsImages) {
 
 TEST_F(RunDetectTest, NothingFoundIsNotAResult) {
   options_.min_score = 0.9;
-  WriteBytes(folder_ / "detections.csv", "old");
+  Write("detections.csv", "old");
   ExpectError<NothingUsableError>([&] { RunDetect(options_, Files(), 1); },
                                   {"net.onnx", "5 images", "0.9"});
   EXPECT_EQ(FileBytes(folder_ / "detections.csv"), "old");

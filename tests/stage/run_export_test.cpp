@@ -10,6 +10,7 @@
 #include "evaluation/alignment.h"
 #include "stage/stages.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
 #include "support/gltf_document.h"
 #include "support/printed.h"
 #include "support/scene.h"
@@ -22,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // The stage on a sequence of cuboids, and a map that has all but the last of them.
-class RunExportTest : public testing::Test {
+class RunExportTest : public FolderTest {
  protected:
   RunExportTest() {
     for (size_t i = 0; i < sequence_.objects.size(); ++i) {
@@ -67,9 +68,6 @@ class RunExportTest : public testing::Test {
   ExportOptions options_;
   Sequence sequence_ = CuboidSequence(4, 9);
   MapEstimate map_ = EmptyMap(sequence_);
-
- private:
-  TemporaryFolder folder_;
 };
 
 TEST_F(RunExportTest, WritesWhatIsAskedFor) {

@@ -8,6 +8,8 @@
 #include "stage/stages.h"
 #include "support/drawn_photos.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
+#include "support/lists.h"
 
 namespace soslam {
 namespace {
@@ -15,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-class RunFramesTest : public testing::Test {
+class RunFramesTest : public FolderTest {
  protected:
   void SetUp() override { fs::create_directory(photos_); }
 
@@ -37,9 +39,8 @@ class RunFramesTest : public testing::Test {
     return reasons;
   }
 
-  TemporaryFolder temporary_;
-  fs::path photos_ = temporary_ / "my photos' $x";
-  fs::path output_ = temporary_ / "room";
+  fs::path photos_ = folder_ / "my photos' $x";
+  fs::path output_ = folder_ / "room";
 };
 
 TEST_F(RunFramesTest, PhotosThatNeedNoChangeAreCopied) {
@@ -94,7 +95,7 @@ TEST_F(RunFramesTest, SaysWhatIsLeftOut) {
                                             testing::Pair("view 9.heic", "unreadable")));
   for (const json& frame : frames.at("left_out")) {
     EXPECT_THAT(frame.at("detail").get<std::string>(),
-                testing::Not(testing::HasSubstr(temporary_.path().string())));
+                testing::Not(testing::HasSubstr(folder_.path().string())));
   }
   EXPECT_FALSE(frames.contains("findings"));
 }
@@ -102,16 +103,15 @@ TEST_F(RunFramesTest, SaysWhatIsLeftOut) {
 TEST_F(RunFramesTest, MuchThatIsLeftOutIsAFinding) {
   AddViews(4);
   for (int i = 0; i < 3; ++i) WriteBytes(photos_ / (std::to_string(i) + ".jpg"), "damaged");
-  const json findings = Run(photos_).at("findings");
-  ASSERT_EQ(findings.size(), 1u);
-  EXPECT_EQ(findings[0].at("check"), "frames_unreadable");
-  EXPECT_THAT(findings[0].at("found").get<std::string>(), testing::HasSubstr("3 of 7 images"));
+  const json finding = Only(Run(photos_).at("findings"));
+  EXPECT_EQ(finding.at("check"), "frames_unreadable");
+  EXPECT_THAT(finding.at("found").get<std::string>(), testing::HasSubstr("3 of 7 images"));
 }
 
 TEST_F(RunFramesTest, FramesOfAVideoHaveTheirTimes) {
   std::vector<cv::Mat> views;
   for (int i = 0; i < 30; ++i) views.push_back(DrawnView(10 * (i / 3)));  // each three times
-  const fs::path video = temporary_ / "my video.avi";
+  const fs::path video = folder_ / "my video.avi";
   WriteVideo(video, views);
   const json frames = Run(video);
   ASSERT_EQ(frames.at("frames").size(), 10u);
@@ -150,17 +150,16 @@ TEST_F(RunFramesTest, ImagesHavePlainNamesOfTheirOwn) {
   for (size_t i = 0; i < names.size(); ++i) {
     WritePhoto(photos_ / names[i], DrawnView(static_cast<int>(20 * i)));
   }
-  std::vector<std::string> images;
-  const json frames = Run(photos_);
-  for (const json& frame : frames.at("frames")) images.push_back(frame.at("image"));
-  EXPECT_THAT(images, testing::ElementsAre("rgb/_1__x.jpg", "rgb/_1__x_2.jpg",
-                                           "rgb/K__che_s__2_.jpeg", "rgb/b.jpg"));
+  const auto image_of = [](const json& frame) { return frame.at("image").get<std::string>(); };
+  EXPECT_THAT(Fields(Run(photos_).at("frames"), image_of),
+              testing::ElementsAre("rgb/_1__x.jpg", "rgb/_1__x_2.jpg", "rgb/K__che_s__2_.jpeg",
+                                   "rgb/b.jpg"));
 }
 
 TEST_F(RunFramesTest, BoxesOfAllImagesBecomeThoseOfTheChosenOnes) {
   AddViews(3);
   WritePhoto(photos_ / "view 1.jpg", DrawnView(0));  // the same as view 0
-  const fs::path boxes = temporary_ / "boxes.csv";
+  const fs::path boxes = folder_ / "boxes.csv";
   WriteBytes(boxes,
              "frame,label,score,x1,y1,x2,y2\n2,cup,0.9,-0.5,19.5,99.5,119.5\n1,cup,0.8,1,2,3,4\n"
              "0,tv,1,9.5,9.5,19.5,29.5\n7,tv,1,1,2,3,4\n");
@@ -190,7 +189,7 @@ TEST_F(RunFramesTest, RefusesWhatMakesNoDataset) {
   ExpectError<NothingUsableError>([&] { Run(photos_); },
                                   {photos_.string(), "1 of 2 images", "no_motion 1"});
   ExpectError<InputError>([&] { Run(photos_ / "1.jpg"); }, {"1.jpg", "is no video"});
-  EXPECT_EQ(std::distance(fs::directory_iterator(temporary_.path()), {}), 1) << "nothing is left";
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 1) << "nothing is left";
 }
 
 }  // namespace

@@ -10,6 +10,8 @@
 #include "stage/stages.h"
 #include "support/dataset_fixture.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
+#include "support/lists.h"
 #include "support/printed.h"
 #include "support/temporary_folder.h"
 
@@ -18,7 +20,7 @@ namespace {
 
 using testing::HasSubstr;
 
-class RunImportTest : public testing::Test {
+class RunImportTest : public FolderTest {
  protected:
   void Run(const ImportOptions& options = {}) {
     dataset.Write(files.at("dataset"));
@@ -26,8 +28,7 @@ class RunImportTest : public testing::Test {
   }
 
   DatasetFixture dataset;
-  TemporaryFolder folder;
-  StageFiles files = {{"dataset", folder / "small"}, {"output", folder / "sequence.json"}};
+  StageFiles files = {{"dataset", folder_ / "small"}, {"output", folder_ / "sequence.json"}};
 };
 
 TEST_F(RunImportTest, WritesTheSequenceAndSaysHowMuchIsUsed) {
@@ -97,12 +98,13 @@ TEST_F(RunImportTest, ArtefactNamesSettingsAndTheFilesThatWereRead) {
   const auto header = ReadArtefact(files.at("output"), "sequence").at("artefact");
   EXPECT_EQ(header.at("settings").at("border_px"), 12.5);
   EXPECT_EQ(header.at("settings").at("camera_planes"), "groundtruth");
-  std::vector<std::string> names;
+  const auto name_of = [](const nlohmann::json& input) {
+    return input.at("file").get<std::string>();
+  };
   for (const auto& input : header.at("inputs")) {
-    names.push_back(input.at("file"));
-    EXPECT_EQ(input.at("sha256"), Sha256OfFile(files.at("dataset") / names.back()));
+    EXPECT_EQ(input.at("sha256"), Sha256OfFile(files.at("dataset") / name_of(input)));
   }
-  EXPECT_THAT(names,
+  EXPECT_THAT(Fields(header.at("inputs"), name_of),
               testing::ElementsAre("camera.json", "detections.csv", "groundtruth.txt",
                                    "objects.json", "odometry.txt", "planes.json", "rgb.txt"));
 }
@@ -120,19 +122,16 @@ constexpr const char* kScene = R"({
   "seed": 1
 })";
 
-class RunSynthesiseTest : public testing::Test {
+class RunSynthesiseTest : public FolderTest {
  protected:
-  void SetUp() override { WriteBytes(scene_, kScene); }
-
   // The detections that these options give.
   std::string Detections(const SynthesiseOptions& options) {
     RunSynthesise(options, {{"scene", scene_}, {"output", output_}}, 2);
     return FileBytes(output_ / "detections.csv");
   }
 
-  TemporaryFolder temporary_;
-  std::filesystem::path scene_ = temporary_.path() / "scene.json";
-  std::filesystem::path output_ = temporary_.path() / "out" / "tiny";
+  std::filesystem::path scene_ = Write("scene.json", kScene);
+  std::filesystem::path output_ = folder_ / "out" / "tiny";
 };
 
 TEST_F(RunSynthesiseTest, NoiseAndSeedAreOptions) {

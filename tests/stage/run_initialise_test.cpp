@@ -7,7 +7,6 @@
 #include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
 #include "base/error.h"
-#include "geometry/angles.h"
 #include "geometry/iou.h"
 #include "initialisation/options.h"
 #include "mapping/options.h"
@@ -15,6 +14,7 @@
 #include "stage/stages.h"
 #include "support/drawn_cuboids.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
 #include "support/points_on_objects.h"
 #include "support/printed.h"
 #include "support/scene.h"
@@ -24,7 +24,7 @@ namespace soslam {
 namespace {
 
 // CubeSLAM's cuboids of drawn cuboids. Labels have no entry in the semantic table.
-class RunInitialiseCuboidsTest : public testing::Test {
+class RunInitialiseCuboidsTest : public FolderTest {
  protected:
   RunInitialiseCuboidsTest() {
     options_.method = InitialisationMethod::kCuboidProposals;
@@ -59,7 +59,6 @@ class RunInitialiseCuboidsTest : public testing::Test {
     return ReadLandmarks(files_.at("output"), sequence_);
   }
 
-  TemporaryFolder folder_;
   StageFiles files_ = {{"sequence", folder_ / "sequence.json"},
                        {"table", folder_ / "table.json"},
                        {"edges", folder_ / "edges.h5"},

@@ -14,6 +14,8 @@
 #include "inspection/overlay.h"
 #include "stage/stages.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
+#include "support/image_files.h"
 #include "support/scene.h"
 #include "support/temporary_folder.h"
 #include "support/true_map.h"
@@ -24,7 +26,7 @@ namespace {
 
 using testing::HasSubstr;
 
-class RunInspectTest : public testing::Test {
+class RunInspectTest : public FolderTest {
  protected:
   RunInspectTest() {
     for (Frame& frame : sequence_.frames) frame.image.clear();
@@ -44,12 +46,13 @@ class RunInspectTest : public testing::Test {
     request.frame_id = sequence_.frames.front().id;
     return request;
   }
+  // Expects that the request is refused with these words.
+  static void ExpectRefused(const InspectRequest& request, const std::vector<std::string>& words) {
+    ExpectError<SettingsError>([&] { RunInspect(request, false); }, words);
+  }
   cv::Mat Picture() const { return cv::imread(File("picture.png").string()); }
 
   Sequence sequence_ = SyntheticSequence(RandomScene(1, 3, 5), false);
-
- private:
-  TemporaryFolder folder_;
 };
 
 TEST_F(RunInspectTest, WordsAndTableAreReturned) {
@@ -108,7 +111,7 @@ TEST_F(RunInspectTest, TheHeadlineOfAMapIsALine) {
   ExpectError<InputError>([&] { RunInspect(request, false); },
                           {"map.json: was not made from", "other.json"});
   request.file = File("metrics.json");
-  ExpectError<SettingsError>([&] { RunInspect(request, false); }, {"metrics", "expected a map"});
+  ExpectRefused(request, {"metrics", "expected a map"});
 }
 
 TEST_F(RunInspectTest, FramesWithoutImagesHavePicturesToo) {
@@ -120,9 +123,8 @@ TEST_F(RunInspectTest, FramesWithoutImagesHavePicturesToo) {
 
 TEST_F(RunInspectTest, TheImageOfTheDatasetIsBelow) {
   const Camera& camera = sequence_.camera;
-  std::filesystem::create_directory(File("data"));
-  cv::imwrite(File("data").string() + "/0.png",
-              cv::Mat(camera.height, camera.width, CV_8UC1, cv::Scalar(200)));
+  Write("data/0.png",
+        EncodedImage(".png", cv::Mat(camera.height, camera.width, CV_8UC1, cv::Scalar(200))));
   sequence_.frames.front().image = "0.png";
   sequence_.detections.clear();
   WriteSequence(File("sequence.json"), sequence_, {});
@@ -134,7 +136,7 @@ TEST_F(RunInspectTest, TheImageOfTheDatasetIsBelow) {
 
 TEST_F(RunInspectTest, PicturesOfEstimatesNeedTheSequence) {
   InspectRequest request = PictureOf("initial.json");
-  ExpectError<SettingsError>([&] { RunInspect(request, false); }, {"needs --sequence"});
+  ExpectRefused(request, {"needs --sequence"});
   request.sequence = File("sequence.json");
   RunInspect(request, false);
   EXPECT_FALSE(Picture().empty());
@@ -153,7 +155,7 @@ TEST_F(RunInspectTest, PicturesOfEdgesShowOneLayerOrAll) {
   EXPECT_EQ(all.cols, kPictureWidth);
   EXPECT_EQ(Picture().at<cv::Vec3b>(10, 10), cv::Vec3b(7, 7, 7));
   request.frame_id = 4;
-  ExpectError<SettingsError>([&] { RunInspect(request, false); }, {"--frame 4", "3 to 3"});
+  ExpectRefused(request, {"--frame 4", "3 to 3"});
 }
 
 TEST_F(RunInspectTest, PicturesOfSymmetryNeedFrameAndObject) {
@@ -163,25 +165,24 @@ TEST_F(RunInspectTest, PicturesOfSymmetryNeedFrameAndObject) {
   WriteSymmetry(File("symmetry.h5"), {record}, {});
   InspectRequest request = PictureOf("symmetry.h5");
   request.sequence = File("sequence.json");
-  ExpectError<SettingsError>([&] { RunInspect(request, false); }, {"needs --object"});
+  ExpectRefused(request, {"needs --object"});
   request.object_id = 8;
-  ExpectError<SettingsError>([&] { RunInspect(request, false); }, {"--object 8", "no observation"});
+  ExpectRefused(request, {"--object 8", "no observation"});
   request.object_id = 7;
   RunInspect(request, false);
   EXPECT_FALSE(Picture().empty());
 }
 
 TEST_F(RunInspectTest, WhatHasNoPictureIsRefused) {
-  ExpectError<SettingsError>([&] { RunInspect(PictureOf("metrics.json"), false); },
-                             {"no picture of kind 'metrics'"});
+  ExpectRefused(PictureOf("metrics.json"), {"no picture of kind 'metrics'"});
   InspectRequest request = PictureOf("sequence.json");
   request.frame_id = 99;
-  ExpectError<SettingsError>([&] { RunInspect(request, false); }, {"--frame 99", "0 to 4"});
+  ExpectRefused(request, {"--frame 99", "0 to 4"});
   request.frame_id.reset();
-  ExpectError<SettingsError>([&] { RunInspect(request, false); }, {"needs --frame"});
+  ExpectRefused(request, {"needs --frame"});
   request = PictureOf("sequence.json");
   request.image = File("picture.jpg");
-  ExpectError<SettingsError>([&] { RunInspect(request, false); }, {".png"});
+  ExpectRefused(request, {".png"});
   EXPECT_FALSE(std::filesystem::exists(File("picture.png")));
 }
 

@@ -7,6 +7,8 @@
 #include "priors/learn_priors.h"
 #include "stage/stages.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
+#include "support/lists.h"
 #include "support/printed.h"
 #include "support/temporary_folder.h"
 
@@ -16,13 +18,13 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-class RunLearnPriorsTest : public testing::Test {
+class RunLearnPriorsTest : public FolderTest {
  protected:
   RunLearnPriorsTest() {
     WriteBytes(folder_ / "models.csv",
                "name,category,depth_m,width_m,height_m\nPot,Hall,0.2,0.2,0.1\n"
                "Pot,Hall,0.4,0.4,0.1\n");
-    WriteBytes(folder_ / "names.json", R"({"labels": {"pot": ["pot"]}})");
+    Write("names.json", R"({"labels": {"pot": ["pot"]}})");
     files_["output"] = folder_ / "table.json";
   }
   // A sequence whose only object is a pot.
@@ -48,7 +50,6 @@ class RunLearnPriorsTest : public testing::Test {
   }
   ShapePrior Pot() const { return ReadSemanticTable(files_.at("output")).Find("pot").value(); }
 
-  TemporaryFolder folder_;
   StageFiles files_;
 };
 
@@ -57,12 +58,11 @@ TEST_F(RunLearnPriorsTest, LearnsFromCatalogueAndSequences) {
   files_["sequence"] = WritePot("one", {0.3, 0.3, 0.1});
   files_[RepeatedName("sequence", 1)] = WritePot("two", {0.3, 0.3, 0.1});
   EXPECT_THAT(Run(), HasSubstr("1 labels"));
-  const SemanticRows rows = ReadSemanticRows(files_.at("output"));
-  ASSERT_EQ(rows.rows.size(), 1u);
-  EXPECT_EQ(rows.rows[0].samples, 4);
+  const SemanticRow row = Only(ReadSemanticRows(files_.at("output")).rows);
+  EXPECT_EQ(row.samples, 4);
   EXPECT_NEAR(Pot().ratio.x(), 3.0, 1e-3);  // of 2, 4, 3, 3
   for (const char* source : {"2 of models.csv", "1 of one", "1 of two"}) {
-    EXPECT_THAT(rows.rows[0].source, HasSubstr(source));
+    EXPECT_THAT(row.source, HasSubstr(source));
   }
 }
 

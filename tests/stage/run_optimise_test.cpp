@@ -9,6 +9,7 @@
 #include "mapping/options.h"
 #include "stage/stages.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
 #include "support/scene.h"
 #include "support/temporary_folder.h"
 
@@ -20,7 +21,7 @@ using nlohmann::json;
 constexpr int kObjects = 4;
 
 // The stage on cuboids that start from the truth, and a semantic table of the test's.
-class RunOptimiseTest : public testing::Test {
+class RunOptimiseTest : public FolderTest {
  protected:
   RunOptimiseTest() {
     options_.detection_model = DetectionModel::kTangency;
@@ -80,8 +81,6 @@ class RunOptimiseTest : public testing::Test {
 
  private:
   std::filesystem::path File(const std::string& name) const { return folder_ / (name + ".json"); }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(RunOptimiseTest, ShapeIsTheTablesOrTheOptions) {

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <utility>
 
@@ -16,6 +15,9 @@
 #include "report/page_parts.h"
 #include "stage/stages.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
+#include "support/image_files.h"
+#include "support/lists.h"
 #include "support/printed.h"
 #include "support/results_folder.h"
 #include "support/scene.h"
@@ -39,15 +41,14 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 // Results of one dataset, "room", with images.
-class RunPagesTest : public testing::Test {
+class RunPagesTest : public FolderTest {
  protected:
   RunPagesTest() {
-    fs::create_directories(Dataset());
     for (Frame& frame : sequence_.frames) frame.image = std::to_string(frame.id) + ".png";
     const Camera& camera = sequence_.camera;
     const cv::Mat grey(camera.height, camera.width, CV_8UC3, cv::Scalar(90, 120, 60));
     for (const Frame& frame : sequence_.frames) {
-      cv::imwrite((Dataset() / frame.image).string(), grey);
+      Write("data/" + frame.image, EncodedImage(".png", grey));
     }
     WriteBytes(results_.VariantFolder("room", "shared") / "dataset.txt", Dataset().string() + "\n");
   }
@@ -125,9 +126,6 @@ class RunPagesTest : public testing::Test {
 
   Sequence sequence_ = CuboidSequence(4, 6);
   ResultsFolder results_;
-
- private:
-  TemporaryFolder folder_;
 };
 
 TEST_F(RunPagesTest, VariantsShareWhatIsTheSame) {
@@ -258,9 +256,7 @@ TEST_P(DamagedVariantTest, IsNamedAndTheRestIsShown) {
   const Printed printed = Run();
   EXPECT_THAT(printed.errors,
               AllOf(HasSubstr("soslam-pages: room: OursS failed: "), HasSubstr(GetParam().file)));
-  const json page = PageDataIn(Page());
-  ASSERT_EQ(page["variants"].size(), 1u);
-  EXPECT_EQ(page["variants"][0]["name"], "MultiView");
+  EXPECT_EQ(Only(PageDataIn(Page())["variants"])["name"], "MultiView");
   EXPECT_THAT(Unfinished().at("OursS"), HasSubstr(GetParam().file));
   const json overview = PageDataIn(results_.path() / "report.html");
   EXPECT_EQ(overview["datasets"][0]["unfinished"].size(), 1u);
@@ -278,16 +274,14 @@ TEST_F(RunPagesTest, OlderResultsAreShownAsSuch) {
   WriteMultiView("MultiView");
   WriteBytes(Folder("shared/evaluate-3") / "failed", "exit code 70: bug\n");
   Run();
-  const json unfinished = PageDataIn(Page())["unfinished"];
-  ASSERT_EQ(unfinished.size(), 1u);
-  EXPECT_EQ(unfinished[0]["is_shown"], true);
+  EXPECT_EQ(Only(PageDataIn(Page())["unfinished"])["is_shown"], true);
   EXPECT_EQ(PageDataIn(Page())["variants"].size(), 1u);
 }
 
 TEST_F(RunPagesTest, ImagesThatAreDamagedOrOfAnotherSizeAreLeftOut) {
   WriteMultiView("MultiView");
-  WriteBytes(Dataset() / sequence_.frames[1].image, "no image");
-  cv::imwrite((Dataset() / sequence_.frames[2].image).string(), cv::Mat(9, 8, CV_8UC3));
+  Write("data/" + sequence_.frames[1].image, "no image");
+  Write("data/" + sequence_.frames[2].image, EncodedImage(".png", cv::Mat(9, 8, CV_8UC3)));
   const Printed printed = Run();
   EXPECT_THAT(printed.errors, AllOf(HasSubstr("2 of 6 images cannot be shown"),
                                     HasSubstr(sequence_.frames[1].image)));
@@ -297,7 +291,7 @@ TEST_F(RunPagesTest, ImagesThatAreDamagedOrOfAnotherSizeAreLeftOut) {
 }
 
 TEST_F(RunPagesTest, ImagesOutsideTheDatasetAreNotShown) {
-  WriteBytes(Dataset().parent_path() / "secret.png", "no image");
+  Write("secret.png", "no image");
   sequence_.frames[0].image = "../secret.png";
   WriteMultiView("MultiView");
   EXPECT_THAT(Run().errors, HasSubstr("outside"));
@@ -353,7 +347,7 @@ TEST_F(SlowRunPagesTest, LargeDatasetsStayBelowTheLimitAndSaySo) {
   const Camera& camera = sequence_.camera;
   cv::Mat noise(camera.height, camera.width, CV_8UC3);
   cv::RNG(1).fill(noise, cv::RNG::UNIFORM, 0, 255);
-  cv::imwrite((Dataset() / "noise.jpg").string(), noise);
+  Write("data/noise.jpg", EncodedImage(".jpg", noise));
   sequence_ = CuboidSequence(4, 60);
   for (Frame& frame : sequence_.frames) frame.image = "noise.jpg";
   const Object object = sequence_.objects.back();

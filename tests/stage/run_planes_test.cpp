@@ -15,6 +15,7 @@
 #include "planes/options.h"
 #include "stage/stages.h"
 #include "support/expect_error.h"
+#include "support/folder_test.h"
 #include "support/prior_scene.h"
 #include "support/scene.h"
 #include "support/temporary_folder.h"
@@ -25,7 +26,7 @@ namespace {
 using nlohmann::json;
 
 // The stage on cuboids on a floor and a shelf, with their true ratios.
-class RunPlanesTest : public testing::Test {
+class RunPlanesTest : public FolderTest {
  protected:
   RunPlanesTest() {
     options_.planes = PlaneSource::kEstimated;
@@ -58,9 +59,6 @@ class RunPlanesTest : public testing::Test {
   json labels_;
   Sequence sequence_ =
       SyntheticSequence(WithShelf(RandomScene(1, 4, 16, {Shape::kBox}), 0.3), false);
-
- private:
-  TemporaryFolder folder_;
 };
 
 // The back end twice.
@@ -195,7 +193,7 @@ TEST_F(RunPlanesTest, RefusesSeveralSegments) {
 }
 
 // The stage on a room in a world of any up direction and scale.
-class RunGroundTest : public testing::Test {
+class RunGroundTest : public FolderTest {
  protected:
   RunGroundTest() {
     options_.ground = GroundSource::kEstimated;
@@ -204,7 +202,6 @@ class RunGroundTest : public testing::Test {
     WritePoints(files_.at("points"), scene_.points, {});
   }
 
-  TemporaryFolder folder_;
   StageFiles files_ = {{"sequence", folder_ / "sequence.json"},
                        {"points", folder_ / "points.h5"},
                        {"table", SOSLAM_SOURCE_DIR "/pipelines/priors/semantic_table.json"},

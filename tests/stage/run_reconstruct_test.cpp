@@ -14,7 +14,9 @@
 #include "stage/stages.h"
 #include "support/expect_error.h"
 #include "support/fake_colmap.h"
+#include "support/folder_test.h"
 #include "support/image_files.h"
+#include "support/lists.h"
 #include "support/printed.h"
 #include "support/temporary_folder.h"
 
@@ -26,15 +28,15 @@ using testing::HasSubstr;
 using testing::Not;
 
 // Three images, of cameras side by side that look along z.
-class RunReconstructTest : public testing::Test {
+class RunReconstructTest : public FolderTest {
  protected:
   RunReconstructTest() : path_(std::getenv("PATH")) {
-    for (const char* name : {"data/rgb", "bin", "nothing"}) fs::create_directories(folder_ / name);
+    for (const char* name : {"bin", "nothing"}) fs::create_directories(folder_ / name);
     for (int i = 0; i < 3; ++i) {
-      cv::imwrite((Dataset() / ("rgb/" + std::to_string(i) + ".png")).string(),
-                  cv::Mat(48, 64, CV_8UC3, cv::Scalar(0, 0, 51 * i)));
+      Write(fmt::format("data/rgb/{}.png", i),
+            EncodedImage(".png", cv::Mat(48, 64, CV_8UC3, cv::Scalar(0, 0, 51 * i))));
     }
-    WriteBytes(Dataset() / "rgb.txt", "0 rgb/0.png\n0.5 rgb/1.png\n1 rgb/2.png\n");
+    Write("data/rgb.txt", "0 rgb/0.png\n0.5 rgb/1.png\n1 rgb/2.png\n");
     WriteFakeColmap(folder_ / "bin");
     WriteModel("0", 3);
     setenv("PATH", ((folder_ / "bin").string() + ":" + path_).c_str(), 1);
@@ -43,21 +45,20 @@ class RunReconstructTest : public testing::Test {
 
   fs::path Dataset() const { return folder_ / "data"; }
   fs::path Output(const std::string& file) const { return folder_ / "out" / file; }
-  void Prints(const std::string& line) const { WriteBytes(folder_ / "bin/printed", line + "\n"); }
+  void Prints(const std::string& line) const { Write("bin/printed", line + "\n"); }
 
   std::string camera_ = "SIMPLE_RADIAL 64 48 50 32 24 0.01";  // of the models
   // A model of so many images with one point (1, 0, 5).
   void WriteModel(const std::string& name, int images) const {
-    const fs::path model = folder_ / "bin/models" / name;
-    fs::create_directories(model);
+    const std::string model = "bin/models/" + name;
     std::string lines, track;
     for (int i = 0; i < images; ++i) {
       lines += fmt::format("{} 1 0 0 0 {} 0 0 1 rgb/{}.png\n{} 24.5 1\n", i + 1, -i, i, 10 + i);
       track += fmt::format(" {} 0", i + 1);
     }
-    WriteBytes(model / "cameras.txt", "1 " + camera_ + "\n");
-    WriteBytes(model / "images.txt", lines);
-    WriteBytes(model / "points3D.txt", "1 1 0 5 0 0 0 0.25" + track + "\n");
+    Write(model + "/cameras.txt", "1 " + camera_ + "\n");
+    Write(model + "/images.txt", lines);
+    Write(model + "/points3D.txt", "1 1 0 5 0 0 0 0.25" + track + "\n");
   }
   // A model in the output folder itself: COLMAP writes so what it triangulates.
   void WriteModelWithoutNumber() const {
@@ -83,7 +84,6 @@ class RunReconstructTest : public testing::Test {
     EXPECT_FALSE(fs::exists(Output("reconstruction.json")));
   }
 
-  TemporaryFolder folder_;
   std::string path_;
   ReconstructOptions options_;
   Printed printed_;
@@ -102,12 +102,11 @@ TEST_F(RunReconstructTest, WritesADatasetFolder) {
   ASSERT_EQ(poses.size(), 3u);
   EXPECT_EQ(poses[1].timestamp, 0.5);
   EXPECT_EQ(poses[2].world_from_camera.translation, Eigen::Vector3d(2, 0, 0));
-  const auto points = ReadPoints(Output("points.h5"));
-  ASSERT_EQ(points.size(), 1u);
-  EXPECT_EQ(points[0].position_in_world, Eigen::Vector3d(1, 0, 5));
-  ASSERT_EQ(points[0].observations.size(), 3u);
-  EXPECT_EQ(points[0].observations[2].frame_id, 2);
-  EXPECT_EQ(points[0].observations[2].pixel, Eigen::Vector2d(11.5, 24.0));
+  const MapPoint point = Only(ReadPoints(Output("points.h5")));
+  EXPECT_EQ(point.position_in_world, Eigen::Vector3d(1, 0, 5));
+  ASSERT_EQ(point.observations.size(), 3u);
+  EXPECT_EQ(point.observations[2].frame_id, 2);
+  EXPECT_EQ(point.observations[2].pixel, Eigen::Vector2d(11.5, 24.0));
   const auto summary = ReadReconstruction(Output("reconstruction.json"));
   EXPECT_EQ(summary.registered, 3);
   EXPECT_EQ(summary.colmap, "3.8");
@@ -151,19 +150,18 @@ TEST_F(RunReconstructTest, AGivenModelOfOtherNamesIsRefusedOrNamed) {
     fs::copy_file(Dataset() / fmt::format("rgb/{}.png", i),
                   Dataset() / fmt::format("rgb/IMG_{}.png", i + 1));
   }
-  WriteBytes(Dataset() / "rgb.txt", list);
+  Write("data/rgb.txt", list);
   ExpectError<InputError>([&] { Run("again", "out/colmap/sparse"); },
                           {"images.txt", "rgb/0.png, rgb/1.png and 1 more",
                            "rgb/IMG_1.png, rgb/IMG_2.png and 1 more", "renamed"});
-  WriteBytes(Dataset() / "rgb.txt", "0 rgb/0.png\n0.5 rgb/1.png\n1 rgb/IMG_3.png\n");
+  Write("data/rgb.txt", "0 rgb/0.png\n0.5 rgb/1.png\n1 rgb/IMG_3.png\n");
   Run("again", "out/colmap/sparse");
   EXPECT_THAT(printed_.output, HasSubstr("1 image in the model, but not in rgb.txt: rgb/2.png\n"));
   EXPECT_THAT(printed_.errors,
               HasSubstr("or other names than in the model, which has images that are not "
                         "listed: rgb/2.png"));
   // Fewer images that are not listed than such without a pose do not explain them.
-  WriteBytes(Dataset() / "rgb.txt",
-             "0 rgb/0.png\n0.5 rgb/IMG_1.png\n1 rgb/IMG_2.png\n2 rgb/IMG_3.png\n");
+  Write("data/rgb.txt", "0 rgb/0.png\n0.5 rgb/IMG_1.png\n1 rgb/IMG_2.png\n2 rgb/IMG_3.png\n");
   Run("again", "out/colmap/sparse");
   EXPECT_THAT(printed_.errors,
               testing::AllOf(HasSubstr("overlap too little"), Not(HasSubstr("other names"))));
@@ -182,7 +180,7 @@ TEST_F(RunReconstructTest, AFinishedJobIsNotRunAgain) {
 TEST_F(RunReconstructTest, AGivenCameraIsKept) {
   const std::string camera =
       R"({"width": 64, "height": 48, "fx": 50, "fy": 50, "cx": 31.5, "cy": 23.5})";
-  WriteBytes(Dataset() / "camera.json", camera);
+  Write("data/camera.json", camera);
   camera_ = "PINHOLE 64 48 50 50 32 24";
   WriteModel("0", 3);
   Run();
@@ -199,12 +197,12 @@ TEST_F(RunReconstructTest, AGivenCameraIsKept) {
   EXPECT_THAT(Calls(), Not(HasSubstr("ba_refine")));
   EXPECT_THAT(FileBytes(folder_ / "refined/camera.json"), HasSubstr("0.01"));
   options_ = {};
-  WriteBytes(Dataset() / "camera.json",
-             R"({"width": 64, "height": 48, "fx": 51, "fy": 50, "cx": 31.5, "cy": 23.5})");
+  Write("data/camera.json",
+        R"({"width": 64, "height": 48, "fx": 51, "fy": 50, "cx": 31.5, "cy": 23.5})");
   ExpectError<InputError>([&] { Run("other", "bin/models"); },
                           {"camera.json", "another camera than the model's", "fx 50.00"});
-  WriteBytes(Dataset() / "camera.json",
-             R"({"width": 64, "height": 48, "fx": 50, "fy": 50, "cx": 31.5, "cy": 23.5,
+  Write("data/camera.json",
+        R"({"width": 64, "height": 48, "fx": 50, "fy": 50, "cx": 31.5, "cy": 23.5,
                  "distortion": [0.1, 0, 0, 0, 0]})");
   ExpectError<InputError>([&] { Run("other", "bin/models"); }, {"another distortion"});
 }
@@ -213,15 +211,15 @@ TEST_F(RunReconstructTest, FilesInTheDatasetThatAreOfThisStageAreNotGiven) {
   Run("data");
   Run("data");
   EXPECT_FALSE(ReadReconstruction(Dataset() / "reconstruction.json").camera_is_given);
-  WriteBytes(Dataset() / "odometry.txt", "0 0 0 0 0 0 0 1\n");
+  Write("data/odometry.txt", "0 0 0 0 0 0 0 1\n");
   ExpectError<SettingsError>([&] { Run("data"); }, {"odometry.txt", "would be replaced"});
 }
 
 TEST_F(RunReconstructTest, GivenPosesAreTriangulated) {
-  WriteBytes(Dataset() / "camera.json",
-             R"({"width": 64, "height": 48, "fx": 50, "fy": 50, "cx": 31.5, "cy": 23.5})");
+  Write("data/camera.json",
+        R"({"width": 64, "height": 48, "fx": 50, "fy": 50, "cx": 31.5, "cy": 23.5})");
   const std::string odometry = "0 0 0 0 0 0 0 1\n0.5 1 0 0 0 0 0 1\n1.01 2 0 0 0 0 0 1\n";
-  WriteBytes(Dataset() / "odometry.txt", odometry);
+  Write("data/odometry.txt", odometry);
   camera_ = "PINHOLE 64 48 50 50 32 24";
   WriteModelWithoutNumber();
   options_.poses = PoseChoice::kGiven;
@@ -231,12 +229,12 @@ TEST_F(RunReconstructTest, GivenPosesAreTriangulated) {
   EXPECT_EQ(ReadPoints(Dataset() / "points.h5").size(), 1u);
   EXPECT_THAT(FileBytes(Dataset() / "colmap/given/images.txt"),
               HasSubstr("2 1 -0 -0 -0 -1 -0 -0 1 rgb/1.png\n\n"));
-  WriteBytes(Dataset() / "odometry.txt", "0 0 0 0 0 0 0 1\n0.5 1.1 0 0 0 0 0 1\n");
+  Write("data/odometry.txt", "0 0 0 0 0 0 0 1\n0.5 1.1 0 0 0 0 0 1\n");
   ExpectError<InputError>([&] { Run("data"); }, {"rgb/1.png", "another pose than odometry.txt"});
-  WriteBytes(folder_ / "bin/crash", "");
+  Write("bin/crash", "");
   fs::remove_all(Dataset() / "colmap");
   ExpectError<NothingUsableError>([&] { Run("data"); }, {"point_triangulator", "139", "fit"});
-  WriteBytes(Dataset() / "odometry.txt", "0 0 0 0 0 0 0 1\n");
+  Write("data/odometry.txt", "0 0 0 0 0 0 0 1\n");
   ExpectError<InputError>([&] { Run("data"); }, {"odometry.txt", "1 of 3 images"});
   options_.calibration = CalibrationChoice::kEstimated;
   ExpectError<SettingsError>([&] { Run("data"); }, {"given camera"});
@@ -244,8 +242,8 @@ TEST_F(RunReconstructTest, GivenPosesAreTriangulated) {
 
 TEST_F(RunReconstructTest, FindingsAreReported) {
   WriteModel("1", 2);
-  WriteBytes(folder_ / "bin/models/0/points3D.txt", "1 1 0 500 0 0 0 0.25 1 0 3 0\n");
-  WriteBytes(Dataset() / "rgb.txt", "0 rgb/0.png\n1 rgb/1.png\n2 rgb/2.png\n3 rgb/more.png\n");
+  Write("bin/models/0/points3D.txt", "1 1 0 500 0 0 0 0.25 1 0 3 0\n");
+  Write("data/rgb.txt", "0 rgb/0.png\n1 rgb/1.png\n2 rgb/2.png\n3 rgb/more.png\n");
   fs::copy_file(Dataset() / "rgb/0.png", Dataset() / "rgb/more.png");
   Run();
   for (const char* words : {"3 of 4 images are registered", "2 parts",
@@ -265,7 +263,7 @@ TEST_F(RunReconstructTest, ColmapIsMissing) {
 }
 
 TEST_F(RunReconstructTest, ASingleImage) {
-  WriteBytes(Dataset() / "rgb.txt", "0 rgb/0.png\n");
+  Write("data/rgb.txt", "0 rgb/0.png\n");
   ExpectFailure<InputError>({"rgb.txt", "single image"});
 }
 
@@ -280,20 +278,20 @@ TEST_F(RunReconstructTest, NoModel) {
 }
 
 TEST_F(RunReconstructTest, Crash) {
-  WriteBytes(folder_ / "bin/crash", "");
+  Write("bin/crash", "");
   ExpectFailure<NothingUsableError>({"colmap mapper", "exit code 139", "Registering", "log.txt"});
 }
 
 TEST_F(RunReconstructTest, ImagesThatColmapWouldMistakeAreRefused) {
   cv::imwrite((Dataset() / "rgb/1.png").string(), cv::Mat::zeros(64, 48, CV_8UC3));
   ExpectFailure<InputError>({"1.png", "48 x 64", "64 x 48", "first image"});
-  WriteBytes(Dataset() / "rgb/1.png",
-             JpegWithExif(EncodedImage(".jpg", cv::Mat::zeros(48, 64, CV_8UC3)), ExifOf(6)));
+  Write("data/rgb/1.png",
+        JpegWithExif(EncodedImage(".jpg", cv::Mat::zeros(48, 64, CV_8UC3)), ExifOf(6)));
   ExpectFailure<InputError>({"1.png", "EXIF turns", "exiftran -ai"});
   options_.image_orientation = ImageOrientation::kStored;
   EXPECT_NO_THROW(Run());
   fs::remove_all(folder_ / "out");
-  WriteBytes(Dataset() / "rgb/1.png", "no image");
+  Write("data/rgb/1.png", "no image");
   ExpectFailure<InputError>({"1.png", "expected a JPEG"});
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "artefact/files.h"
@@ -9,6 +8,8 @@
 #include "image/feature_tracks.h"
 #include "stage/stages.h"
 #include "support/drawn_photos.h"
+#include "support/folder_test.h"
+#include "support/image_files.h"
 #include "support/printed.h"
 #include "support/temporary_folder.h"
 
@@ -21,10 +22,9 @@ constexpr int kShiftPx = 6;      // per image
 constexpr int kImages = 9;       // more than one batch of two threads
 
 // A camera that moves along a wall with a picture, and its sequence.json.
-class RunTrackTest : public testing::Test {
+class RunTrackTest : public FolderTest {
  protected:
   RunTrackTest() {
-    std::filesystem::create_directory(folder_ / "rgb");
     sequence_.name = "wall";
     sequence_.camera = {320, 240, kFocalPx, kFocalPx, 159.5, 119.5};
     for (int i = 0; i < kImages; ++i) {
@@ -36,7 +36,7 @@ class RunTrackTest : public testing::Test {
       sequence_.frames.push_back(frame);
       cv::Mat soft;
       cv::GaussianBlur(DrawnView(i * kShiftPx), soft, {}, 1.0);
-      cv::imwrite((folder_ / frame.image).string(), soft);
+      Write(frame.image, EncodedImage(".png", soft));
     }
   }
 
@@ -45,7 +45,6 @@ class RunTrackTest : public testing::Test {
     RunTrack({}, files_, threads);
     return ReadPoints(files_.at("output"));
   }
-  TemporaryFolder folder_;
   StageFiles files_ = {{"dataset", folder_.path()},
                        {"sequence", folder_ / "sequence.json"},
                        {"output", folder_ / "points.h5"}};
