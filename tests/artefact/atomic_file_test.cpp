@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "artefact/atomic_file.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -22,15 +21,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class AtomicFileTest : public testing::Test {
+class AtomicFileTest : public FolderTest {
  protected:
   int FilesInFolder() {
-    return static_cast<int>(std::distance(fs::directory_iterator(folder), {}));
+    return static_cast<int>(std::distance(fs::directory_iterator(folder_.path()), {}));
   }
 
-  TemporaryFolder temporary_;
-  fs::path folder = temporary_.path();
-  fs::path file = folder / "result.txt";
+  fs::path file = folder_ / "result.txt";
 };
 
 // Files of this process cannot grow beyond `bytes` while it lives: what a full disk looks like.
@@ -56,7 +53,7 @@ TEST_F(AtomicFileTest, AppearsOnlyWhenCommitted) {
   {
     AtomicFile atomic(file);
     std::ofstream(atomic.TemporaryPath()) << "new";
-    EXPECT_EQ(atomic.TemporaryPath().parent_path(), folder);
+    EXPECT_EQ(atomic.TemporaryPath().parent_path(), folder_.path());
     EXPECT_FALSE(fs::exists(file));
     atomic.Commit();
   }
@@ -87,24 +84,19 @@ TEST_F(AtomicFileTest, IdenticalContentKeepsItsTime) {
 
 TEST_F(AtomicFileTest, FullDiskLeavesTheOldFile) {
   WriteTextFile(file, "old");
-  std::string message;
-  {
-    const FileSizeLimit limit(1000);
-    try {
-      WriteTextFile(file, std::string(100000, 'x'));
-    } catch (const SettingsError& error) {
-      message = error.what();
-    }
-  }
-  EXPECT_THAT(message, testing::AllOf(testing::HasSubstr("result.txt: cannot be written"),
-                                      testing::HasSubstr("File too large")));
+  ExpectError<SettingsError>(
+      [&] {
+        const FileSizeLimit limit(1000);
+        WriteTextFile(file, std::string(100000, 'x'));
+      },
+      {"result.txt: cannot be written", "File too large"});
   EXPECT_EQ(FileBytes(file), "old");
   EXPECT_EQ(FilesInFolder(), 1);
 }
 
 TEST_F(AtomicFileTest, UnusableTargetsAreRefused) {
-  EXPECT_THROW(WriteTextFile(folder / "no such folder" / "result.txt", "x"), SettingsError);
-  EXPECT_THROW(WriteTextFile(folder, "x"), SettingsError);
+  EXPECT_THROW(WriteTextFile(folder_ / "no such folder" / "result.txt", "x"), SettingsError);
+  EXPECT_THROW(WriteTextFile(folder_.path(), "x"), SettingsError);
   EXPECT_EQ(FilesInFolder(), 0);
 }
 

@@ -2,7 +2,6 @@
 // The three JSON artefacts of the model: what is written is read back bit for bit.
 #include "artefact/files.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -19,7 +18,6 @@
 namespace soslam {
 namespace {
 
-using testing::HasSubstr;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 class ArtefactFilesTest : public FolderTest {

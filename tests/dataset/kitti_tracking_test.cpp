@@ -28,7 +28,7 @@ class KittiTrackingTest : public ImportedFolderTest {
   }
 
   Sequence Import() override {
-    fixture.Write(folder_.path());
+    for (const auto& [name, text] : fixture.files) Write(name, text);
     return ImportedFolderTest::Import();
   }
   void ExpectRefusedWith(const std::string& file, const std::string& text,

@@ -13,12 +13,12 @@
 namespace soslam {
 namespace {
 
+constexpr double kPi = std::numbers::pi;
+
 // On the plane z = 0.
 Landmark Standing(double x, double y, double yaw_deg, const Eigen::Vector3d& half_axes) {
   Landmark landmark;
-  landmark.frame_from_object = {
-      Eigen::Quaterniond(Eigen::AngleAxisd(kRadPerDeg * yaw_deg, Eigen::Vector3d::UnitZ())),
-      {x, y, half_axes.z()}};
+  landmark.frame_from_object = {ExpRotation({0, 0, kRadPerDeg * yaw_deg}), {x, y, half_axes.z()}};
   landmark.half_axes = half_axes;
   return landmark;
 }
@@ -58,8 +58,7 @@ TEST_F(BodyErrorsTest, ABodyWithOtherNamesOfItsAxesIsTheSame) {
   // Its z axis is the true y axis, so it lies.
   Landmark lying = truth_.landmark_in_world;
   lying.frame_from_object.rotation =
-      lying.frame_from_object.rotation *
-      Eigen::Quaterniond(Eigen::AngleAxisd(0.5 * std::numbers::pi, Eigen::Vector3d::UnitX()));
+      lying.frame_from_object.rotation * ExpRotation({kPi / 2, 0, 0});
   lying.half_axes = {0.4, 0.3, 0.2};
   EXPECT_NEAR(Compare(lying).iou, 1.0, 1e-9);
   EXPECT_NEAR(Compare(lying).log_size.norm(), 0.0, 1e-12);
@@ -72,9 +71,7 @@ TEST_F(BodyErrorsTest, ThePartThatIsWrongIsFound) {
     Landmark estimate;
   };
   Landmark tilted = truth_.landmark_in_world;
-  tilted.frame_from_object.rotation =
-      Eigen::Quaterniond(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitY())) *
-      tilted.frame_from_object.rotation;
+  tilted.frame_from_object.rotation = ExpRotation({0, 0.5, 0}) * tilted.frame_from_object.rotation;
   tilted.frame_from_object.translation =
       Eigen::Vector3d(1.0, 2.0, 0.0) +
       tilted.frame_from_object.rotation * Eigen::Vector3d(0.0, 0.0, 0.3);
@@ -113,17 +110,14 @@ TEST_F(BodyErrorsTest, APlaneThatIsTooLowIsSeenInDistanceAndSize) {
   EXPECT_NEAR(wrong->iou, 1.0, 1e-9);
 }
 
-constexpr double kPi = std::numbers::pi;
-
 TEST(RotationError, HidesTheRotationsOfTheCube) {
   const Eigen::Quaterniond truth = RandomRotation();
   for (int x = 0; x < 4; ++x) {
     for (int y = 0; y < 4; ++y) {
       for (int z = 0; z < 4; ++z) {
-        const Eigen::Quaterniond turned = truth *
-                                          Eigen::AngleAxisd(x * kPi / 2, Eigen::Vector3d::UnitX()) *
-                                          Eigen::AngleAxisd(y * kPi / 2, Eigen::Vector3d::UnitY()) *
-                                          Eigen::AngleAxisd(z * kPi / 2, Eigen::Vector3d::UnitZ());
+        const Eigen::Quaterniond turned = truth * ExpRotation({x * kPi / 2, 0, 0}) *
+                                          ExpRotation({0, y * kPi / 2, 0}) *
+                                          ExpRotation({0, 0, z * kPi / 2});
         EXPECT_NEAR(RotationError(turned, truth), 0.0, 1e-7);
       }
     }
@@ -146,7 +140,7 @@ TEST(RotationError, IsTheAngleOfASmallTurn) {
 TEST(YawError, IsModuloHalfATurnButNotAQuarter) {
   const Eigen::Quaterniond truth = RandomRotation();
   const auto turned = [&](double yaw) {
-    return Eigen::Quaterniond(truth * Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
+    return Eigen::Quaterniond(truth * ExpRotation({0, 0, yaw}));
   };
   EXPECT_NEAR(YawError(turned(0.3), truth), 0.3, 1e-9);
   EXPECT_NEAR(YawError(turned(kPi + 0.3), truth), 0.3, 1e-9);
@@ -176,8 +170,8 @@ TEST(AttitudeError, DetectsQuarterTurnsAndOtherFacesButNoHalfTurns) {
 }
 
 TEST(YawError, OfAnEstimateLyingOnItsFrontIsAQuarterTurn) {
-  const Eigen::Quaterniond lying(Eigen::AngleAxisd(kPi / 2, Eigen::Vector3d::UnitY()));
-  EXPECT_NEAR(YawError(lying, Eigen::Quaterniond::Identity()), kPi / 2, 1e-9);
+  EXPECT_NEAR(YawError(ExpRotation({0, kPi / 2, 0}), Eigen::Quaterniond::Identity()), kPi / 2,
+              1e-9);
 }
 
 }  // namespace

@@ -18,8 +18,6 @@
 namespace soslam {
 namespace {
 
-using testing::HasSubstr;
-
 class RunImportTest : public FolderTest {
  protected:
   void Run(const ImportOptions& options = {}) {

@@ -16,7 +16,6 @@ namespace soslam {
 namespace {
 
 using testing::HasSubstr;
-using testing::Not;
 
 class RunLearnPriorsTest : public FolderTest {
  protected:

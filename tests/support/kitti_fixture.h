@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <string>
@@ -108,13 +106,6 @@ struct KittiTrackingFixture {
     }
     files["label_02/0003.txt"] += fmt::format("0 2 {}", Pedestrian().Columns("Pedestrian", "0", 1));
     files["label_02/0007.txt"] += fmt::format("1 -1 {}", kKittiDontCare);
-  }
-
-  void Write(const std::filesystem::path& folder) const {
-    for (const auto& [name, text] : files) {
-      std::filesystem::create_directories((folder / name).parent_path());
-      std::ofstream(folder / name, std::ios::binary) << text;
-    }
   }
 };
 

@@ -26,25 +26,23 @@ class MapQualityTest : public testing::Test {
     const Eigen::Quaterniond world_from_camera(
         (Eigen::Matrix3d() << 1, 0, 0, 0, 0, 1, 0, -1, 0).finished());
     for (int i = 0; i < kFrames; ++i) {
-      Frame frame;
+      Frame& frame = sequence_.frames.emplace_back();
       frame.id = i;
       frame.world_from_camera = {world_from_camera,
                                  {0.1 * i - 0.25, 0.02 * i * i, 1.5 + 0.03 * std::sin(2.0 * i)}};
       frame.true_world_from_camera = frame.world_from_camera;
-      sequence_.frames.push_back(frame);
     }
     sequence_.planes.push_back({0, {Eigen::Vector3d::UnitZ(), 0.0}});
   }
 
   int AddTruth(const Eigen::Vector3d& half_axes = kCube) {
     const auto index = static_cast<int>(sequence_.true_objects.size());
-    TrueObject object;
+    TrueObject& object = sequence_.true_objects.emplace_back();
     object.id = 10 + index;
     object.label = "box";
     object.truth.landmark_in_world.half_axes = half_axes;
     object.truth.landmark_in_world.frame_from_object.translation = {
         0.8 * (index % 7) - 2.4, 5.0, 1.1 * (index / 7) + half_axes.z()};
-    sequence_.true_objects.push_back(object);
     return index;
   }
   Landmark Truth(int index) const { return sequence_.true_objects[index].truth.landmark_in_world; }
@@ -56,10 +54,7 @@ class MapQualityTest : public testing::Test {
 
   int AddObject(const std::string& label = "box") {
     const auto index = static_cast<int>(sequence_.objects.size());
-    Object object;
-    object.id = 100 + index;
-    object.label = label;
-    sequence_.objects.push_back(object);
+    sequence_.objects.push_back({100 + index, label, 0, {}});
     estimates_.push_back({index, 0, std::nullopt, std::nullopt, ""});
     return index;
   }
@@ -76,24 +71,23 @@ class MapQualityTest : public testing::Test {
     in_camera.shape_exponents = kCuboidExponent;
     return OutlineBox(sequence_.camera, in_camera).value();
   }
+  Detection& AddDetection(int frame, int object, const Box& box) {
+    Detection& detection = sequence_.detections.emplace_back();
+    detection.frame_index = frame;
+    detection.object_index = object;
+    detection.box = box;
+    return detection;
+  }
   // Boxes of a true object become those of an object, in frames from first to before last.
   void Detect(int truth, int object, int first = 0, int last = kFrames) {
     for (int frame = first; frame < last; ++frame) {
-      Detection detection;
-      detection.frame_index = frame;
-      detection.object_index = object;
-      detection.box = BoxOf(Truth(truth), frame);
-      detection.true_object_id = sequence_.true_objects[truth].id;
-      sequence_.detections.push_back(detection);
+      AddDetection(frame, object, BoxOf(Truth(truth), frame)).true_object_id =
+          sequence_.true_objects[truth].id;
     }
   }
   void DetectNothing(int object) {
     for (int frame = 0; frame < kFrames; ++frame) {
-      Detection detection;
-      detection.frame_index = frame;
-      detection.object_index = object;
-      detection.box = {10.0, 10.0, 40.0, 30.0 + object};
-      sequence_.detections.push_back(detection);
+      AddDetection(frame, object, {10.0, 10.0, 40.0, 30.0 + object});
     }
   }
   void Reject(int truth, RejectingStage stage, const std::string& reason) {
