@@ -155,6 +155,10 @@ SymmetryRecord BareRecord() {
 
 class SymmetryFileTest : public FolderTest {
  protected:
+  void ExpectRefused(const SymmetryRecord& record, const std::vector<std::string>& words) const {
+    WriteSymmetry(folder_ / "symmetry.h5", {record}, {});
+    ExpectError<InputError>([&] { ReadSymmetry(folder_ / "symmetry.h5"); }, words);
+  }
 };
 
 TEST_F(SymmetryFileTest, RecordsComeBackInOrder) {
@@ -178,17 +182,13 @@ TEST_F(SymmetryFileTest, RecordsComeBackInOrder) {
 TEST_F(SymmetryFileTest, RefusesAnImpossibleNumberOfMirrorPlanes) {
   SymmetryRecord record = FullRecord();
   record.mirror_planes = 7;
-  WriteSymmetry(folder_ / "symmetry.h5", {record}, {});
-  ExpectError<InputError>([&] { ReadSymmetry(folder_ / "symmetry.h5"); },
-                          {"symmetry.h5", "mirror_planes", "7", "0, 1 or 2"});
+  ExpectRefused(record, {"symmetry.h5", "mirror_planes", "7", "0, 1 or 2"});
 }
 
 TEST_F(SymmetryFileTest, CurvesOfAnotherLengthAreRefused) {
   SymmetryRecord record = FullRecord();
   record.cost["grey"].pop_back();
-  WriteSymmetry(folder_ / "symmetry.h5", {record}, {});
-  ExpectError<InputError>([&] { ReadSymmetry(folder_ / "symmetry.h5"); },
-                          {"/observations/000012_000003/cost/grey", "expected 3"});
+  ExpectRefused(record, {"/observations/000012_000003/cost/grey", "expected 3"});
 }
 
 std::vector<MapPoint> TwoPoints() {

@@ -122,17 +122,12 @@ class AlignSegmentsTest : public testing::Test {
   static Sequence Make(const Rigid3d& truth_from_scaled, double scale) {
     Sequence sequence;
     for (const auto& [estimated, truth] : Moved(RandomCentres(8), truth_from_scaled, scale)) {
-      Frame frame;
-      frame.world_from_camera = estimated;
-      frame.true_world_from_camera = truth;
-      sequence.frames.push_back(frame);
+      sequence.frames.push_back({0, 0.0, "", estimated, truth});
     }
     return sequence;
   }
   static Alignments Of(const Sequence& sequence, AlignmentChoice choice) {
-    std::vector<Rigid3d> poses;
-    for (const Frame& frame : sequence.frames) poses.push_back(frame.world_from_camera);
-    return AlignSegments(sequence, poses, choice);
+    return AlignSegments(sequence, Fields(sequence.frames, &Frame::world_from_camera), choice);
   }
   static AlignmentKind AutoKind(const Sequence& sequence) {
     return Of(sequence, AlignmentChoice::kAuto).of_segment.at(0).kind;

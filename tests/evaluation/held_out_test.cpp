@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "dataset/gate.h"
+#include "support/lists.h"
 #include "support/scene.h"
 #include "synthesis/simulate.h"
 
@@ -15,11 +16,9 @@ class HeldOutTest : public testing::Test {
  protected:
   HeldOutTest() {
     for (size_t i = 0; i < sequence_.objects.size(); ++i) {
-      ObjectEstimate estimate;
-      estimate.object_index = static_cast<int>(i);
-      estimate.landmark_in_world = sequence_.objects[i].ground_truth->landmark_in_world;
-      estimate.landmark_in_world->shape_exponents = kCuboidExponent;
-      estimates_.push_back(estimate);
+      Landmark truth = sequence_.objects[i].ground_truth->landmark_in_world;
+      truth.shape_exponents = kCuboidExponent;
+      estimates_.push_back({static_cast<int>(i), 0, truth, {}, ""});
     }
     for (const HeldOutFrame& held_out : sequence_.held_out) {
       poses_.push_back(*held_out.frame.true_world_from_camera);
@@ -81,8 +80,7 @@ TEST_F(HeldOutTest, LabelsMustBeEqual) {
 
 // What the map says of one frame moves the held-out frame after it, and no other.
 TEST_F(HeldOutTest, PosesAreThoseOfTheFrameBeforeAndTheOdometry) {
-  std::vector<Rigid3d> map;
-  for (const Frame& frame : sequence_.frames) map.push_back(frame.world_from_camera);
+  std::vector<Rigid3d> map = Fields(sequence_.frames, &Frame::world_from_camera);
   constexpr size_t kFrame = 4;
   const Eigen::Vector3d shift(0.1, 0.2, 0.3);
   map[kFrame].translation += shift;

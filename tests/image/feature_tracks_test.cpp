@@ -71,9 +71,7 @@ TEST(FeatureTrackerTest, FollowsNothingThroughACut) {
 TEST(FeatureTrackerTest, APredictedMotionIsFollowed) {
   const std::vector<int> shifts = {0, 140};
   const auto right_tracks = [&](const Eigen::Matrix3d& prediction) {
-    FeatureTrackOptions options;
-    options.pyramid_levels = 0;
-    FeatureTracker tracker(options);
+    FeatureTracker tracker({.pyramid_levels = 0});
     tracker.Add(SoftView(shifts[0]));
     tracker.Add(SoftView(shifts[1]), prediction);
     int right = 0;

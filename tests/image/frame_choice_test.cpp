@@ -76,9 +76,7 @@ TEST(FrameSelectorTest, SpreadsTheChoiceOverTheMotion) {
   std::vector<cv::Mat> images;
   for (int i = 0; i < 40; ++i) images.push_back(DrawnView(3 * (i % 2)));
   for (int i = 1; i <= 40; ++i) images.push_back(DrawnView(20 * i));
-  FrameOptions options;
-  options.max_frames = 20;
-  const Reasons reasons = ReasonsFor(images, options);
+  const Reasons reasons = ReasonsFor(images, {.max_frames = 20});
   const std::vector<size_t> chosen = ChosenOf(reasons);
   EXPECT_EQ(chosen.size(), 20u);
   EXPECT_LE(std::ranges::count_if(chosen, [](size_t frame) { return frame < 40; }), 2);

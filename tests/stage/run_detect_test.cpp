@@ -176,24 +176,21 @@ TEST(LabelsForDetectorTest, GroupsForOverlaps) {
 }
 
 TEST(LabelsForDetectorTest, BadOptionsAreRefused) {
-  const auto expect_refused = [](const DetectorOptions& options,
+  const auto expect_refused = [](std::string DetectorOptions::*option, const std::string& text,
                                  const std::vector<std::string>& words) {
+    DetectorOptions options;
+    options.*option = text;
     ExpectError<SettingsError>([&] { LabelsForDetector({"chair", "tv"}, options); }, words);
   };
   for (const char* text : {"tv", "tv=", "=tv", "tv=a, tv=b", "tv=a,"}) {
-    DetectorOptions options;
-    options.rename_labels = text;
-    expect_refused(options, {"rename_labels"});
+    expect_refused(&DetectorOptions::rename_labels, text, {"rename_labels"});
   }
-  DetectorOptions options;
-  options.rename_labels = "sofa=couch";
-  expect_refused(options, {"rename_labels has 'sofa'", "chair, tv"});
-  options = {};
-  options.keep_labels = "chair, keybord";
-  expect_refused(options, {"keep_labels has 'keybord'", "chair, tv"});
-  options = {};
-  options.interchangeable_labels = "chair; chair";
-  expect_refused(options, {"interchangeable_labels"});
+  expect_refused(&DetectorOptions::rename_labels, "sofa=couch",
+                 {"rename_labels has 'sofa'", "chair, tv"});
+  expect_refused(&DetectorOptions::keep_labels, "chair, keybord",
+                 {"keep_labels has 'keybord'", "chair, tv"});
+  expect_refused(&DetectorOptions::interchangeable_labels, "chair; chair",
+                 {"interchangeable_labels"});
 }
 
 // Boxes are those of the image as viewers show it, or as it is stored.

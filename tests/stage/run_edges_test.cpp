@@ -27,14 +27,11 @@ class RunEdgesTest : public FolderTest {
     sequence_.name = "circles";
     sequence_.camera = {64, 48, 60.0, 60.0, 31.5, 23.5};
     for (int i = 0; i < kFrames; ++i) {
-      Frame frame;
-      frame.id = 5 * i;
-      frame.timestamp = 0.1 * i;
-      frame.image = "rgb/" + std::to_string(i) + ".png";
-      sequence_.frames.push_back(frame);
+      const std::string name = "rgb/" + std::to_string(i) + ".png";
+      sequence_.frames.push_back({5 * i, 0.1 * i, name, {}, {}});
       cv::Mat image(48, 64, CV_8UC1, cv::Scalar(50));
       cv::circle(image, {20 + 2 * i, 24}, 12, cv::Scalar(220), cv::FILLED);
-      Write(frame.image, EncodedImage(".png", image));
+      Write(name, EncodedImage(".png", image));
     }
   }
 

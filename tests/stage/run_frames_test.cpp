@@ -62,9 +62,7 @@ TEST_F(RunFramesTest, LargePhotosAreTurnedUprightAndScaledDown) {
     image(cv::Rect(0, 0, 20, 20)).setTo(cv::Scalar(255, 255, 255));
     WritePhoto(photos_ / (std::to_string(i) + ".jpg"), image, ExifOfCamera(6, 26));
   }
-  FrameOptions options;
-  options.max_image_px = 100;
-  const json frames = Run(photos_, options);
+  const json frames = Run(photos_, {.max_image_px = 100});
   EXPECT_EQ(frames.at("width"), 50);
   EXPECT_EQ(frames.at("height"), 100);
   EXPECT_EQ(frames.at("focal_hint").at("images"), 2);
@@ -128,9 +126,7 @@ TEST_F(RunFramesTest, FramesOfAVideoHaveTheirTimes) {
 
 TEST_F(RunFramesTest, SameBytesForAnyNumberOfThreads) {
   AddViews(5);
-  FrameOptions options;
-  options.max_image_px = 200;
-  ExpectSameBytesForThreads([&](int threads) { Run(photos_, options, threads); },
+  ExpectSameBytesForThreads([&](int threads) { Run(photos_, {.max_image_px = 200}, threads); },
                             {output_ / "frames.json", output_ / "rgb/view_3.jpg"});
 }
 
@@ -163,8 +159,7 @@ TEST_F(RunFramesTest, BoxesOfAllImagesBecomeThoseOfTheChosenOnes) {
   WriteBytes(boxes,
              "frame,label,score,x1,y1,x2,y2\n2,cup,0.9,-0.5,19.5,99.5,119.5\n1,cup,0.8,1,2,3,4\n"
              "0,tv,1,9.5,9.5,19.5,29.5\n7,tv,1,1,2,3,4\n");
-  FrameOptions options;
-  options.max_image_px = 160;  // half the size
+  const FrameOptions options = {.max_image_px = 160};  // half the size
   const StageFiles files = {{"images", photos_}, {"output", output_}, {"detections", boxes}};
   for (int run = 0; run < 2; ++run) {  // its own boxes may be replaced
     RunFrames(options, files, 1);

@@ -20,19 +20,19 @@ namespace {
 
 class RunImportTest : public FolderTest {
  protected:
-  void Run(const ImportOptions& options = {}) {
+  void Run() {
     dataset.Write(files.at("dataset"));
     RunImport(options, files, 1);
   }
 
+  ImportOptions options;
   DatasetFixture dataset;
   StageFiles files = {{"dataset", folder_ / "small"}, {"output", folder_ / "sequence.json"}};
 };
 
 TEST_F(RunImportTest, WritesTheSequenceAndSaysHowMuchIsUsed) {
-  ImportOptions options;
   options.min_observations = 4;
-  EXPECT_THAT(PrintedBy([&] { Run(options); }).output,
+  EXPECT_THAT(PrintedBy([&] { Run(); }).output,
               testing::EndsWith("small: 4 frames, 2 objects, 4 detections used, 3 detections "
                                 "rejected: too_few_observations 3\n"));
   const Sequence sequence = ReadSequence(files.at("output"));
@@ -90,9 +90,8 @@ TEST_F(RunImportTest, OtherProgramsHaveAFileOfThatNameAsWell) {
 }
 
 TEST_F(RunImportTest, ArtefactNamesSettingsAndTheFilesThatWereRead) {
-  ImportOptions options;
   options.border_px = 12.5;
-  Run(options);
+  Run();
   const auto header = ReadArtefact(files.at("output"), "sequence").at("artefact");
   EXPECT_EQ(header.at("settings").at("border_px"), 12.5);
   EXPECT_EQ(header.at("settings").at("camera_planes"), "groundtruth");

@@ -80,11 +80,9 @@ TEST_F(RunLearnPriorsTest, TheTableItWritesIsABaseThatStaysAsItIs) {
   const std::string first = FileBytes(files_.at("output"));
   files_["base"] = folder_ / "base.json";
   std::filesystem::rename(files_.at("output"), files_.at("base"));
-  LearnPriorsOptions keep;
-  keep.base_rows = BaseRows::kKeep;
   files_.erase("furniture");
   files_.erase("furniture_labels");
-  RunLearnPriors(keep, files_, 1);
+  RunLearnPriors({.base_rows = BaseRows::kKeep}, files_, 1);
   const auto labels = [](const std::string& text) {
     return nlohmann::json::parse(text).at("labels");
   };

@@ -28,15 +28,13 @@ class RunTrackTest : public FolderTest {
     sequence_.name = "wall";
     sequence_.camera = {320, 240, kFocalPx, kFocalPx, 159.5, 119.5};
     for (int i = 0; i < kImages; ++i) {
-      Frame frame;
-      frame.id = 5 * i;
-      frame.timestamp = 0.1 * i;
-      frame.image = "rgb/" + std::to_string(i) + ".png";
-      frame.world_from_camera.translation.x() = i * kShiftPx * kDepthM / kFocalPx;
-      sequence_.frames.push_back(frame);
+      const std::string name = "rgb/" + std::to_string(i) + ".png";
+      const Eigen::Vector3d place(i * kShiftPx * kDepthM / kFocalPx, 0.0, 0.0);
+      sequence_.frames.push_back(
+          {5 * i, 0.1 * i, name, {Eigen::Quaterniond::Identity(), place}, {}});
       cv::Mat soft;
       cv::GaussianBlur(DrawnView(i * kShiftPx), soft, {}, 1.0);
-      Write(frame.image, EncodedImage(".png", soft));
+      Write(name, EncodedImage(".png", soft));
     }
   }
 

@@ -10,6 +10,7 @@
 
 #include "evaluation/map_quality.h"
 #include "geometry/angles.h"
+#include "support/lists.h"
 #include "support/random.h"
 
 namespace soslam {
@@ -121,10 +122,9 @@ class MapQualityTest : public testing::Test {
 
   MapQuality Evaluate(AlignmentChoice alignment = AlignmentChoice::kAuto) {
     std::ranges::stable_sort(sequence_.detections, {}, &Detection::frame_index);
-    std::vector<Rigid3d> poses;
-    for (const Frame& frame : sequence_.frames) poses.push_back(frame.world_from_camera);
-    return EvaluateMapQuality(sequence_, estimates_, poses, {sequence_.planes[0].plane_in_world},
-                              alignment)
+    return EvaluateMapQuality(sequence_, estimates_,
+                              Fields(sequence_.frames, &Frame::world_from_camera),
+                              {sequence_.planes[0].plane_in_world}, alignment)
         .value();
   }
   const TrueObjectRow& RowOf(const MapQuality& quality, int truth) const {
