@@ -193,7 +193,8 @@ TEST_F(ImportTest, TheReasonOfEachRejectionIsCounted) {
     EXPECT_EQ(sequence.detections.size(), 6u);
   }
   dataset = plain;
-  dataset.Replace("detections.csv", first_row, "0,1,cup,0.3,29.5,29.5,609.5,449.5");  // by 30 px
+  dataset.Replace("detections.csv", first_row,
+                  "0,1,cup,0.3,29.5,29.5,609.5,449.5");  // exactly 30 px
   const Sequence sequence = Import();
   EXPECT_TRUE(sequence.rejected_detections.empty());
   EXPECT_EQ(sequence.detections.size(), 7u);

@@ -25,6 +25,8 @@ namespace fs = std::filesystem;
 // The stage on a sequence of cuboids, and a map that has all but the last of them.
 class RunExportTest : public FolderTest {
  protected:
+  using Outputs = std::vector<std::pair<std::string, std::string>>;  // argument and file
+
   RunExportTest() {
     for (size_t i = 0; i < sequence_.objects.size(); ++i) {
       map_.objects.push_back({static_cast<int>(i), 5, {}, {}, "no_start"});
@@ -43,8 +45,7 @@ class RunExportTest : public FolderTest {
   fs::path File(const std::string& name) const { return folder_ / name; }
 
   // With the sequence, these further inputs, and the outputs of these arguments.
-  void Run(const std::vector<std::string>& inputs,
-           const std::vector<std::pair<std::string, std::string>>& outputs) const {
+  void Run(const std::vector<std::string>& inputs, const Outputs& outputs) const {
     StageFiles files = {{"sequence", File("sequence.json")}};
     for (const std::string& input : inputs) files[input] = File(input + ".json");
     for (const auto& [argument, name] : outputs) files[argument] = File(name);
@@ -52,8 +53,7 @@ class RunExportTest : public FolderTest {
   }
   // Expects that Run refuses, saying these words.
   template <typename Error>
-  void ExpectRefused(const std::vector<std::string>& inputs,
-                     const std::vector<std::pair<std::string, std::string>>& outputs,
+  void ExpectRefused(const std::vector<std::string>& inputs, const Outputs& outputs,
                      const std::vector<std::string>& words) const {
     ExpectError<Error>([&] { Run(inputs, outputs); }, words);
   }
@@ -62,9 +62,8 @@ class RunExportTest : public FolderTest {
         std::distance(fs::directory_iterator(folder_.path()), fs::directory_iterator()));
   }
 
-  const std::vector<std::pair<std::string, std::string>> kAll = {
-      {"trajectory", "t.txt"}, {"ply", "m.ply"},           {"gltf", "m.glb"},
-      {"coco", "c.json"},      {"coco_dataset", "d.json"}, {"csv", "l.csv"}};
+  const Outputs kAll = {{"trajectory", "t.txt"}, {"ply", "m.ply"},           {"gltf", "m.glb"},
+                        {"coco", "c.json"},      {"coco_dataset", "d.json"}, {"csv", "l.csv"}};
   ExportOptions options_;
   Sequence sequence_ = CuboidSequence(4, 9);
   MapEstimate map_ = EmptyMap(sequence_);

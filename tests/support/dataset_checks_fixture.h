@@ -188,7 +188,7 @@ class DatasetChecksTest : public ImportedFolderTest {
     for (const std::string& word : words) has_all.push_back(testing::HasSubstr(word));
     EXPECT_THAT(Warnings(), testing::Contains(testing::AllOfArray(has_all)));
   }
-  // Expects a refusal with these words, and without others.
+  // Expects a refusal with these words, and without the other one.
   void ExpectRefusedWithout(const std::string& other, const std::vector<std::string>& words) {
     try {
       Import();
