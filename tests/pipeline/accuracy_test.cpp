@@ -67,10 +67,9 @@ TEST(AccuracyTest, TablesOfRoomAStayWhereTheyAre) {
   const json expected = ParseJsonFile(SOSLAM_SOURCE_DIR "/tests/pipeline/expected/room_a.json");
   const TemporaryFolder folder;
   const auto build = std::filesystem::path(SOSLAM_BINARY_DIR).parent_path();
-  const CommandResult run =
+  ExpectSuccess(
       RunMake({"-C", SOSLAM_SOURCE_DIR, "run-built", "BUILD=" + build.string(), "DATASET=room_a",
-               "DATA_ROOT=data", "RESULTS=" + folder.path().string(), "VARIANT=all"});
-  ASSERT_EQ(run.exit_code, 0) << run.errors;
+               "DATA_ROOT=data", "RESULTS=" + folder.path().string(), "VARIANT=all"}));
   for (const auto& [variant, cells] : expected.items()) {
     const json found = Cells(folder / "room_a" / variant);
     SCOPED_TRACE(fmt::format("{}: {}", variant, found.dump()));

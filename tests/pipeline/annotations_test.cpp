@@ -43,10 +43,8 @@ TEST(AnnotationsTest, AllOfFr2DeskHasTheFilesOfItsImages) {
 class PrepareTest : public testing::Test {
  protected:
   void Prepare(const std::string& name, const fs::path& own) const {
-    const CommandResult prepared =
-        RunCommand({"env", "-C", folder_.path().string(), "bash", "-euo", "pipefail",
-                    (kAnnotations / name / "prepare.sh").string(), own.string()});
-    EXPECT_EQ(prepared.exit_code, 0) << prepared.errors;
+    ExpectSuccess(RunCommand({"env", "-C", folder_.path().string(), "bash", "-euo", "pipefail",
+                              (kAnnotations / name / "prepare.sh").string(), own.string()}));
   }
   void Write(const std::string& name, const std::string& bytes) const {
     fs::create_directories((folder_ / name).parent_path());

@@ -5,18 +5,83 @@
 #include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <set>
 #include <utility>
 
+#include "support/saved_folder.h"
 #include "support/small_pipeline.h"
-#include "support/stage_chain.h"
 
 namespace soslam {
 namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+using testing::AllOf;
 using testing::HasSubstr;
+
+// Runs stages one by one, each on what those before it wrote into folder "chain".
+class StageChain {
+ public:
+  inline static const std::vector<std::string> kStages = {"import", "edges", "initialise", "refine",
+                                                          "optimise"};
+
+  StageChain() { fs::create_directory(pipeline_.Folder() / "chain"); }
+
+  const SmallPipeline& pipeline() const { return pipeline_; }
+  fs::path Dataset(const std::string& file) const { return pipeline_.Dataset() / file; }
+  fs::path Artefact(const std::string& file) const { return pipeline_.Folder() / "chain" / file; }
+  static std::string OutputOf(const std::string& stage) {
+    static const std::map<std::string, std::string> outputs = {{"import", "sequence.json"},
+                                                               {"edges", "edges.h5"},
+                                                               {"initialise", "initial.json"},
+                                                               {"refine", "refined.json"},
+                                                               {"optimise", "map.json"}};
+    return outputs.at(stage);
+  }
+
+  CommandResult Run(const std::string& stage) const {
+    const auto artefact = [this](const std::string& file) { return Artefact(file).string(); };
+    std::vector<std::string> words = {
+        StageProgram(stage), "--quiet", "--threads", "2", "--output", artefact(OutputOf(stage))};
+    const auto add = [&](const std::string& argument, const std::string& path) {
+      words.insert(words.end(), {"--" + argument, path});
+    };
+    if (stage == "import" || stage == "edges") add("dataset", pipeline_.Dataset().string());
+    if (stage != "import") add("sequence", artefact("sequence.json"));
+    if (stage == "initialise" || stage == "refine" || stage == "optimise") {
+      add("table", pipeline_.SemanticTable().string());
+    }
+    if (stage == "refine") {
+      add("initial", artefact("initial.json"));
+      add("edges", artefact("edges.h5"));
+      add("curves", artefact("symmetry.h5"));
+    }
+    if (stage == "optimise") add("landmarks", artefact("refined.json"));
+    if (fs::exists(Artefact("settings.json"))) add("settings", artefact("settings.json"));
+    return RunCommand(words);
+  }
+
+  // A chain of which all stages ran, once for all tests that ask for it. Each finds it as they left
+  // it.
+  static const StageChain& Finished() {
+    static const StageChain chain;
+    static const SavedFolder saved = [] {
+      for (const std::string& stage : kStages) ExpectSuccess(chain.Run(stage));
+      return SavedFolder(chain.pipeline().Folder());
+    }();
+    saved.Restore();
+    return chain;
+  }
+
+  // Runs all stages before this one; they have to succeed.
+  void RunUpTo(const std::string& stage) const {
+    for (auto earlier = kStages.begin(); *earlier != stage; ++earlier) ExpectSuccess(Run(*earlier));
+  }
+
+ private:
+  SmallPipeline pipeline_;
+};
 
 // Makes an input of the next stage bad.
 using Spoil = std::function<void(const StageChain&)>;
@@ -186,9 +251,6 @@ const std::vector<RefusedInput> kRefusedInputs = {
             {"detections.csv", "cannot be read"}),
     Refused("LinkToItself", "import", InDataset("camera.json", LinkToItself),
             {"camera.json is missing"}),
-    Refused("NestedArtefact", "initialise",
-            InArtefact("sequence.json", Content(std::string(1000000, '['))),
-            {"sequence.json", "more than 100"}),
     Refused("ZeroByteInLabel", "import",
             InDataset("objects.json", Text("\"stool\"", "\"sto\\u0000ol\"")),
             {"objects.json", "zero byte"}),
@@ -198,13 +260,8 @@ const std::vector<RefusedInput> kRefusedInputs = {
     Refused("CameraBeyondMemory", "edges",
             InArtefact("sequence.json", Text("\"width\": 480", "\"width\": 2000000000")),
             {"sequence.json", "2000000000 x 360"}),
-    Refused("NameLeadsOut", "import",
-            InDataset("rgb.txt", Text("rgb/000001.png", "../small/rgb/../../secret.png")),
-            {"rgb.txt", "secret.png", "outside"}),
     Refused("LinkLeadsOut", "import", MovedOut("rgb/000001.png"),
             {"rgb.txt", "rgb/000001.png", "--allow_outside_paths"}),
-    Refused("FolderLeadsOut", "edges", MovedOut("rgb"),
-            {"sequence.json", "rgb/000000.png", "--allow_outside_paths"}),
     Refused("NameInSequenceLeadsOut", "edges",
             InArtefact("sequence.json", Text("rgb/000001.png", "../secret.png")),
             {"sequence.json", "../secret.png", "outside"})};
@@ -214,13 +271,12 @@ INSTANTIATE_TEST_SUITE_P(Stages, RefusedInputTest, testing::ValuesIn(kRefusedInp
 
 TEST(UnusualInputTest, ImagesElsewhereAreReadWhenTheUserSaysSo) {
   const StageChain chain;
-  ASSERT_NO_FATAL_FAILURE(chain.RunUpTo("edges"));
+  chain.RunUpTo("edges");
   MovedOut("rgb")(chain);
-  const CommandResult result = RunCommand(
-      {StageProgram("edges"), "--quiet", "--allow_outside_paths", "--dataset",
-       chain.pipeline().Dataset().string(), "--sequence", chain.Artefact("sequence.json").string(),
-       "--output", chain.Artefact("edges.h5").string()});
-  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  ExpectSuccess(RunCommand({StageProgram("edges"), "--quiet", "--allow_outside_paths", "--dataset",
+                            chain.pipeline().Dataset().string(), "--sequence",
+                            chain.Artefact("sequence.json").string(), "--output",
+                            chain.Artefact("edges.h5").string()}));
 }
 
 TEST(UnusualInputTest, WhatCannotBeInitialisedIsCountedWithItsReason) {
@@ -230,9 +286,8 @@ TEST(UnusualInputTest, WhatCannotBeInitialisedIsCountedWithItsReason) {
     SCOPED_TRACE(reason);
     const StageChain& chain = StageChain::Finished();
     spoil(chain);
-    ASSERT_NO_FATAL_FAILURE(chain.RunUpTo("initialise"));
-    const CommandResult result = chain.Run("initialise");
-    ASSERT_EQ(result.exit_code, 0) << result.errors;
+    chain.RunUpTo("initialise");
+    const CommandResult result = ExpectExit(0, chain.Run("initialise"));
     EXPECT_LE(std::ranges::count(result.errors, '\n'), 1) << result.errors;
     const json landmarks = json::parse(FileBytes(chain.Artefact("initial.json")));
     EXPECT_EQ(landmarks.at("failures").value(reason, 0), SmallPipeline::kFrames);
@@ -242,20 +297,17 @@ TEST(UnusualInputTest, WhatCannotBeInitialisedIsCountedWithItsReason) {
 TEST(UnusableInputTest, NoLabelInTheTable) {
   const StageChain& chain = StageChain::Finished();
   TableOf({"sofa"})(chain);
-  const CommandResult result = chain.Run("initialise");
-  EXPECT_EQ(result.exit_code, 4);
-  EXPECT_THAT(result.errors, HasSubstr("no_ratio_for_label 12"));
+  EXPECT_THAT(ExpectExit(4, chain.Run("initialise")).errors, HasSubstr("no_ratio_for_label 12"));
 }
 
 TEST(UnknownSettingTest, IsRefusedByEveryStage) {
   const StageChain& chain = StageChain::Finished();
   WriteBytes(chain.Artefact("settings.json"), R"({"colour": "red"})");
   for (const std::string& stage : StageChain::kStages) {
-    const CommandResult refused = chain.Run(stage);
-    EXPECT_EQ(refused.exit_code, 2) << stage;
-    EXPECT_THAT(refused.errors, HasSubstr("settings.json"));
-    EXPECT_THAT(refused.errors, HasSubstr("colour"));
-    EXPECT_EQ(std::ranges::count(refused.errors, '\n'), 1) << refused.errors;
+    SCOPED_TRACE(stage);
+    const std::string errors = ExpectExit(2, chain.Run(stage)).errors;
+    EXPECT_THAT(errors, AllOf(HasSubstr("settings.json"), HasSubstr("colour")));
+    EXPECT_EQ(std::ranges::count(errors, '\n'), 1) << errors;
   }
 }
 

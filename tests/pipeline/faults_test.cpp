@@ -46,9 +46,8 @@ class SlowFaultsTest : public testing::Test {
   // What a run that nothing disturbs leaves behind, by path; removes it again.
   std::map<std::string, std::string> Undisturbed() {
     const auto begin = std::chrono::steady_clock::now();
-    const CommandResult run = Run();
+    ExpectSuccess(Run());
     duration_ = std::chrono::steady_clock::now() - begin;
-    EXPECT_EQ(run.exit_code, 0) << run.output << run.errors;
     auto artefacts = Artefacts();
     EXPECT_EQ(artefacts.count("OursST-unannotated/metrics.json"), 1u);
     fs::remove_all(pipeline_.Results());
@@ -67,8 +66,7 @@ class SlowFaultsTest : public testing::Test {
     }
   }
   void ExpectThatARunGives(const std::map<std::string, std::string>& undisturbed) const {
-    const CommandResult run = Run();
-    EXPECT_EQ(run.exit_code, 0) << run.output << run.errors;
+    ExpectSuccess(Run());
     EXPECT_EQ(Artefacts(), undisturbed);
     for (const auto& entry : fs::recursive_directory_iterator(pipeline_.Results())) {
       EXPECT_NE(entry.path().extension(), ".tmp") << entry.path();
@@ -94,11 +92,7 @@ TEST_F(SlowFaultsTest, KilledAtAnyMoment) {
     SCOPED_TRACE(i);
     BackgroundCommand run(Words());
     std::this_thread::sleep_for(duration_ * std::uniform_real_distribution<double>(0, 1)(random));
-    if (i % 2 == 0) {
-      run.KillAll();
-    } else {
-      run.KillFirst();
-    }
+    i % 2 == 0 ? run.KillAll() : run.KillFirst();
     run.Wait();
     ExpectOnlyPartsOf(undisturbed);
     ExpectThatARunGives(undisturbed);
@@ -112,11 +106,8 @@ TEST_F(SlowFaultsTest, TwoRunsAtOnce) {
   BackgroundCommand other(Words());
   int stages = 0;  // that ran, in both
   for (BackgroundCommand* run : {&one, &other}) {
-    const CommandResult result = run->Wait();
-    EXPECT_EQ(result.exit_code, 0) << result.output << result.errors;
-    for (size_t at = 0; (at = result.output.find("[small] ", at)) != std::string::npos; ++at) {
-      ++stages;
-    }
+    const std::string output = ExpectSuccess(run->Wait());
+    for (size_t at = 0; (at = output.find("[small] ", at)) != std::string::npos; ++at) ++stages;
   }
   EXPECT_EQ(stages, std::distance(fs::directory_iterator(pipeline_.Results() / "shared"), {}) - 2)
       << "each stage once: all folders of shared, without the two lists of files";
@@ -126,7 +117,7 @@ TEST_F(SlowFaultsTest, TwoRunsAtOnce) {
 
 // All files are an hour newer than the current time.
 TEST_F(SlowFaultsTest, ClockSetBack) {
-  EXPECT_EQ(Run().exit_code, 0);
+  ExpectSuccess(Run());
   for (const auto& entry : fs::recursive_directory_iterator(pipeline_.Folder())) {
     if (!entry.is_regular_file() || entry.is_symlink()) continue;
     fs::last_write_time(entry.path(), entry.last_write_time() + std::chrono::hours(1));
@@ -135,7 +126,7 @@ TEST_F(SlowFaultsTest, ClockSetBack) {
   nlohmann::json changed = nlohmann::json::parse(FileBytes(camera));
   changed["fx"] = 410.0;
   WriteBytes(camera, changed.dump());
-  EXPECT_EQ(Run().exit_code, 0);
+  ExpectSuccess(Run());
   const auto after_change = Artefacts();
   fs::remove_all(pipeline_.Results());
   ExpectThatARunGives(after_change);
@@ -173,7 +164,7 @@ TEST_F(SlowFaultyDiskTest, FullDisk) {
 
 TEST_F(SlowFaultyDiskTest, ReadOnlyDisk) {
   if (!Mount(0, "size=100m")) GTEST_SKIP() << "needs root, to mount a disk";
-  EXPECT_EQ(Run().exit_code, 0);
+  ExpectSuccess(Run());
   const auto before = Artefacts();
   ASSERT_TRUE(Mount(MS_REMOUNT | MS_RDONLY, ""));
   fs::remove(pipeline_.Dataset() / "objects.json");

@@ -40,8 +40,7 @@ class FetchTest : public testing::Test {
       noise_ += static_cast<char>((random = random * 1664525U + 1013904223U) >> 24U);
     }
     WriteBytes(folder_ / "published/top/rgb/noise.png", noise_);
-    Run({"tar", "-C", (folder_ / "published").string(), "-czf", (folder_ / "desk.tgz").string(),
-         "top"});
+    Pack();
     archive_ = FileBytes(folder_ / "desk.tgz");
     server_.Give("/desk.tgz", archive_);
     server_.Give("/poses.csv", "0,1,2\n");
@@ -57,7 +56,7 @@ class FetchTest : public testing::Test {
 
   void SetUp() override {
     for (const char* program : {"curl", "bsdtar"}) {
-      if (Run({"which", program}).exit_code != 0) GTEST_SKIP() << "there is no " << program;
+      if (RunCommand({"which", program}).exit_code != 0) GTEST_SKIP() << "there is no " << program;
     }
   }
 
@@ -69,19 +68,24 @@ class FetchTest : public testing::Test {
                            "desk\thttp://nowhere.invalid/poses.csv\t-\t-\t-\tposes.csv\tMIT\n",
                            bytes, sum));
   }
-  static CommandResult Run(const std::vector<std::string>& words) { return RunCommand(words); }
+  // The published files as they are now, as an archive.
+  void Pack() const {
+    ExpectSuccess(RunCommand({"tar", "-C", (folder_ / "published").string(), "-czf",
+                              (folder_ / "desk.tgz").string(), "top"}));
+  }
   // From the server, unless a setting says otherwise.
   CommandResult Fetch(const std::string& setting = "WITHOUT=",
                       const std::string& name = "desk") const {
-    return Run({"env", "MIRROR=" + server_.Address(), setting,
-                SOSLAM_SOURCE_DIR "/pipelines/fetch.sh", (folder_ / "downloads.tsv").string(),
-                (folder_ / "own").string(), (folder_ / "data").string(), name});
+    return RunCommand({"env", "MIRROR=" + server_.Address(), setting,
+                       SOSLAM_SOURCE_DIR "/pipelines/fetch.sh",
+                       (folder_ / "downloads.tsv").string(), (folder_ / "own").string(),
+                       (folder_ / "data").string(), name});
   }
   fs::path Target() const { return folder_ / "data/desk"; }
   fs::path Part() const { return folder_ / "data/.downloads/desk/desk.tgz.part"; }
 
   void ExpectWhole(const CommandResult& fetched) const {
-    EXPECT_EQ(fetched.exit_code, 0) << fetched.errors;
+    ExpectSuccess(fetched);
     std::vector<std::string> names;
     for (const auto& entry : fs::recursive_directory_iterator(Target())) {
       if (entry.is_regular_file()) names.push_back(entry.path().lexically_relative(Target()));
@@ -94,7 +98,7 @@ class FetchTest : public testing::Test {
   }
   void ExpectFailed(const CommandResult& fetched, int exit_code,
                     const std::vector<std::string>& words) const {
-    EXPECT_EQ(fetched.exit_code, exit_code) << fetched.output << fetched.errors;
+    ExpectExit(exit_code, fetched);
     for (const std::string& word : words) EXPECT_THAT(fetched.errors, HasSubstr(word));
     EXPECT_FALSE(fs::exists(Target()));
   }
@@ -115,8 +119,7 @@ TEST_F(FetchTest, FromAServer) {
 
 TEST_F(FetchTest, FilesThatTheArchiveHasReadOnlyAreTheUsers) {
   fs::permissions(folder_ / "published/top/rgb/1.png", fs::perms::owner_read);
-  RunCommand({"tar", "-C", (folder_ / "published").string(), "-czf",
-              (folder_ / "desk.tgz").string(), "top"});
+  Pack();
   WriteBytes(folder_ / "poses.csv", "0,1,2\n");
   WriteTable("-", "-");
   ExpectWhole(Fetch("MIRROR=file://" + folder_.path().string()));
@@ -125,19 +128,17 @@ TEST_F(FetchTest, FilesThatTheArchiveHasReadOnlyAreTheUsers) {
 }
 
 TEST_F(FetchTest, ByMake) {
-  const CommandResult made = RunMake(
+  ExpectWhole(RunMake(
       {"-C", SOSLAM_SOURCE_DIR, "data", "DATASET=desk", "MIRROR=" + server_.Address(),
        "DOWNLOADS=" + (folder_ / "downloads.tsv").string(),
-       "ANNOTATIONS=" + (folder_ / "own").string(), "DATA_ROOT=" + (folder_ / "data").string()});
-  ExpectWhole(made);
+       "ANNOTATIONS=" + (folder_ / "own").string(), "DATA_ROOT=" + (folder_ / "data").string()}));
 }
 
 TEST_F(FetchTest, OfANetworkByMakeOnlyThePublishedOne) {
   server_.Give("/yolox_nano.onnx", std::string(3659407, 'x'));
   const CommandResult made =
-      RunMake({"-C", SOSLAM_SOURCE_DIR, "network", "MIRROR=" + server_.Address(),
-               "NETWORKS=" + (folder_ / "networks").string()});
-  EXPECT_EQ(made.exit_code, 2);
+      ExpectExit(2, RunMake({"-C", SOSLAM_SOURCE_DIR, "network", "MIRROR=" + server_.Address(),
+                             "NETWORKS=" + (folder_ / "networks").string()}));
   EXPECT_THAT(made.output, HasSubstr("Apache-2.0"));
   EXPECT_THAT(made.errors, HasSubstr("yolox_nano.onnx: found 3659407 bytes with SHA-256"));
   EXPECT_FALSE(fs::exists(folder_ / "networks/yolox_nano"));
@@ -147,14 +148,13 @@ TEST_F(FetchTest, WhatIsWholeIsNotFetchedAgainButItsAnnotationIsLaid) {
   Fetch();
   WriteBytes(folder_ / "own/desk/objects.json", "[1]");
   const size_t requests = server_.Requests().size();
-  EXPECT_EQ(Fetch().exit_code, 0);
+  ExpectSuccess(Fetch());
   EXPECT_EQ(server_.Requests().size(), requests);
   EXPECT_EQ(FileBytes(Target() / "objects.json"), "[1]");
 }
 
 TEST_F(FetchTest, AFolderCanBeLeftOut) {
-  const CommandResult fetched = Fetch("WITHOUT=rgb");
-  EXPECT_EQ(fetched.exit_code, 0) << fetched.errors;
+  ExpectSuccess(Fetch("WITHOUT=rgb"));
   EXPECT_TRUE(fs::exists(Target() / "poses.txt"));
   EXPECT_FALSE(fs::exists(Target() / "rgb"));
   EXPECT_THAT(server_.Requests(), ElementsAre("/poses.csv"));
@@ -169,7 +169,7 @@ TEST_F(FetchTest, WhatIsNotThereCannotBeLeftOut) {
 TEST_F(FetchTest, AnnotationThatTheUserChangedIsKeptBesideOurs) {
   Fetch();
   WriteBytes(Target() / "objects.json", "mine");
-  for (int run = 0; run < 2; ++run) EXPECT_EQ(Fetch().exit_code, 0);
+  for (int run = 0; run < 2; ++run) ExpectSuccess(Fetch());
   EXPECT_EQ(FileBytes(Target() / "objects.json"), "[]");
   EXPECT_EQ(FileBytes(Target() / "objects.json~"), "mine");
 }
@@ -273,9 +273,7 @@ TEST_F(FetchTest, NoNetwork) {
 TEST_F(FetchTest, AFolderOfSomebodyElseStaysAsItIs) {
   fs::create_directory(Target());
   WriteBytes(Target() / "objects.json", "mine");
-  const CommandResult fetched = Fetch();
-  EXPECT_EQ(fetched.exit_code, 2);
-  EXPECT_THAT(fetched.errors, HasSubstr("was not made by this command"));
+  EXPECT_THAT(ExpectExit(2, Fetch()).errors, HasSubstr("was not made by this command"));
   EXPECT_EQ(FileBytes(Target() / "objects.json"), "mine");
   EXPECT_THAT(server_.Requests(), IsEmpty());
 }

@@ -29,13 +29,8 @@ std::vector<std::string> AllStages() {
 
 class HelpTest : public testing::TestWithParam<std::string> {
  protected:
-  HelpTest() {
-    const CommandResult help = RunCommand({StageProgram(GetParam()), "--help"});
-    EXPECT_EQ(help.exit_code, 0) << help.errors;
-    help_ = help.output;
-    const CommandResult schema = RunCommand({StageProgram(GetParam()), "--settings_schema"});
-    EXPECT_EQ(schema.exit_code, 0) << schema.errors;
-    schema_ = json::parse(schema.output);
+  static std::string Said(const std::string& argument) {
+    return ExpectSuccess(RunCommand({StageProgram(GetParam()), argument}));
   }
 
   // Runs the stage with these settings on files that do not exist.
@@ -54,8 +49,8 @@ class HelpTest : public testing::TestWithParam<std::string> {
   }
 
   TemporaryFolder folder_;
-  std::string help_;
-  json schema_;
+  const std::string help_ = Said("--help");
+  const json schema_ = json::parse(Said("--settings_schema"));
 };
 
 TEST_P(HelpTest, SaysWhatTheStageIsForAndHowItEnds) {

@@ -50,8 +50,6 @@ bool Holds(const std::string& bytes, const std::string& secret) {
   });
 }
 
-void ExpectSuccess(const CommandResult& result) { ASSERT_EQ(result.exit_code, 0) << result.errors; }
-
 TEST(ImageMetadataTest, DoesNotReachArtefactsPagesOrExports) {
   const SmallPipeline pipeline(4);
   for (const auto& entry : fs::directory_iterator(pipeline.Dataset() / "rgb")) {

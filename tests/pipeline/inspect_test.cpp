@@ -32,11 +32,9 @@ class InspectProgramTest : public testing::Test {
 };
 
 TEST_F(InspectProgramTest, DiffTellsByItsExitCode) {
-  EXPECT_EQ(Run({"diff", one_, one_}).exit_code, 0);
-  const CommandResult different = Run({"diff", one_, two_});
-  EXPECT_EQ(different.exit_code, 1);
-  EXPECT_THAT(different.output, HasSubstr("/solver/iterations"));
-  EXPECT_EQ(Run({"diff", one_, two_, "--tolerance", "0.5"}).exit_code, 0);
+  ExpectSuccess(Run({"diff", one_, one_}));
+  EXPECT_THAT(ExpectExit(1, Run({"diff", one_, two_})).output, HasSubstr("/solver/iterations"));
+  ExpectSuccess(Run({"diff", one_, two_, "--tolerance", "0.5"}));
 }
 
 TEST_F(InspectProgramTest, ErrorsHaveTheirExitCodesAndOneLine) {
@@ -51,8 +49,7 @@ TEST_F(InspectProgramTest, ErrorsHaveTheirExitCodesAndOneLine) {
       {{readme}, 3},
       {{"diff", one_, readme}, 3}};
   for (const auto& [words, exit_code] : calls) {
-    const CommandResult result = Run(words);
-    EXPECT_EQ(result.exit_code, exit_code) << result.errors;
+    const CommandResult result = ExpectExit(exit_code, Run(words));
     EXPECT_THAT(result.errors, testing::StartsWith("soslam-inspect: error: "));
     EXPECT_EQ(std::ranges::count(result.errors, '\n'), 1);
     EXPECT_EQ(result.output, "");

@@ -98,6 +98,7 @@ class MapTest : public testing::Test {
   std::vector<std::string> WordsForPhotos() const {
     return Words({"IMAGES=" + photos_.string(), "DETECTIONS=" + detections_.string()});
   }
+  CommandResult MapPhotos() const { return RunCommand(WordsForPhotos()); }
   // What the steps made, without lists of files, which have their times.
   std::map<std::string, std::string> Made() const {
     auto made = SmallPipeline::Artefacts(maps_);
@@ -116,40 +117,34 @@ class MapTest : public testing::Test {
 class SlowMapTest : public MapTest {};
 
 TEST_F(SlowMapTest, EndsWithOneLineAndGoesOnWhereSomethingChanged) {
-  const CommandResult first = RunCommand(WordsForPhotos());
-  ASSERT_EQ(first.exit_code, 0) << first.output << first.errors;
+  const std::string first = ExpectSuccess(MapPhotos());
   const fs::path map = maps_ / "it_s_my_room_1";
-  EXPECT_THAT(first.output, ContainsRegex("\n3 objects, scale [+]- [0-9]+ %, page: "));
-  EXPECT_THAT(first.output, EndsWith((map / "results/it_s_my_room_1/report.html").string() + "\n"));
+  EXPECT_THAT(first, ContainsRegex("\n3 objects, scale [+]- [0-9]+ %, page: "));
+  EXPECT_THAT(first, EndsWith((map / "results/it_s_my_room_1/report.html").string() + "\n"));
   EXPECT_TRUE(fs::exists(map / "results/it_s_my_room_1/report.html"));
   const auto made = Made();
 
-  const CommandResult again = RunCommand(WordsForPhotos());
-  EXPECT_EQ(again.exit_code, 0) << again.errors;
-  EXPECT_THAT(again.output, testing::Not(HasSubstr("[it_s_my_room_1]"))) << "nothing to do";
+  EXPECT_THAT(ExpectSuccess(MapPhotos()), testing::Not(HasSubstr("[it_s_my_room_1]")))
+      << "nothing to do";
   EXPECT_EQ(Made(), made);
 
   // Photos that were moved are the same ones.
   const fs::path elsewhere = pipeline_.Folder() / "elsewhere";
   fs::create_directory(elsewhere);
   fs::rename(photos_, elsewhere / photos_.filename());
-  const CommandResult moved =
-      RunCommand(Words({"IMAGES=" + (elsewhere / photos_.filename()).string(),
-                        "DETECTIONS=" + detections_.string()}));
-  EXPECT_EQ(moved.exit_code, 0) << moved.errors;
+  ExpectSuccess(RunCommand(Words({"IMAGES=" + (elsewhere / photos_.filename()).string(),
+                                  "DETECTIONS=" + detections_.string()})));
   EXPECT_EQ(Made(), made);
   fs::rename(elsewhere / photos_.filename(), photos_);
-  EXPECT_EQ(RunCommand(WordsForPhotos()).exit_code, 0);
+  ExpectSuccess(MapPhotos());
 
   // Other boxes: images and poses stay.
   const std::string boxes = FileBytes(detections_);
   WriteBytes(detections_, boxes.substr(0, boxes.rfind("\n7,")) + "\n");
-  const CommandResult changed = RunCommand(WordsForPhotos());
-  EXPECT_EQ(changed.exit_code, 0) << changed.errors;
-  EXPECT_THAT(changed.output, HasSubstr("[it_s_my_room_1] associate"));
+  EXPECT_THAT(ExpectSuccess(MapPhotos()), HasSubstr("[it_s_my_room_1] associate"));
   EXPECT_NE(Made(), made);
   WriteBytes(detections_, boxes);
-  EXPECT_EQ(RunCommand(WordsForPhotos()).exit_code, 0);
+  ExpectSuccess(MapPhotos());
   EXPECT_EQ(Made(), made);
 }
 
@@ -157,9 +152,7 @@ TEST_F(SlowMapTest, TakesAFinishedModel) {
   fs::remove(programs_ / "colmap");
   std::vector<std::string> words = WordsForPhotos();
   words.insert(words.end(), {"MODEL=" + (programs_ / "models/0").string(), "NAME=room", "SCALE=1"});
-  const CommandResult run = RunCommand(words);
-  ASSERT_EQ(run.exit_code, 0) << run.output << run.errors;
-  EXPECT_THAT(run.output, HasSubstr("3 objects, scale +- 4 %"));
+  EXPECT_THAT(ExpectSuccess(RunCommand(words)), HasSubstr("3 objects, scale +- 4 %"));
   EXPECT_THAT(RunCommand(Words({"IMAGES=" + programs_.string(),
                                 "DETECTIONS=" + detections_.string(), "NAME=room"}))
                   .errors,
@@ -167,16 +160,14 @@ TEST_F(SlowMapTest, TakesAFinishedModel) {
 }
 
 TEST_F(SlowMapTest, OtherTargetsKnowAMapByItsName) {
-  ASSERT_EQ(RunCommand(WordsForPhotos()).exit_code, 0);
+  ExpectSuccess(MapPhotos());
   const auto made = Made();
   const auto make = [&](const std::vector<std::string>& settings) {
     std::vector<std::string> words = Words(settings);
     std::erase(words, "map");
     return RunCommand(words);
   };
-  const CommandResult doctor = make({"doctor", "NAME=it_s_my_room_1"});
-  EXPECT_EQ(doctor.exit_code, 0) << doctor.errors;
-  EXPECT_THAT(doctor.output, HasSubstr("it_s_my_room_1"));
+  EXPECT_THAT(ExpectSuccess(make({"doctor", "NAME=it_s_my_room_1"})), HasSubstr("it_s_my_room_1"));
   const std::string results = (maps_ / "it_s_my_room_1/results").string();
   EXPECT_THAT(make({"doctor", "DATASET=it_s_my_room_1", "RESULTS=" + results}).errors,
               HasSubstr("expected NAME=it_s_my_room_1"));
@@ -186,15 +177,14 @@ TEST_F(SlowMapTest, OtherTargetsKnowAMapByItsName) {
   EXPECT_THAT(make({"demo", "NAME=it_s_my_room_1"}).errors, HasSubstr("takes no NAME"));
   EXPECT_THAT(make({"clean", "NAME=it_s_my_room_1 2"}).errors, HasSubstr("expected one name"));
   EXPECT_EQ(Made(), made);
-  EXPECT_EQ(make({"verify", "NAME=it_s_my_room_1"}).exit_code, 0);
+  ExpectSuccess(make({"verify", "NAME=it_s_my_room_1"}));
 }
 
 TEST_F(MapTest, RefusesWhatIsMissing) {
   const auto expect_refused = [&](const std::vector<std::string>& settings,
                                   const std::string& words) {
-    const CommandResult run = RunCommand(Words(settings));
-    EXPECT_EQ(run.exit_code, 2);
-    EXPECT_THAT(run.errors, HasSubstr(words));
+    SCOPED_TRACE(words);
+    EXPECT_THAT(ExpectExit(2, RunCommand(Words(settings))).errors, HasSubstr(words));
     EXPECT_FALSE(fs::exists(maps_));
   };
   const std::string images = "IMAGES=" + photos_.string();
@@ -224,18 +214,16 @@ TEST_F(MapTest, GoesIntoTheFolderOfMapsByDefault) {
   std::vector<std::string> words =
       Words({"IMAGES=" + photos_.string(), "NETWORK=x", "VARIANT=OursS OursSTE", "-n"});
   std::erase(words, "MAPS=" + maps_.string());
-  const CommandResult run = RunCommand(words);
-  EXPECT_EQ(run.exit_code, 0) << run.errors;
-  EXPECT_THAT(run.output, AllOf(HasSubstr("MAP_ROOT=maps/"), HasSubstr("'OursS OursSTE'")));
+  EXPECT_THAT(ExpectSuccess(RunCommand(words)),
+              AllOf(HasSubstr("MAP_ROOT=maps/"), HasSubstr("'OursS OursSTE'")));
   std::erase(words, "VARIANT=OursS OursSTE");
   EXPECT_THAT(RunCommand(words).output, HasSubstr("MAP_VARIANT='OursSP'"));
 }
 
 TEST_F(SlowMapTest, KilledAnywhereItGoesOn) {
   const auto begin = std::chrono::steady_clock::now();
-  const CommandResult undisturbed = RunCommand(WordsForPhotos());
+  ExpectSuccess(MapPhotos());
   const std::chrono::duration<double> duration = std::chrono::steady_clock::now() - begin;
-  ASSERT_EQ(undisturbed.exit_code, 0) << undisturbed.output << undisturbed.errors;
   const auto made = Made();
   std::mt19937 random(1);
   for (int i = 0; i < 4; ++i) {
@@ -245,14 +233,9 @@ TEST_F(SlowMapTest, KilledAnywhereItGoesOn) {
     for (int kill = 0; kill < 2; ++kill) {
       BackgroundCommand& run = killed.emplace_back(WordsForPhotos());
       std::this_thread::sleep_for(duration * std::uniform_real_distribution<double>(0, 1)(random));
-      if (i % 2 == 0) {
-        run.KillAll();
-      } else {
-        run.KillFirst();
-      }
+      i % 2 == 0 ? run.KillAll() : run.KillFirst();
     }
-    const CommandResult last = RunCommand(WordsForPhotos());
-    EXPECT_EQ(last.exit_code, 0) << last.output << last.errors;
+    ExpectSuccess(MapPhotos());
     for (BackgroundCommand& run : killed) run.WaitForAll();
     EXPECT_EQ(Made(), made);
   }

@@ -29,10 +29,9 @@ class NamesTest : public testing::Test {
   void ExpectRefused(const std::string& goal, const std::string& setting,
                      const std::string& expected) const {
     SCOPED_TRACE(goal + " " + setting);
-    const CommandResult made = Make(goal, {setting});
-    EXPECT_EQ(made.exit_code, 2);
-    EXPECT_THAT(made.errors, HasSubstr(expected));
-    EXPECT_EQ(std::ranges::count(made.errors, '\n'), 1) << made.errors;
+    const std::string errors = ExpectExit(2, Make(goal, {setting})).errors;
+    EXPECT_THAT(errors, HasSubstr(expected));
+    EXPECT_EQ(std::ranges::count(errors, '\n'), 1) << errors;
     EXPECT_FALSE(fs::exists(Marker()));
     EXPECT_FALSE(fs::exists(pipeline_.Results()));
   }
@@ -56,7 +55,7 @@ TEST_F(NamesTest, OfTheCallerAreNeverCarriedOut) {
     ExpectRefused("data", name + "=$(shell " + touch + ")", "expected");
     ExpectRefused("data", name + "=a';" + touch + ";'", "expected");
   }
-  EXPECT_EQ(Make("run-built", {"VARIANT=SVD\n\t" + touch}).exit_code, 2);
+  ExpectExit(2, Make("run-built", {"VARIANT=SVD\n\t" + touch}));
   EXPECT_FALSE(fs::exists(Marker()));
 }
 
@@ -76,8 +75,7 @@ TEST_F(NamesTest, OfTheCallerAreNeitherSplitNorOptions) {
 TEST_F(NamesTest, ADatasetMayBeNamedByItsPath) {
   const std::string path = pipeline_.Dataset().string();
   for (const std::string& name : {path, path + "/", std::string("small/")}) {
-    const CommandResult made = Make("run-built", {"DATASET=" + name, "VARIANT=SVD"});
-    EXPECT_EQ(made.exit_code, 0) << made.errors;
+    ExpectSuccess(Make("run-built", {"DATASET=" + name, "VARIANT=SVD"}));
     EXPECT_TRUE(fs::exists(pipeline_.Results() / "SVD/metrics.json"));
   }
   fs::remove_all(pipeline_.Results());
@@ -94,14 +92,11 @@ TEST_F(NamesTest, OfImagesMayBeAnything) {
     list << 0.1 * static_cast<double>(i) << " " << names[i] << "\n";
   }
   list.close();
-  const CommandResult made = Make("run-built", {"VARIANT=OursPT"});
-  EXPECT_EQ(made.exit_code, 0) << made.output << made.errors;
+  ExpectSuccess(Make("run-built", {"VARIANT=OursPT"}));
   EXPECT_TRUE(fs::exists(pipeline_.Results() / "OursPT/metrics.json"));
   EXPECT_FALSE(fs::exists(SOSLAM_SOURCE_DIR "/marker"));
-  EXPECT_EQ(
-      RunCommand({StageProgram("pages"), "--results", pipeline_.Results().parent_path().string()})
-          .exit_code,
-      0);
+  ExpectSuccess(
+      RunCommand({StageProgram("pages"), "--results", pipeline_.Results().parent_path().string()}));
 }
 
 // Folders in results that came from others.
@@ -118,7 +113,7 @@ TEST_F(NamesTest, OfResultsMayBeAnything) {
   const fs::path two_words = results / "a kept";
   fs::create_directories(two_words);
   WriteBytes(two_words / "plan.mk", "");
-  EXPECT_EQ(Make("clean", {}).exit_code, 0);
+  ExpectSuccess(Make("clean", {}));
   EXPECT_FALSE(fs::exists(SOSLAM_SOURCE_DIR "/marker"));
   EXPECT_FALSE(fs::exists(two_words));
   EXPECT_FALSE(fs::exists(pipeline_.Results()));
@@ -151,16 +146,12 @@ class ForeignBuildTest : public testing::Test {
 
 TEST_F(ForeignBuildTest, HasToBeUpToDate) {
   if (!CanMount()) GTEST_SKIP() << "needs root, to mount a folder";
-  const CommandResult stale = Build();
-  EXPECT_EQ(stale.exit_code, 2);
-  EXPECT_THAT(stale.errors, HasSubstr("not up to date"));
-  EXPECT_THAT(stale.errors, HasSubstr("BUILD="));
+  EXPECT_THAT(ExpectExit(2, Build()).errors,
+              testing::AllOf(HasSubstr("not up to date"), HasSubstr("BUILD=")));
   EXPECT_FALSE(fs::exists(folder_ / "target"));
 
-  EXPECT_EQ(RunCommand({"ninja", "-C", folder_.path().string(), "target"}).exit_code, 0);
-  const CommandResult current = Build();
-  EXPECT_EQ(current.exit_code, 0) << current.errors;
-  EXPECT_EQ(current.errors, "");
+  ExpectSuccess(RunCommand({"ninja", "-C", folder_.path().string(), "target"}));
+  EXPECT_EQ(ExpectExit(0, Build()).errors, "");
 }
 
 }  // namespace

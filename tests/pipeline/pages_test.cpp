@@ -51,11 +51,9 @@ class PagesTest : public testing::Test {
   static std::filesystem::path Results() {
     static const SmallPipeline pipeline(kFrames);
     static const std::filesystem::path results = [] {
-      const CommandResult run = pipeline.Run("InitPT OursPT SVD");
-      EXPECT_EQ(run.exit_code, 0) << run.errors;
-      const CommandResult pages = RunCommand(
-          {StageProgram("pages"), "--results", (pipeline.Folder() / "results").string()});
-      EXPECT_EQ(pages.exit_code, 0) << pages.errors;
+      ExpectSuccess(pipeline.Run("InitPT OursPT SVD"));
+      ExpectSuccess(RunCommand(
+          {StageProgram("pages"), "--results", (pipeline.Folder() / "results").string()}));
       return pipeline.Folder() / "results";
     }();
     return results;
@@ -121,9 +119,8 @@ TEST_F(PagesTest, NeedNothingFromElsewhere) {
 TEST_F(PagesTest, HaveTheSameBytesAgain) {
   const std::filesystem::path page = Results() / "small/report.html";
   const std::string before = FileBytes(page);
-  const CommandResult again =
-      RunCommand({StageProgram("pages"), "--results", Results().string(), "--threads", "1"});
-  EXPECT_EQ(again.exit_code, 0) << again.errors;
+  ExpectSuccess(
+      RunCommand({StageProgram("pages"), "--results", Results().string(), "--threads", "1"}));
   EXPECT_EQ(FileBytes(page), before);
 }
 

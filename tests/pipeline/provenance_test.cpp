@@ -63,14 +63,10 @@ TEST_F(ProvenanceTest, RecordsNameEveryFileThatAStageRead) {
 }
 
 TEST_F(ProvenanceTest, VerifyFindsWhatChangedAndWhomItConcerns) {
-  const CommandResult well = Verify();
-  EXPECT_EQ(well.exit_code, 0) << well.output << well.errors;
-  EXPECT_THAT(well.output, ContainsRegex("small +\\| - +\\|"));
+  EXPECT_THAT(ExpectSuccess(Verify()), ContainsRegex("small +\\| - +\\|"));
 
   WriteBytes(RunOf("refine") / "symmetry.h5", "another");
-  const CommandResult artefact = Verify();
-  EXPECT_EQ(artefact.exit_code, 1);
-  EXPECT_THAT(artefact.output,
+  EXPECT_THAT(ExpectExit(1, Verify()).output,
               ContainsRegex("symmetry.h5: has changed since shared/refine-[0-9a-f]+ "
                             "wrote it \\(InitPT\\)\n"));
 }
@@ -86,9 +82,8 @@ TEST_F(ProvenanceTest, AFailedRunIsRecordedAndFound) {
   EXPECT_EQ(record.exit_code, 3);
   EXPECT_THAT(record.error, HasSubstr("000002.png"));
   EXPECT_TRUE(record.outputs.empty());
-  const CommandResult result = Verify();
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(result.output, ContainsRegex("edges-[0-9a-f]+: its last run failed: exit code 3"));
+  EXPECT_THAT(ExpectExit(1, Verify()).output,
+              ContainsRegex("edges-[0-9a-f]+: its last run failed: exit code 3"));
   EXPECT_THAT(Reproduce().output,
               AllOf(ContainsRegex("not rerun .*edges-[0-9a-f]+: it failed when it was recorded"),
                     ContainsRegex("not rerun .*refine-[0-9a-f]+: .*edges.h5, which it reads")));
@@ -100,9 +95,8 @@ TEST_F(ProvenanceTest, ACrashKeepsTheRecordOfTheRunBefore) {
   EXPECT_NE(pipeline_.Run(kVariants, {"BIN=" + pipeline_.ProgramsWithACrashIn("refine")}).exit_code,
             0);
   EXPECT_EQ(FileBytes(RunOf("refine") / "run.json"), record);
-  const CommandResult result = Verify();
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(result.output, ContainsRegex("refine-[0-9a-f]+: its last run failed: exit code 139"));
+  EXPECT_THAT(ExpectExit(1, Verify()).output,
+              ContainsRegex("refine-[0-9a-f]+: its last run failed: exit code 139"));
 }
 
 TEST_F(ProvenanceTest, ReproducesEveryByteAndLeavesTheResultsAlone) {
@@ -111,13 +105,12 @@ TEST_F(ProvenanceTest, ReproducesEveryByteAndLeavesTheResultsAlone) {
   settings["refine"]["yaw_step_deg"] = 5.0;
   pipeline_.WriteSettings(settings);
   const auto before = FilesBelow(pipeline_.Folder());
-  const CommandResult result = Reproduce();
-  EXPECT_EQ(result.exit_code, 0) << result.output << result.errors;
+  const std::string output = ExpectSuccess(Reproduce());
   for (const char* file : {"sequence.json", "edges.h5", "initial.json", "refined.json",
                            "symmetry.h5", "metrics.json"}) {
-    EXPECT_THAT(result.output, ContainsRegex("same +/[^\n]*" + std::string(file) + "\n"));
+    EXPECT_THAT(output, ContainsRegex("same +/[^\n]*" + std::string(file) + "\n"));
   }
-  EXPECT_THAT(result.output, AllOf(Not(HasSubstr("differs")), Not(HasSubstr("recorded with"))));
+  EXPECT_THAT(output, AllOf(Not(HasSubstr("differs")), Not(HasSubstr("recorded with"))));
   EXPECT_TRUE(FilesBelow(pipeline_.Folder()) == before);
 }
 
@@ -129,19 +122,16 @@ TEST_F(ProvenanceTest, ReproduceSaysWhereArtefactsDiffer) {
   nlohmann::json record = ParseJsonFile(RunOf("import") / "run.json");
   record["libraries"]["opencv"] = "1.0.0";
   WriteBytes(RunOf("import") / "run.json", record.dump());
-  const CommandResult result = Reproduce();
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(result.output, AllOf(ContainsRegex("differs +/[^\n]*initial.json: "
-                                                 "/observations/0/hypotheses/0/cost: 123 is "),
-                                   ContainsRegex("same +/[^\n]*refined.json\n"),
-                                   HasSubstr("recorded with opencv 1.0.0 is ")));
+  EXPECT_THAT(ExpectExit(1, Reproduce()).output,
+              AllOf(ContainsRegex("differs +/[^\n]*initial.json: "
+                                  "/observations/0/hypotheses/0/cost: 123 is "),
+                    ContainsRegex("same +/[^\n]*refined.json\n"),
+                    HasSubstr("recorded with opencv 1.0.0 is ")));
 }
 
 TEST_F(ProvenanceTest, WhatWasMadeFromOtherFilesIsNotRerun) {
   WriteBytes(pipeline_.Dataset() / "planes.json", "[]");
-  const CommandResult result = Reproduce();
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(result.output,
+  EXPECT_THAT(ExpectExit(1, Reproduce()).output,
               AllOf(ContainsRegex("not rerun .*import-[0-9a-f]+: .*planes.json has changed since"),
                     ContainsRegex("not rerun .*edges-[0-9a-f]+: .*sequence.json, which it reads"),
                     Not(HasSubstr("same  "))));
@@ -177,19 +167,16 @@ TEST_F(ProvenanceTest, NothingIsWrittenOutsideOfTheResults) {
     nlohmann::json changed = record;
     change(&changed);
     WriteBytes(file, changed.dump());
-    const CommandResult result = Reproduce();
-    EXPECT_EQ(result.exit_code, 1);
-    EXPECT_THAT(result.output, ContainsRegex("not rerun .*import-[0-9a-f]+: " + why));
+    EXPECT_THAT(ExpectExit(1, Reproduce()).output,
+                ContainsRegex("not rerun .*import-[0-9a-f]+: " + why));
     EXPECT_EQ(FileBytes(letter), "dear");
   }
 }
 
 // The project's Makefile, up to what would build the executables.
 TEST_F(ProvenanceTest, FrontDoor) {
-  const CommandResult planned = RunMake({"-n", "-C", SOSLAM_SOURCE_DIR, "verify", "reproduce",
-                                         "RESULTS=some", "DATA_ROOT=elsewhere"});
-  EXPECT_EQ(planned.exit_code, 0) << planned.errors;
-  EXPECT_THAT(planned.output,
+  EXPECT_THAT(ExpectSuccess(RunMake({"-n", "-C", SOSLAM_SOURCE_DIR, "verify", "reproduce",
+                                     "RESULTS=some", "DATA_ROOT=elsewhere"})),
               AllOf(HasSubstr("soslam-verify --results some --data_root elsewhere"),
                     ContainsRegex("soslam-reproduce --results some .*--data_root elsewhere")));
 }

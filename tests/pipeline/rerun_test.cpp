@@ -41,9 +41,7 @@ class RerunTest : public testing::Test {
     return run;
   }
   std::multiset<std::string> RunStages() const {
-    const CommandResult run = pipeline_.Run(kRerunVariants);
-    EXPECT_EQ(run.exit_code, 0) << run.errors;
-    return StagesIn(run.output);
+    return StagesIn(ExpectSuccess(pipeline_.Run(kRerunVariants)));
   }
   std::map<std::string, std::string> Artefacts() const {
     return SmallPipeline::Artefacts(pipeline_.Results());
@@ -59,9 +57,7 @@ TEST_F(RerunTest, TheFirstRunRunsEachStageOnce) {
 }
 
 TEST_F(RerunTest, NothingToDo) {
-  const CommandResult dry_run = pipeline_.Run(kRerunVariants, {"-n"});
-  EXPECT_EQ(dry_run.exit_code, 0) << dry_run.errors;
-  EXPECT_THAT(StagesIn(dry_run.output), IsEmpty());
+  EXPECT_THAT(StagesIn(ExpectSuccess(pipeline_.Run(kRerunVariants, {"-n"}))), IsEmpty());
   const auto before = Artefacts();
   EXPECT_THAT(RunStages(), IsEmpty());
   EXPECT_TRUE(Artefacts() == before);
@@ -125,7 +121,7 @@ TEST_F(LaunchTest, StartsEveryStageAndItsFailuresAreToldFromThoseOfStages) {
   EXPECT_EQ(FailureOf("edges"), "exit code 9 of LAUNCH or of a stage that was killed\n");
   EXPECT_TRUE(fs::exists(pipeline_.Results() / "InitP/metrics.json"));
 
-  EXPECT_EQ(pipeline_.Run(kRerunVariants).exit_code, 0);
+  ExpectSuccess(pipeline_.Run(kRerunVariants));
   const auto unlaunched = SmallPipeline::Artefacts(pipeline_.Results() / "InitP");
   WriteBytes(pipeline_.Dataset() / "objects.json", "[");
   EXPECT_NE(pipeline_.Run("InitP", {launch}).exit_code, 0);
@@ -139,9 +135,7 @@ TEST(FrontDoorTest, DryRunAndStatusFollowTheRun) {
   const SmallPipeline pipeline;
   const fs::path results = pipeline.Folder() / "results";
   const auto make = [&](const std::vector<std::string>& arguments) {
-    const CommandResult result = RunCommand(pipeline.WordsOfProject(arguments));
-    EXPECT_EQ(result.exit_code, 0) << result.errors;
-    return result.output;
+    return ExpectSuccess(RunCommand(pipeline.WordsOfProject(arguments)));
   };
 
   EXPECT_THAT(StagesIn(make({"-n", "run", "VARIANT=InitP"})),

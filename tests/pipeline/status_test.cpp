@@ -27,9 +27,7 @@ class StatusTest : public FinishedRunTest {
     return RunCommand(words);
   }
   std::string Status(const std::vector<std::string>& arguments = {}) const {
-    const CommandResult result = StatusResult(arguments);
-    EXPECT_EQ(result.exit_code, 0) << result.errors;
-    return result.output;
+    return ExpectSuccess(StatusResult(arguments));
   }
   std::string Explain(const std::string& stage, const std::string& variant) const {
     return Status({"--explain", stage, "--variants", variant});
@@ -57,7 +55,7 @@ TEST_F(StatusTest, FailureIsShownWithItsErrorUntilTheStageRuns) {
   EXPECT_THAT(status, ContainsRegex("InitPT +done +failed +done +stale +stale"));
   EXPECT_THAT(status, ContainsRegex("edges-[0-9a-f]+: its last run failed: exit code 3: .*000002"));
   WriteBytes(image, whole_image);
-  EXPECT_EQ(pipeline_.Run(kVariants).exit_code, 0);
+  ExpectSuccess(pipeline_.Run(kVariants));
   EXPECT_THAT(Status({"--variants", kVariants}),
               ContainsRegex("InitPT +done +done +done +done +done"));
 }
@@ -69,10 +67,7 @@ TEST_F(StatusTest, WhatBeganRunsAsLongAsTheLockIsHeld) {
   WriteBytes(stage / "done.begun", "");
   const fs::path results = pipeline_.Results().parent_path();
   const auto under_way = [&] {
-    const CommandResult result =
-        RunCommand({SOSLAM_SOURCE_DIR "/pipelines/under-way", results.string()});
-    EXPECT_EQ(result.exit_code, 0) << result.errors;
-    return result.output;
+    return ExpectSuccess(RunCommand({SOSLAM_SOURCE_DIR "/pipelines/under-way", results.string()}));
   };
   WriteBytes(results / ".small.lock", "");
   EXPECT_EQ(under_way(), "");
@@ -90,9 +85,8 @@ TEST_F(StatusTest, WhatBeganRunsAsLongAsTheLockIsHeld) {
 }
 
 TEST_F(StatusTest, UnknownStageIsRefused) {
-  const CommandResult result = StatusResult({"--explain", "paint"});
-  EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.errors, AllOf(HasSubstr("'paint'"), HasSubstr("initialise")));
+  EXPECT_THAT(ExpectExit(2, StatusResult({"--explain", "paint"})).errors,
+              AllOf(HasSubstr("'paint'"), HasSubstr("initialise")));
 }
 
 class DoctorTest : public FinishedRunTest {
@@ -111,18 +105,14 @@ class DoctorTest : public FinishedRunTest {
 };
 
 TEST_F(DoctorTest, FindsNothingWhereNothingIsWrong) {
-  const CommandResult result = Doctor();
-  EXPECT_EQ(result.exit_code, 0);
-  EXPECT_EQ(result.output,
+  EXPECT_EQ(ExpectSuccess(Doctor()),
             "small: 0 error(s), 0 warning(s) in 6 of 6 stage runs of 2 variant(s)\n");
 }
 
 TEST_F(DoctorTest, WarningsOfTheImportAreNoErrors) {
   ReplaceAll("detections.csv", ",1\\.0,", ",87.0,");
-  ASSERT_EQ(pipeline_.Run("InitP").exit_code, 0);
-  const CommandResult result = Doctor();
-  EXPECT_EQ(result.exit_code, 0);
-  EXPECT_THAT(result.output,
+  ExpectSuccess(pipeline_.Run("InitP"));
+  EXPECT_THAT(ExpectSuccess(Doctor()),
               AllOf(HasSubstr("warning: import (InitP InitPT): 12 of 12 scores"),
                     HasSubstr("likely cause  per cent"), HasSubstr("0 error(s), 1 warning(s)")));
 }
@@ -130,17 +120,14 @@ TEST_F(DoctorTest, WarningsOfTheImportAreNoErrors) {
 TEST_F(DoctorTest, AStageThatFailedIsAnError) {
   ReplaceAll("planes.json", "\\[0, 0, 1\\]", "[0, 0, -1]");
   EXPECT_NE(pipeline_.Run("InitP").exit_code, 0);
-  const CommandResult result = Doctor();
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(result.output, AllOf(HasSubstr("error: import (InitP InitPT): "),
-                                   HasSubstr("from below"), HasSubstr("1 error(s)")));
+  EXPECT_THAT(ExpectExit(1, Doctor()).output,
+              AllOf(HasSubstr("error: import (InitP InitPT): "), HasSubstr("from below"),
+                    HasSubstr("1 error(s)")));
 }
 
 TEST_F(DoctorTest, WithoutAPlanThereIsNothingToSay) {
   std::filesystem::remove(pipeline_.Results() / "plan.mk");
-  const CommandResult result = Doctor();
-  EXPECT_EQ(result.exit_code, 3);
-  EXPECT_THAT(result.errors, HasSubstr("nothing was planned yet"));
+  EXPECT_THAT(ExpectExit(3, Doctor()).errors, HasSubstr("nothing was planned yet"));
 }
 
 }  // namespace

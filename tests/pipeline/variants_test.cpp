@@ -29,8 +29,7 @@ json Metrics(const SmallPipeline& pipeline, const std::string& variant,
 
 TEST(VariantsTest, NoiseFreeEllipsoidsWithTheirTrueRatiosAreRecovered) {
   const SmallPipeline pipeline(kVariantsFrames);
-  const CommandResult run = pipeline.Run("SVD Init1-1 InitP InitPT Quadric OursP OursPT");
-  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  ExpectSuccess(pipeline.Run("SVD Init1-1 InitP InitPT Quadric OursP OursPT"));
 
   for (const std::string variant : {"InitP", "InitPT"}) {
     const json metrics = Metrics(pipeline, variant);
@@ -65,16 +64,10 @@ class BodiesOfAnyShapeTest : public testing::Test {
                                 {"position", {3.5, 1.05}}});
     const std::filesystem::path scene_file = pipeline_.Folder() / "shapes.json";
     WriteBytes(scene_file, scene.dump());
-    const CommandResult made =
-        RunCommand({StageProgram("synthesise"), "--scene", scene_file.string(), "--output",
-                    pipeline_.Dataset().string()});
-    EXPECT_EQ(made.exit_code, 0) << made.errors;
+    ExpectSuccess(RunCommand({StageProgram("synthesise"), "--scene", scene_file.string(),
+                              "--output", pipeline_.Dataset().string()}));
   }
 
-  void Run(const std::string& variants) const {
-    const CommandResult run = pipeline_.Run(variants);
-    ASSERT_EQ(run.exit_code, 0) << run.errors;
-  }
   double Metric(const std::string& variant, const char* place) const {
     return Metrics(pipeline_, variant, kFrames).at(json::json_pointer(place));
   }
@@ -93,7 +86,7 @@ class BodiesOfAnyShapeTest : public testing::Test {
 constexpr double kIouGain = 0.2;
 
 TEST_F(BodiesOfAnyShapeTest, ExactBoxesDetermineThem) {
-  ASSERT_NO_FATAL_FAILURE(Run("InitP OursP MultiView InitS OursS"));
+  ExpectSuccess(pipeline_.Run("InitP OursP MultiView InitS OursS"));
   for (const std::string variant : {"MultiView", "InitS", "OursS"}) {
     EXPECT_GE(MeanIou(variant), 0.999) << variant;
     EXPECT_LT(YawErrorDeg(variant), 0.1) << variant;
@@ -106,7 +99,7 @@ TEST_F(BodiesOfAnyShapeTest, ExactBoxesDetermineThem) {
 // The edges of the painted texture draw the alignment of single frames away: less exact than boxes
 // without noise alone, but all views together are not misled.
 TEST_F(BodiesOfAnyShapeTest, ImagesKeepThem) {
-  ASSERT_NO_FATAL_FAILURE(Run("InitP OursP InitSTE OursSTE"));
+  ExpectSuccess(pipeline_.Run("InitP OursP InitSTE OursSTE"));
   EXPECT_GE(MeanIou("InitSTE"), 0.85);
   EXPECT_GT(MeanIou("InitSTE"), MeanIou("InitP") + kIouGain);
   EXPECT_LT(YawErrorDeg("InitSTE"), YawErrorDeg("InitP"));
@@ -143,8 +136,7 @@ TEST(VariantsTest, ResultsDoNotDependOnThreadsOrFolders) {
   for (const SmallPipeline* pipeline : {&one_thread, &two_threads}) {
     pipeline->WriteSettings({{"refine", {{"yaw_step_deg", 15}, {"yaw_grid_deg", 30}}},  // for speed
                              {"optimise", {{"max_iterations", 3}}}});
-    const CommandResult run = pipeline->Run("InitPT OursPT OursSTE");  // all stages' methods
-    ASSERT_EQ(run.exit_code, 0) << run.errors;
+    ExpectSuccess(pipeline->Run("InitPT OursPT OursSTE"));  // all stages' methods
   }
   for (const char* place : {"data", "results"}) {
     const auto expected = SmallPipeline::Artefacts(one_thread.Folder() / place);

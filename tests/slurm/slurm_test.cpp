@@ -130,14 +130,11 @@ class SlowSlurmTest : public testing::Test {
   }
   void Do(const std::string& goal, const std::string& results,
           const std::vector<std::string>& more = {}) const {
-    const CommandResult made = Make(goal, results, more);
-    ASSERT_EQ(made.exit_code, 0) << made.output << made.errors;
+    ExpectSuccess(Make(goal, results, more));
   }
   void Submit() const { Do("submit", kCluster); }
   std::string Status(const std::vector<std::string>& more = {}) const {
-    const CommandResult status = Make("status", kCluster, more);
-    EXPECT_EQ(status.exit_code, 0) << status.errors;
-    return status.output;
+    return ExpectSuccess(Make("status", kCluster, more));
   }
   void WaitForTheQueue() const {
     ASSERT_TRUE(Eventually([&] { return cluster_.Queue().empty(); }))
@@ -196,6 +193,12 @@ class SlowSlurmTest : public testing::Test {
     EXPECT_THAT(status, Not(ContainsRegex("queued|running|missing|stale|failed")));
   }
 
+  void ExpectTheSweepToEndWithTheBytesOfALocalRun() const {
+    WaitForTheQueue();
+    ExpectAllDone();
+    ExpectTheBytesOfALocalRun();
+  }
+
   TemporaryFolder folder_;
   SlurmCluster cluster_;
 };
@@ -221,9 +224,7 @@ TEST_F(SlowSlurmTest, AFailingSrunIsToldFromAFailingStage) {
 
 TEST_F(SlowSlurmTest, ASweepGivesTheBytesOfALocalOne) {
   Submit();
-  WaitForTheQueue();
-  ExpectAllDone();
-  ExpectTheBytesOfALocalRun();
+  ExpectTheSweepToEndWithTheBytesOfALocalRun();
   Submit();
   EXPECT_THAT(cluster_.Queue(), IsEmpty()) << "nothing is out of date";
 }
@@ -264,9 +265,7 @@ TEST_F(SlowSlurmTest, WhatWasCancelledOnTheWayIsResumed) {
   EXPECT_THAT(Status(), ContainsRegex("InitP +done +- +done +- +- +done"));
   Submit();
   EXPECT_FALSE(SomeJobIs("small-seed1 0 .*")) << "the trunk was done";
-  WaitForTheQueue();
-  ExpectAllDone();
-  ExpectTheBytesOfALocalRun();
+  ExpectTheSweepToEndWithTheBytesOfALocalRun();
 }
 
 TEST_F(SlowSlurmTest, JobsOfANodeThatFailsRunOnAnother) {
@@ -277,9 +276,7 @@ TEST_F(SlowSlurmTest, JobsOfANodeThatFailsRunOnAnother) {
     return cluster_.Run({"scontrol", "update", "NodeName=node1", "State=" + state, "Reason=test"});
   };
   EXPECT_EQ(set_node("DOWN").exit_code, 0);
-  WaitForTheQueue();
-  ExpectAllDone();
-  ExpectTheBytesOfALocalRun();
+  ExpectTheSweepToEndWithTheBytesOfALocalRun();
 }
 
 TEST_F(SlowSlurmTest, FailuresAreShownAndTheRestIsDone) {
@@ -296,9 +293,7 @@ TEST_F(SlowSlurmTest, FailuresAreShownAndTheRestIsDone) {
   EXPECT_THAT(status, ContainsRegex("OursPT +done +done +done +done +done +done")) << "seed 2";
   WriteBytes(image, whole_image);
   Submit();
-  WaitForTheQueue();
-  ExpectAllDone();
-  ExpectTheBytesOfALocalRun();
+  ExpectTheSweepToEndWithTheBytesOfALocalRun();
 }
 
 }  // namespace

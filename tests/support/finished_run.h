@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <optional>
 #include <string>
 
 #include "support/saved_folder.h"
@@ -15,23 +14,21 @@ namespace soslam {
 // it finds all files, with their times, as that run left them.
 class FinishedRun {
  public:
-  explicit FinishedRun(const std::string& variants) : run_(pipeline_.Run(variants)) {
-    EXPECT_EQ(run_.exit_code, 0) << run_.errors;
-    saved_.emplace(pipeline_.Folder());
-  }
+  explicit FinishedRun(const std::string& variants)
+      : output_(ExpectSuccess(pipeline_.Run(variants))), saved_(pipeline_.Folder()) {}
 
   // What the run printed.
-  const std::string& Output() const { return run_.output; }
+  const std::string& Output() const { return output_; }
 
   const SmallPipeline& Restored() const {
-    saved_->Restore();
+    saved_.Restore();
     return pipeline_;
   }
 
  private:
   SmallPipeline pipeline_;
-  CommandResult run_;
-  std::optional<SavedFolder> saved_;
+  std::string output_;
+  SavedFolder saved_;
 };
 
 // Tests of what two variants of single frames left, which are run once for all of them.

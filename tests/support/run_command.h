@@ -2,6 +2,7 @@
 #pragma once
 
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -96,6 +97,23 @@ class BackgroundCommand {
 // Runs a program with arguments and waits for it.
 inline CommandResult RunCommand(const std::vector<std::string>& words) {
   return BackgroundCommand(words).Wait();
+}
+
+// Expects that a program ended with this exit code; what it gave. `file` and `line` are the
+// caller's.
+inline CommandResult ExpectExit(int exit_code, const CommandResult& result,
+                                const char* file = __builtin_FILE(), int line = __builtin_LINE()) {
+  if (result.exit_code != exit_code) {
+    ADD_FAILURE_AT(file, line) << "exit code " << result.exit_code << "; expected " << exit_code
+                               << "\n"
+                               << result.output << result.errors;
+  }
+  return result;
+}
+// Expects that a program succeeded; what it printed.
+inline std::string ExpectSuccess(const CommandResult& result, const char* file = __builtin_FILE(),
+                                 int line = __builtin_LINE()) {
+  return ExpectExit(0, result, file, line).output;
 }
 
 }  // namespace soslam

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <filesystem>
 
 #include "support/run_command.h"
@@ -25,8 +23,7 @@ class SavedFolder {
 
  private:
   static void Copy(const std::filesystem::path& from, const std::filesystem::path& to) {
-    const CommandResult copied = RunCommand({"cp", "-a", from.string() + "/.", to.string()});
-    EXPECT_EQ(copied.exit_code, 0) << copied.errors;
+    ExpectSuccess(RunCommand({"cp", "-a", from.string() + "/.", to.string()}));
   }
 
   std::filesystem::path folder_;

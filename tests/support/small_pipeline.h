@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -65,10 +63,9 @@ class SmallPipeline {
   explicit SmallPipeline(int frames = kFrames, int threads = 2)
       : threads_(std::to_string(threads)) {
     WriteBytes(folder_ / "scene.json", SmallScene(frames).dump());
-    const CommandResult made =
+    ExpectSuccess(
         RunCommand({StageProgram("synthesise"), "--scene", (folder_ / "scene.json").string(),
-                    "--output", Dataset().string(), "--threads", threads_});
-    EXPECT_EQ(made.exit_code, 0) << made.errors;
+                    "--output", Dataset().string(), "--threads", threads_}));
     WriteBytes(Dataset() / "planes.json",
                R"([{"id": 0, "normal": [0, 0, 1], "d": 0, "scene_axis": [1, 0, 0]}])");
     std::filesystem::copy(SOSLAM_SOURCE_DIR "/pipelines", Pipelines(),
