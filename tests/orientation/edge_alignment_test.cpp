@@ -7,8 +7,8 @@
 
 #include "initialisation/upright.h"
 #include "support/drawn_cuboids.h"
+#include "support/facing_view.h"
 #include "support/landmark_costs.h"
-#include "support/random_scene.h"
 
 namespace soslam {
 namespace {
@@ -140,23 +140,8 @@ TEST(EdgeTerm, PointsInNearerBoxesAndOutsideTheImageCostAsMuchAsCanBe) {
   EXPECT_NEAR(term.Support(truth), 0.0, 1e-12);
 }
 
-// A distance that is linear in the pixel, in steps that single precision holds exactly, so that
-// bilinear interpolation reproduces it; every pixel's nearest edge is the same, a vertical one.
-EdgeMaps LinearMaps() {
-  EdgeMaps maps;
-  const cv::Size size(TestCamera().width, TestCamera().height);
-  maps.grey = cv::Mat(size, CV_8UC1);
-  maps.edges = cv::Mat::zeros(size, CV_8UC1);
-  maps.nearest_edge = cv::Mat(size, CV_16SC2, cv::Scalar(110, 200));
-  maps.distance = cv::Mat(size, CV_32FC1);
-  for (int y = 0; y < size.height; ++y) {
-    for (int x = 0; x < size.width; ++x) {
-      maps.grey.at<unsigned char>(y, x) = static_cast<unsigned char>(std::min(x, 255));
-      maps.distance.at<float>(y, x) = 4.0F + static_cast<float>(2 * x + y) / 128.0F;
-    }
-  }
-  return maps;
-}
+// In steps that single precision holds exactly.
+float SmallDistance(int x, int y) { return 4.0F + static_cast<float>(2 * x + y) / 128.0F; }
 
 std::shared_ptr<const EdgeImage> ImageOf(const EdgeMaps& maps) {
   return std::make_shared<const EdgeImage>(
@@ -174,7 +159,7 @@ RandomView CuboidView() {
 }
 
 TEST(EdgeTerm, DerivativesAgreeWithNumbers) {
-  const auto image = ImageOf(LinearMaps());
+  const auto image = ImageOf(LinearMaps(SmallDistance));
   for (int i = 0; i < 10; ++i) {
     const Landmark landmark = CuboidView().LandmarkInCamera();
     const EdgeTerm term(image, TestCamera(), landmark, AnyDirection());
@@ -185,7 +170,7 @@ TEST(EdgeTerm, DerivativesAgreeWithNumbers) {
 
 // So far apart that some bodies have a single one.
 TEST(EdgeTerm, InformationOfOnePointIsThatOfItsGradient) {
-  const auto image = ImageOf(LinearMaps());
+  const auto image = ImageOf(LinearMaps(SmallDistance));
   EdgeOptions options = AnyDirection();
   options.edge_spacing_px = 1000.0;
   int checked = 0;
@@ -202,7 +187,7 @@ TEST(EdgeTerm, InformationOfOnePointIsThatOfItsGradient) {
 // Seen from right in front, all edges of a cuboid are vertical or horizontal in the image: of a
 // vertical image edge everywhere, the latter are as far away as can be.
 TEST(EdgeTerm, EdgesInAnotherDirectionCountAsFarAway) {
-  EdgeMaps maps = LinearMaps();
+  EdgeMaps maps = LinearMaps(SmallDistance);
   maps.distance = cv::Scalar(0.0);
   const auto image = ImageOf(maps);
   const Landmark landmark{{{1, 0, 0, 0}, {0, 0, 3}}, {0.5, 0.4, 0.3}, kCuboidExponent};

@@ -10,8 +10,9 @@
 namespace soslam {
 namespace {
 
-SymmetryOptions EverywhereInTheImage() {
+SymmetryOptions EverywhereInTheImage(Descriptor descriptor) {
   SymmetryOptions options;
+  options.descriptor = descriptor;
   options.sampling = Sampling::kUniform;
   options.uniform_columns = 40;
   options.min_viewing_cosine = 0.3;
@@ -25,12 +26,15 @@ TextureOptions Texture(double cost, double scale) {
   return options;
 }
 
+std::shared_ptr<const SymmetryImage> SharedImage(const Box& box = kWholeImage) {
+  return std::make_shared<const SymmetryImage>(SparseImage(box));
+}
+
 // All pixels the same: whatever is mirrored, nothing differs.
 TEST(TextureAsymmetry, IsZeroForAUniformTextureAndWholeWhereNothingIsMirrored) {
   SymmetryImage image = SparseImage();
   image.maps.grey = cv::Scalar(128);
-  SymmetryOptions options = EverywhereInTheImage();
-  options.descriptor = Descriptor::kGrey;
+  const SymmetryOptions options = EverywhereInTheImage(Descriptor::kGrey);
   TextureOptions texture;
   texture.asymmetry_cost = 4.0;
   const Landmark landmark = FacingView().LandmarkInCamera();
@@ -42,25 +46,18 @@ TEST(TextureAsymmetry, IsZeroForAUniformTextureAndWholeWhereNothingIsMirrored) {
   EXPECT_EQ(cost(RotatedAboutZ(landmark, std::numbers::pi / 2)), 4.0);
 }
 
-// The body's front face towards the camera, 2.5 m away.
-Landmark FacingCube(const ShapeExponents& shape_exponents) {
-  Eigen::Matrix3d axes;  // x towards the camera, z up
-  axes.col(0) = -Eigen::Vector3d::UnitZ();
-  axes.col(2) = -Eigen::Vector3d::UnitY();
-  axes.col(1) = axes.col(2).cross(axes.col(0));
-  return {{Eigen::Quaterniond(axes), {0, 0, 3}}, {0.5, 0.5, 0.5}, shape_exponents};
-}
+// Its front is 2.5 m away.
+const Eigen::Vector3d kHalfAxes = Eigen::Vector3d::Constant(0.5);
 
 // Two grey halves that meet in the middle of the image: every pair differs by all of the range.
 TEST(TextureAsymmetry, GrowsToAllOfItWithTheDifference) {
   SymmetryImage image = SparseImage();
   image.maps.grey = cv::Scalar(0);
   image.maps.grey.colRange(0, 320) = cv::Scalar(255);
-  SymmetryOptions options = EverywhereInTheImage();
-  options.descriptor = Descriptor::kGrey;
+  const SymmetryOptions options = EverywhereInTheImage(Descriptor::kGrey);
   Camera camera = TestCamera();
   camera.cx = 319.5;
-  const Landmark landmark = FacingCube(kEllipsoidExponent);
+  const Landmark landmark = FacingLandmark(kHalfAxes);
   for (const double scale : {0.1, 1.0, 2.0, 100.0}) {
     EXPECT_NEAR(TextureAsymmetry(image, camera, Texture(3.0, scale), options).Cost(landmark),
                 3.0 / (1.0 + scale * scale), 1e-9);
@@ -77,9 +74,8 @@ TEST(TextureAsymmetry, FindsTheMirrorPlaneBesideTheCentre) {
   for (int x = 0; x < 640; ++x) {
     image.maps.grey.col(x) = cv::Scalar(std::min(255.0, 2.0 * std::abs(x - column)));
   }
-  SymmetryOptions options = EverywhereInTheImage();
-  options.descriptor = Descriptor::kGrey;
-  const Landmark landmark = FacingCube(kCuboidExponent);
+  const SymmetryOptions options = EverywhereInTheImage(Descriptor::kGrey);
+  const Landmark landmark = FacingLandmark(kHalfAxes, kCuboidExponent);
   TextureOptions texture = Texture(1.0, 0.1);
   const auto centred = TextureAsymmetry(image, camera, texture, options).Find(landmark);
   texture.mirror_plane_range = 0.2;  // of its size, either way: up to 0.1 m in steps of 0.0125 m
@@ -88,8 +84,7 @@ TEST(TextureAsymmetry, FindsTheMirrorPlaneBesideTheCentre) {
   EXPECT_GT(centred->asymmetry, 0.3);
   EXPECT_EQ(centred->mirror_plane, 0.0);
   EXPECT_LT(beside->asymmetry, 0.01);
-  const double size_m = 0.5;
-  EXPECT_NEAR(std::abs(beside->mirror_plane) * size_m, 0.05, 1e-12);
+  EXPECT_NEAR(std::abs(beside->mirror_plane) * kHalfAxes.x(), 0.05, 1e-12);
   EXPECT_NEAR(TextureAsymmetry(image, camera, texture, options).Cost(landmark), beside->asymmetry,
               1e-12);
 }
@@ -108,10 +103,9 @@ TEST(MirrorPlane, MayNotLieBesideTheCentreOfWhatIsMeasuredOnTheSurface) {
 }
 
 TEST(AsymmetryTerm, IsTheCostAtItsStartTimesItsWeight) {
-  const auto image = std::make_shared<const SymmetryImage>(SparseImage());
+  const auto image = SharedImage();
   for (const Descriptor descriptor : {Descriptor::kLinearisedDt, Descriptor::kDistanceTransform}) {
-    SymmetryOptions options = EverywhereInTheImage();
-    options.descriptor = descriptor;
+    const SymmetryOptions options = EverywhereInTheImage(descriptor);
     TextureOptions texture = Texture(4.0, 0.3);
     // The cost's own mirror plane, wherever it is best.
     texture.mirror_plane_range = descriptor == Descriptor::kDistanceTransform ? 0.3 : 0.0;
@@ -129,45 +123,34 @@ TEST(AsymmetryTerm, IsTheCostAtItsStartTimesItsWeight) {
 
 constexpr Box kMiddle{250, 180, 390, 300};
 
-void ExpectCorrectGradients(std::shared_ptr<const SymmetryImage> image,
-                            const TextureOptions& texture, Descriptor descriptor) {
-  SymmetryOptions options = EverywhereInTheImage();
+void ExpectCorrectGradients(const TextureOptions& texture, Descriptor descriptor) {
+  SymmetryOptions options = EverywhereInTheImage(descriptor);
   options.uniform_columns = 12;
-  options.descriptor = descriptor;
   for (int i = 0; i < 12; ++i) {
     Landmark landmark = FacingView().LandmarkInCamera();
     landmark.rests_on = kRestingFaces[static_cast<size_t>(i) % kRestingFaces.size()];
-    const AsymmetryTerm term(image, TestCamera(), landmark, texture, options, 0.7);
+    const AsymmetryTerm term(SharedImage(kMiddle), TestCamera(), landmark, texture, options, 0.7);
     ASSERT_GT(term.NumPairs(), landmark.rests_on == RestingFace::kSide ? 10 : 50);
     ExpectCorrectGradient(term, landmark);
   }
 }
 
 TEST(AsymmetryTerm, DerivativesAgreeWithNumbers) {
-  SymmetryImage image = SparseImage();
-  image.box = kMiddle;
-  ExpectCorrectGradients(std::make_shared<const SymmetryImage>(std::move(image)), Texture(4.0, 0.3),
-                         Descriptor::kLinearisedDt);
+  ExpectCorrectGradients(Texture(4.0, 0.3), Descriptor::kLinearisedDt);
 }
 
 TEST(AsymmetryTerm, DerivativesAgreeWithNumbersWithAMirrorPlaneBesideTheCentre) {
-  SymmetryImage image = SparseImage();
-  image.box = kMiddle;
   TextureOptions texture = Texture(4.0, 0.3);
   texture.mirror_plane_range = 0.4;
   texture.asymmetry_scale_px = 1000.0;  // differences here are hundreds of pixels
-  ExpectCorrectGradients(std::make_shared<const SymmetryImage>(std::move(image)), texture,
-                         Descriptor::kDistanceTransform);
+  ExpectCorrectGradients(texture, Descriptor::kDistanceTransform);
 }
 
 TEST(AsymmetryTerm, InformationOfOnePairIsThatOfItsGradient) {
-  SymmetryImage image = SparseImage();
-  image.box = {300, 220, 340, 260};
-  const auto middle = std::make_shared<const SymmetryImage>(std::move(image));
-  SymmetryOptions options = EverywhereInTheImage();
+  const auto middle = SharedImage({300, 220, 340, 260});
+  SymmetryOptions options = EverywhereInTheImage(Descriptor::kLinearisedDt);
   options.uniform_columns = 1;
   options.min_pairs = 1;
-  options.descriptor = Descriptor::kLinearisedDt;
   int checked = 0;
   for (int i = 0; i < 100; ++i) {
     const Landmark landmark = FacingView().LandmarkInCamera();
@@ -180,11 +163,9 @@ TEST(AsymmetryTerm, InformationOfOnePairIsThatOfItsGradient) {
 }
 
 TEST(AsymmetryTerm, CountsPairsThatLeaveTheSurfaceAsAsymmetric) {
-  const auto image = std::make_shared<const SymmetryImage>(SparseImage());
   Landmark landmark = FacingView().LandmarkInCamera();
-  SymmetryOptions options = EverywhereInTheImage();
-  options.descriptor = Descriptor::kDistanceTransform;
-  const AsymmetryTerm term(image, TestCamera(), landmark, Texture(4.0, 0.3), options, 1.0);
+  const AsymmetryTerm term(SharedImage(), TestCamera(), landmark, Texture(4.0, 0.3),
+                           EverywhereInTheImage(Descriptor::kDistanceTransform), 1.0);
   ASSERT_GT(term.NumPairs(), 50);
   // Beside the image: no pixel's ray meets it any more.
   landmark.frame_from_object.translation.x() += 20.0;

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "constraints/landmark_cost.h"
-#include "support/shape_exponents.h"
 
 namespace soslam {
 
