@@ -10,10 +10,7 @@ namespace soslam {
 namespace {
 
 Eigen::Vector4d Residuals(const DetectionResidual& residual, const RandomView& view) {
-  Eigen::Vector4d values = Eigen::Vector4d::Constant(std::numeric_limits<double>::quiet_NaN());
-  const double* blocks[] = {view.camera_block.data(), view.landmark_block.data()};
-  EXPECT_TRUE(residual.Evaluate(blocks, values.data(), nullptr));
-  return values;
+  return ResidualsAt(residual, {view.camera_block.data(), view.landmark_block.data()});
 }
 
 TEST(DetectionResidual, IsZeroForTheOutlineBox) {

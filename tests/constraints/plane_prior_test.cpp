@@ -20,10 +20,8 @@ TEST(PlaneNormalResidual, CostIsTheQuadraticForm) {
   for (int i = 0; i < 50; ++i) {
     const Eigen::Matrix3d information = RandomInformation();
     const Eigen::Vector3d normal = RandomPlane().normal;
-    const double* blocks[] = {normal.data()};
-    Eigen::Vector3d residuals;
-    ASSERT_TRUE(PlaneNormalResidual(information).Evaluate(blocks, residuals.data(), nullptr));
-    EXPECT_NEAR(residuals.squaredNorm(), normal.dot(information * normal), 1e-10);
+    EXPECT_NEAR(ResidualsAt(PlaneNormalResidual(information), {normal.data()}).squaredNorm(),
+                normal.dot(information * normal), 1e-10);
   }
 }
 
@@ -40,10 +38,9 @@ TEST(PlaneHeightResidual, IsTheDistanceOfThePointInSigmas) {
     const HeightPrior prior{RandomVector(-3, 3), RandomUniform(0.01, 1.0)};
     for (const double side : {1.0, -1.0}) {
       const Eigen::Vector3d shared = side * plane.normal;
-      const double* blocks[] = {shared.data(), &plane.offset};
-      double residual = 0.0;
-      ASSERT_TRUE(PlaneHeightResidual(prior, side).Evaluate(blocks, &residual, nullptr));
-      EXPECT_NEAR(residual * prior.sigma_m, plane.SignedDistance(prior.point_in_world), 1e-12);
+      const Eigen::VectorXd residual =
+          ResidualsAt(PlaneHeightResidual(prior, side), {shared.data(), &plane.offset});
+      EXPECT_NEAR(residual[0] * prior.sigma_m, plane.SignedDistance(prior.point_in_world), 1e-12);
     }
   }
 }

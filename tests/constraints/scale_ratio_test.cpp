@@ -10,11 +10,8 @@ namespace soslam {
 namespace {
 
 Eigen::Vector2d Residuals(const Eigen::Vector2d& ratio, const Eigen::Vector3d& half_axes) {
-  const LandmarkBlock block = ToParameterBlock(Landmark{RandomRigid(), half_axes});
-  const double* blocks[] = {block.data()};
-  Eigen::Vector2d values = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
-  EXPECT_TRUE(ScaleRatioResidual(ratio, 4.0).Evaluate(blocks, values.data(), nullptr));
-  return values;
+  return ResidualsAt(ScaleRatioResidual(ratio, 4.0),
+                     {ToParameterBlock(Landmark{RandomRigid(), half_axes}).data()});
 }
 
 TEST(ScaleRatioResidual, WorkedByHand) {

@@ -11,7 +11,7 @@ namespace {
 
 // Variances of 4 rad^2 and 9 m^4.
 Eigen::Vector3d SupportResiduals(const Plane& plane, const Landmark& landmark) {
-  return ResidualsOf(SupportResidual(plane, 4.0, 9.0), landmark);
+  return ResidualsAt(SupportResidual(plane, 4.0, 9.0), {ToParameterBlock(landmark).data()});
 }
 
 TEST(SupportResidual, IsZeroForAnUprightLandmarkOnThePlane) {

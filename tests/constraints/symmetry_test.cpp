@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <opencv2/imgproc.hpp>
-
 #include "support/facing_view.h"
 #include "support/jacobians.h"
 
@@ -101,11 +99,7 @@ TEST(SymmetryDescriptor, IsZeroOnASymmetricImage) {
     }
   }
   const SymmetryImage image(ComputeEdgeMaps(grey, EdgesOptions()), kWholeImage);
-  Eigen::Matrix3d axes;  // x towards the camera, z up
-  axes.col(0) = -Eigen::Vector3d::UnitZ();
-  axes.col(2) = -Eigen::Vector3d::UnitY();
-  axes.col(1) = axes.col(2).cross(axes.col(0));
-  const Landmark landmark{{Eigen::Quaterniond(axes), {0, 0, 3}}, {0.6, 0.7, 0.5}};
+  const Landmark landmark = FacingLandmark({0.6, 0.7, 0.5});
   // Canny breaks ties between two sides of an edge towards one side: half a grey level, a few
   // bits, up to 2 px in the image or 12 mm on the surface.
   constexpr std::array kTolerances = {0.002, 0.15, 0.15, 2.0, 0.012, 0.012, 0.012};

@@ -207,8 +207,12 @@ struct View {
   double bias_px = RandomUniform(-3, 3);
   double misfit = RandomUniform(-0.03, 0.03);
 
-  LandmarkBlock LandmarkInWorld() const {
-    return ToParameterBlock(Transform(UnpackPose(pose.data()), initial_in_camera));
+  LandmarkBlock InWorld(const Landmark& in_camera) const {
+    return ToParameterBlock(Transform(UnpackPose(pose.data()), in_camera));
+  }
+  // For a residual of a landmark in the world.
+  std::vector<const double*> Blocks(const LandmarkBlock& landmark) const {
+    return {pose.data(), landmark.data(), &bias_px, &misfit};
   }
 };
 
@@ -218,12 +222,10 @@ TEST(TangencyResidual, HasCorrectJacobiansWithoutItsCurvatureRows) {
     View view;
     // Sharper bodies have derivatives that numbers do not follow.
     view.initial_in_camera.shape_exponents = RandomUniform(1.4, 2.0);
-    const LandmarkBlock landmark = view.LandmarkInWorld();
     BoxEdge edge = RandomEdge();
     edge.is_one_sided = i % 2 == 0;
-    const TangencyResidual residual(edge, view.initial_in_camera, &for_solver);
-    ExpectCorrectJacobians(residual,
-                           {view.pose.data(), landmark.data(), &view.bias_px, &view.misfit});
+    ExpectCorrectJacobians(TangencyResidual(edge, view.initial_in_camera, &for_solver),
+                           view.Blocks(view.InWorld(view.initial_in_camera)));
   }
 }
 
@@ -234,18 +236,18 @@ TEST(TangencyResidual, CurvatureRowsAddToTheInformationAlone) {
   for (int i = 0; i < 30; ++i) {
     View view;
     view.initial_in_camera.shape_exponents = RandomUniform(1.0, 1.9);
-    const LandmarkBlock landmark = view.LandmarkInWorld();
+    const LandmarkBlock landmark = view.InWorld(view.initial_in_camera);
     const BoxEdge edge = RandomEdge();
-    const double* blocks[] = {view.pose.data(), landmark.data(), &view.bias_px, &view.misfit};
+    const auto blocks = view.Blocks(landmark);
     using Rows = Eigen::Matrix<double, 3, kLandmarkSize, Eigen::RowMajor>;
     Rows with_rows, without_rows;
     Eigen::Vector3d with_residuals, without_residuals;
     double* with_jacobians[] = {nullptr, with_rows.data(), nullptr, nullptr};
     double* without_jacobians[] = {nullptr, without_rows.data(), nullptr, nullptr};
     ASSERT_TRUE(TangencyResidual(edge, view.initial_in_camera, &with)
-                    .Evaluate(blocks, with_residuals.data(), with_jacobians));
+                    .Evaluate(blocks.data(), with_residuals.data(), with_jacobians));
     ASSERT_TRUE(TangencyResidual(edge, view.initial_in_camera, &without)
-                    .Evaluate(blocks, without_residuals.data(), without_jacobians));
+                    .Evaluate(blocks.data(), without_residuals.data(), without_jacobians));
     EXPECT_EQ(with_residuals, without_residuals);
     EXPECT_EQ(with_residuals.tail<2>(), Eigen::Vector2d::Zero());
     EXPECT_EQ(with_rows.row(0), without_rows.row(0));
@@ -261,13 +263,11 @@ TEST(TangencyResidual, ComparesABodyBehindTheCameraAtATenthOfItsDepth) {
   const bool for_solver = true;
   const View view;
   const BoxEdge edge = RandomEdge();
-  const TangencyResidual residual(edge, view.initial_in_camera, &for_solver);
   Landmark behind = view.initial_in_camera;
   behind.frame_from_object.translation.z() = -1.0;
-  const LandmarkBlock landmark = ToParameterBlock(Transform(UnpackPose(view.pose.data()), behind));
-  const double* blocks[] = {view.pose.data(), landmark.data(), &view.bias_px, &view.misfit};
-  Eigen::Vector3d values;
-  ASSERT_TRUE(residual.Evaluate(blocks, values.data(), nullptr));
+  const LandmarkBlock landmark = view.InWorld(behind);
+  const Eigen::VectorXd values = ResidualsAt(
+      TangencyResidual(edge, view.initial_in_camera, &for_solver), view.Blocks(landmark));
   const double depth_m = 0.1 * FindTangentDepth(edge, view.initial_in_camera).depth_m;
   EXPECT_NEAR(
       values[0],
@@ -275,21 +275,20 @@ TEST(TangencyResidual, ComparesABodyBehindTheCameraAtATenthOfItsDepth) {
       1e-9 * (1.0 + std::abs(values[0])));
   const bool without_curvature = false;
   ExpectCorrectJacobians(TangencyResidual(edge, view.initial_in_camera, &without_curvature),
-                         {view.pose.data(), landmark.data(), &view.bias_px, &view.misfit});
+                         view.Blocks(landmark));
 }
 
 TEST(TangencyResidual, RefusesHalfAxesBeyondNumbers) {
   const bool for_solver = true;
   const View view;
-  LandmarkBlock landmark = view.LandmarkInWorld();
+  LandmarkBlock landmark = view.InWorld(view.initial_in_camera);
   landmark[8] = 1000.0;
-  const double* blocks[] = {view.pose.data(), landmark.data(), &view.bias_px, &view.misfit};
   Eigen::Vector3d values;
   for (const bool is_one_sided : {false, true}) {
     BoxEdge edge = RandomEdge();
     edge.is_one_sided = is_one_sided;
     const TangencyResidual residual(edge, view.initial_in_camera, &for_solver);
-    EXPECT_FALSE(residual.Evaluate(blocks, values.data(), nullptr));
+    EXPECT_FALSE(residual.Evaluate(view.Blocks(landmark).data(), values.data(), nullptr));
   }
 }
 

@@ -11,11 +11,8 @@ namespace {
 
 // Sigmas of half a radian and a centimetre.
 Eigen::Vector3d UprightResiduals(const Plane& plane, const Landmark& landmark) {
-  const LandmarkBlock block = ToParameterBlock(landmark);
-  const double* blocks[] = {block.data(), plane.normal.data(), &plane.offset};
-  Eigen::Vector3d values = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-  EXPECT_TRUE(UprightOnPlaneResidual(0.5, 0.01).Evaluate(blocks, values.data(), nullptr));
-  return values;
+  return ResidualsAt(UprightOnPlaneResidual(0.5, 0.01),
+                     {ToParameterBlock(landmark).data(), plane.normal.data(), &plane.offset});
 }
 
 TEST(UprightOnPlaneResidual, IsZeroForAnUprightLandmarkOnThePlane) {
@@ -55,10 +52,9 @@ TEST(UprightOnPlaneResidual, OtherSideIsTheOppositeNormal) {
   const Plane plane = RandomPlane();
   const Eigen::Vector3d opposite = -plane.normal;
   const LandmarkBlock block = ToParameterBlock(Landmark{RandomRigid(), RandomVector(0.1, 1.0)});
-  const double* blocks[] = {block.data(), opposite.data(), &plane.offset};
-  Eigen::Vector3d values;
-  ASSERT_TRUE(UprightOnPlaneResidual(0.5, 0.01, -1.0).Evaluate(blocks, values.data(), nullptr));
-  EXPECT_EQ(values, UprightResiduals(plane, UnpackLandmark(block.data())));
+  EXPECT_EQ(ResidualsAt(UprightOnPlaneResidual(0.5, 0.01, -1.0),
+                        {block.data(), opposite.data(), &plane.offset}),
+            UprightResiduals(plane, UnpackLandmark(block.data())));
 }
 
 }  // namespace

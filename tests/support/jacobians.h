@@ -5,12 +5,22 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <limits>
 #include <memory>
 #include <vector>
 
 #include "constraints/parameters.h"
 
 namespace soslam {
+
+// The residuals at these blocks, which have to be defined there.
+inline Eigen::VectorXd ResidualsAt(const ceres::CostFunction& residual,
+                                   const std::vector<const double*>& blocks) {
+  Eigen::VectorXd values =
+      Eigen::VectorXd::Constant(residual.num_residuals(), std::numeric_limits<double>::quiet_NaN());
+  EXPECT_TRUE(residual.Evaluate(blocks.data(), values.data(), nullptr));
+  return values;
+}
 
 // Checks a residual's Jacobians, in the tangent spaces of its blocks (poses, landmarks, normals,
 // and vectors of any other size), against fourth-order central differences, whose error here is
@@ -21,13 +31,6 @@ inline void ExpectCorrectJacobians(const ceres::CostFunction& residual,
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   constexpr double kStep = 1e-4;
   const int rows = residual.num_residuals();
-  const auto evaluate = [&](const std::vector<const double*>& at) {
-    Eigen::VectorXd values =
-        Eigen::VectorXd::Constant(rows, std::numeric_limits<double>::quiet_NaN());
-    EXPECT_TRUE(residual.Evaluate(at.data(), values.data(), nullptr));
-    return values;
-  };
-
   std::vector<Matrix> ambient;
   std::vector<double*> pointers;
   for (const int size : residual.parameter_block_sizes()) {
@@ -36,7 +39,8 @@ inline void ExpectCorrectJacobians(const ceres::CostFunction& residual,
   for (Matrix& matrix : ambient) pointers.push_back(matrix.data());
   Eigen::VectorXd values(rows);
   ASSERT_TRUE(residual.Evaluate(blocks.data(), values.data(), pointers.data()));
-  EXPECT_TRUE(values == evaluate(blocks)) << "residuals differ with and without Jacobians";
+  EXPECT_TRUE(values == ResidualsAt(residual, blocks))
+      << "residuals differ with and without Jacobians";
 
   for (size_t block = 0; block < blocks.size(); ++block) {
     const int size = residual.parameter_block_sizes()[block];
@@ -56,7 +60,7 @@ inline void ExpectCorrectJacobians(const ceres::CostFunction& residual,
         manifold->Plus(blocks[block], delta.data(), point.data());
         std::vector<const double*> at = blocks;
         at[block] = point.data();
-        return evaluate(at);
+        return ResidualsAt(residual, at);
       };
       const Eigen::VectorXd numeric =
           (8.0 * (moved(kStep) - moved(-kStep)) - (moved(2.0 * kStep) - moved(-2.0 * kStep))) /

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ceres/cost_function.h>
 #include <gtest/gtest.h>
 
 #include <functional>
-#include <limits>
 #include <numbers>
 
 #include "constraints/parameters.h"
@@ -29,15 +27,6 @@ inline Landmark LyingLandmark() {
   return {{Eigen::Quaterniond(Eigen::AngleAxisd(-std::numbers::pi / 2, Eigen::Vector3d::UnitY())),
            {7, 8, 5}},
           {1, 2, 3}};
-}
-
-// The three residuals of a landmark in the world.
-inline Eigen::Vector3d ResidualsOf(const ceres::CostFunction& residual, const Landmark& landmark) {
-  const LandmarkBlock block = ToParameterBlock(landmark);
-  const double* blocks[] = {block.data()};
-  Eigen::Vector3d values = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-  EXPECT_TRUE(residual.Evaluate(blocks, values.data(), nullptr));
-  return values;
 }
 
 // What such residuals have in common, as functions of plane and landmark in the world.
