@@ -11,7 +11,6 @@
 #include "evaluation/statistics.h"
 #include "geometry/angles.h"
 #include "image/edge_maps.h"
-#include "initialisation/upright.h"
 #include "mapping/back_end.h"
 #include "orientation/edge_alignment.h"
 #include "support/one_body.h"

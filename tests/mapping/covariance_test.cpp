@@ -9,7 +9,6 @@
 
 #include "mapping/back_end_problem.h"
 #include "support/cuboid_map.h"
-#include "support/random.h"
 #include "support/scene.h"
 
 namespace soslam {

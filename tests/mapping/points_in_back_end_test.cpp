@@ -5,7 +5,6 @@
 #include "initialisation/object_points.h"
 #include "support/cuboid_map.h"
 #include "support/points_on_objects.h"
-#include "support/random.h"
 
 namespace soslam {
 namespace {
@@ -14,8 +13,7 @@ namespace {
 // `noisy` is the sequence with errors of its boxes.
 double GainOfPoints(const Sequence& sequence, const Sequence& noisy,
                     const OptimiseOptions& options) {
-  BackEndInput input = TruthInput(noisy);
-  for (auto& prior : input.priors) prior->log_sigma = {0.3, 0.3};
+  BackEndInput input = TruthInput(noisy, 0.3);
   const auto mean_iou = [&] {
     return EvaluateMap(sequence, OptimiseMap(input, options)).summary.iou_mean.value();
   };
@@ -35,12 +33,7 @@ TEST(TangencyBackEnd, PointsImproveWhatBoxesSay) {
 // With the options as they are shipped, points that are exact do not harm boxes with errors.
 TEST(TangencyBackEnd, PointsWithDefaultWeightsDoNoHarm) {
   const Sequence sequence = CuboidSequence(3, 8);
-  Sequence noisy = sequence;
-  for (Detection& detection : noisy.detections) {
-    detection.box.x_max += RandomUniform(-6, 6);
-    detection.box.y_min += RandomUniform(-6, 6);
-  }
-  EXPECT_GT(GainOfPoints(sequence, noisy, TangencyOptions()), -0.01);
+  EXPECT_GT(GainOfPoints(sequence, WithBoxNoise(sequence, 6.0), TangencyOptions()), -0.01);
 }
 
 TEST(TangencyBackEnd, ObjectsWithoutPointsAreCounted) {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <map>
 #include <memory>
 
+#include "geometry/iou.h"
 #include "mapping/back_end.h"
 #include "support/drawn_cuboids.h"
 #include "support/random.h"
@@ -12,13 +15,10 @@
 namespace soslam {
 
 // From the truth, with priors that say nearly the same.
-inline BackEndInput TruthInput(const Sequence& sequence) {
-  BackEndInput input{sequence, {}, {}, {}, {}};
+inline BackEndInput TruthInput(const Sequence& sequence, double ratio_log_sigma = 0.02) {
+  BackEndInput input{sequence, {}, TrueCuboidPriors(sequence, ratio_log_sigma), {}, {}};
   for (const Object& object : sequence.objects) {
-    const Landmark& landmark = object.ground_truth->landmark_in_world;
-    input.initial_landmarks.push_back(landmark);
-    input.priors.push_back(ShapePrior{
-        landmark.half_axes.head<2>() / landmark.half_axes.z(), {0.02, 0.02}, kCuboidExponent});
+    input.initial_landmarks.push_back(object.ground_truth->landmark_in_world);
   }
   return input;
 }
@@ -55,6 +55,29 @@ inline Sequence WithBoxNoise(Sequence sequence, double most_px) {
     detection.box.y_max += RandomUniform(-most_px, most_px);
   }
   return sequence;
+}
+
+// A rigid motion of the whole world leaves the cost unchanged and moves the result: expects that of
+// the solver's final cost within a share, and of landmarks up to their IoU.
+inline void ExpectThatTheMapMovesWithTheWorld(const BackEndInput& input,
+                                              const OptimiseOptions& options,
+                                              double final_cost_share, double min_iou) {
+  const MapEstimate before = OptimiseMap(input, options);
+  const Rigid3d motion = RandomRigid();
+  const Sequence moved = Moved(motion, input.sequence);
+  BackEndInput moved_input{moved, input.initial_landmarks, input.priors, {}, input.edge_images};
+  for (auto& start : moved_input.initial_landmarks) *start = Transform(motion, *start);
+  const MapEstimate after = OptimiseMap(moved_input, options);
+
+  EXPECT_NEAR(after.solver.initial_cost, before.solver.initial_cost,
+              1e-9 * before.solver.initial_cost);
+  EXPECT_NEAR(after.solver.final_cost, before.solver.final_cost,
+              final_cost_share * before.solver.final_cost);
+  EXPECT_EQ(after.solver.residuals, before.solver.residuals);
+  for (size_t i = 0; i < before.objects.size(); ++i) {
+    const Landmark expected = Transform(motion, *before.objects[i].landmark_in_world);
+    EXPECT_GT(BoxIou(*after.objects[i].landmark_in_world, expected), min_iou) << i;
+  }
 }
 
 inline OptimiseOptions TangencyOptions() {
