@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <numbers>
 
-#include "initialisation/yaw_sweep.h"
 #include "support/shape_exponents.h"
 #include "support/upright_bodies.h"
 

@@ -4,11 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
-#include "geometry/angles.h"
 #include "geometry/iou.h"
 #include "geometry/wireframe.h"
 #include "support/cuboid_corners.h"

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <memory>
 
-#include "initialisation/closed_form.h"
 #include "initialisation/upright.h"
 #include "support/landmark_terms.h"
 #include "support/shape_exponents.h"

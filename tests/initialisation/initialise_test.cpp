@@ -10,7 +10,6 @@
 #include "support/scene.h"
 #include "support/shape_exponents.h"
 #include "support/upright_bodies.h"
-#include "synthesis/simulate.h"
 
 namespace soslam {
 namespace {
@@ -105,29 +104,28 @@ TEST(InitialiseUpright, NamesObjectsWithoutRatio) {
   }
 }
 
-TEST(InitialiseUpright, NamesDetectionsThatNoBodyExplains) {
-  // The floor's horizon is row 240.
-  Sequence sequence = LevelSequence({{300, 250, 380, 330}, {300, 100, 380, 180}});
+// Expects that of two boxes the first has hypotheses, and the second this failure.
+void ExpectFailureOfSecond(Sequence sequence, const std::string& failure) {
   sequence.planes = {{0, {Eigen::Vector3d::UnitZ(), 0.0}}};
   const std::vector<std::optional<ShapePrior>> priors(2, ShapePrior());
   const LandmarkEstimates estimates = InitialiseUpright(sequence, priors, UprightOptions(), 1);
   EXPECT_EQ(estimates.observations[0].failure, "");
   EXPECT_FALSE(estimates.observations[0].hypotheses.empty());
-  EXPECT_EQ(estimates.observations[1].failure, "no_solution");
+  EXPECT_EQ(estimates.observations[1].failure, failure);
   EXPECT_TRUE(estimates.observations[1].hypotheses.empty());
+}
+
+TEST(InitialiseUpright, NamesDetectionsThatNoBodyExplains) {
+  // The floor's horizon is row 240.
+  ExpectFailureOfSecond(LevelSequence({{300, 250, 380, 330}, {300, 100, 380, 180}}), "no_solution");
 }
 
 // Two edges leave the size open: no confident answer.
 TEST(InitialiseUpright, NamesDetectionsThatAreCutOnTwoSides) {
   Sequence sequence = LevelSequence({{300, 250, 380, 330}, {300, 250, 380, 330}});
-  sequence.planes = {{0, {Eigen::Vector3d::UnitZ(), 0.0}}};
   sequence.detections[0].is_one_sided = {true, false, false, false};
   sequence.detections[1].is_one_sided = {true, false, false, true};
-  const std::vector<std::optional<ShapePrior>> priors(2, ShapePrior());
-  const LandmarkEstimates estimates = InitialiseUpright(sequence, priors, UprightOptions(), 1);
-  EXPECT_EQ(estimates.observations[0].failure, "");
-  EXPECT_EQ(estimates.observations[1].failure, "fewer_than_three_measured_edges");
-  EXPECT_TRUE(estimates.observations[1].hypotheses.empty());
+  ExpectFailureOfSecond(sequence, "fewer_than_three_measured_edges");
 }
 
 // Hypotheses are in the camera frame, and the world's horizontal axes are alike.

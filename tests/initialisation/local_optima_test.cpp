@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "geometry/angles.h"
-#include "initialisation/closed_form.h"
 #include "initialisation/upright_observation.h"
 #include "initialisation/yaw_sweep.h"
 #include "support/landmark_terms.h"

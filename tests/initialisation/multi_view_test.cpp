@@ -5,9 +5,7 @@
 
 #include "geometry/angles.h"
 #include "geometry/iou.h"
-#include "initialisation/closed_form.h"
 #include "initialisation/initialise.h"
-#include "initialisation/yaw_sweep.h"
 #include "support/cuboid_map.h"
 #include "support/one_body.h"
 #include "support/shape_exponents.h"
@@ -56,6 +54,15 @@ void ExpectSame(const Landmark& found, const Landmark& expected, double toleranc
   EXPECT_EQ(found.shape_exponents, expected.shape_exponents);
 }
 
+// Expects the true body from the views at its yaw.
+void ExpectTruth(const World& world, const MultiViewObservation& observation,
+                 double tolerance = 1e-4) {
+  const auto found = SolveViewsAtYaw(observation, world.TrueYaw());
+  ASSERT_TRUE(found);
+  ExpectSame(found->landmark, world.truth, tolerance);
+  EXPECT_LT(found->cost, tolerance);
+}
+
 // The plane is given one metre too low.
 TEST(WeighViews, APlaneCountsOnlyWhereItsHeightIsKnown) {
   const World world(kCuboidExponent, Arc(5));
@@ -78,9 +85,7 @@ TEST(SolveViewsAtYaw, FindsTheHeightOfTheFootWhereItIsFree) {
     MultiViewObservation observation = world.Observation(world.Prior(0.2));
     observation.plane_in_world.offset += 1.0;
     observation.height_is_free = true;
-    const auto solution = SolveViewsAtYaw(observation, world.TrueYaw());
-    ASSERT_TRUE(solution);
-    ExpectSame(solution->landmark, world.truth, 1e-3);
+    ExpectTruth(world, observation, 1e-3);
   }
 }
 
@@ -93,9 +98,7 @@ TEST(SolveViewsAtYaw, AKnownSizeTellsDepthFromOneBox) {
   observation.prior->height_m = LogNormal{2.0 * world.truth.half_axes.z(), 0.02};
   EXPECT_FALSE(SolveViewsAtYaw(observation, world.TrueYaw()));
   observation.size_is_known = true;
-  const auto solution = SolveViewsAtYaw(observation, world.TrueYaw());
-  ASSERT_TRUE(solution);
-  ExpectSame(solution->landmark, world.truth, 1e-3);
+  ExpectTruth(world, observation, 1e-3);
 }
 
 // The grid of yaws is no coarser or finer, and begins nowhere else, in a world that is turned.
@@ -126,21 +129,16 @@ TEST(SolveViewsAtYaw, RecoversTheBodyFromExactBoxes) {
   for (const ShapeExponents& p : kShapeExponents) {
     SCOPED_TRACE(p);
     for (int i = 0; i < 20; ++i) {
-      World world(p, Arc(6));
-      const auto found = SolveViewsAtYaw(world.Observation(world.Prior(0.3)), world.TrueYaw());
-      ASSERT_TRUE(found);
-      ExpectSame(found->landmark, world.truth, 1e-4);
-      EXPECT_LT(found->cost, 1e-4);
+      const World world(p, Arc(6));
+      ExpectTruth(world, world.Observation(world.Prior(0.3)));
     }
   }
 }
 
 TEST(SolveViewsAtYaw, FindsTheRatioOfACuboidWithoutAPrior) {
   for (int i = 0; i < 20; ++i) {
-    World world(kCuboidExponent, Arc(6));
-    const auto found = SolveViewsAtYaw(world.Observation(std::nullopt), world.TrueYaw());
-    ASSERT_TRUE(found);
-    ExpectSame(found->landmark, world.truth, 1e-4);
+    const World world(kCuboidExponent, Arc(6));
+    ExpectTruth(world, world.Observation(std::nullopt));
   }
 }
 
@@ -158,15 +156,11 @@ TEST(SolveViewsAtYaw, LetsTheBodyReachBeyondOneSidedEdges) {
   for (Detection& detection : world.sequence.detections) {
     detection.box.y_max -= 0.3 * detection.box.Height();
   }
-  const auto solve = [&] {
-    return SolveViewsAtYaw(world.Observation(world.Prior(0.3)), world.TrueYaw());
-  };
-  const auto taken_for_measured = solve();
+  const auto taken_for_measured =
+      SolveViewsAtYaw(world.Observation(world.Prior(0.3)), world.TrueYaw());
   EXPECT_TRUE(!taken_for_measured || BoxIou(taken_for_measured->landmark, world.truth) < 0.95);
   for (Detection& detection : world.sequence.detections) detection.is_one_sided[3] = true;
-  const auto found = solve();
-  ASSERT_TRUE(found);
-  ExpectSame(found->landmark, world.truth, 1e-4);
+  ExpectTruth(world, world.Observation(world.Prior(0.3)));
 }
 
 TEST(SolveViewsAtYaw, IsExactWithBoxesOfAKnownBias) {
@@ -176,9 +170,7 @@ TEST(SolveViewsAtYaw, IsExactWithBoxesOfAKnownBias) {
   }
   ShapePrior prior = world.Prior(0.3);
   prior.edge_bias = {0.0, 0.0, 0.0, -0.25};  // of the height that is left
-  const auto found = SolveViewsAtYaw(world.Observation(prior), world.TrueYaw());
-  ASSERT_TRUE(found);
-  ExpectSame(found->landmark, world.truth, 1e-4);
+  ExpectTruth(world, world.Observation(prior));
 }
 
 TEST(SolveViews, PolishesTheYaw) {

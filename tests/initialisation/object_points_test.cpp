@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "geometry/angles.h"
 #include "initialisation/initialise.h"
+#include "support/cuboid_map.h"
 #include "support/points_on_objects.h"
 #include "support/random.h"
 #include "support/scene.h"
@@ -34,21 +34,24 @@ TEST(FindObjectPointsTest, PointsOfAnObjectAreInItsBoxes) {
   EXPECT_GT(count, 40u);
 }
 
+// A point of the first body's vertical axis, this many half axes over its centre.
+Eigen::Vector3d OnAxis(const Sequence& sequence, double half_axes) {
+  const Landmark& body = TrueBody(sequence, 0);
+  return body.frame_from_object * Eigen::Vector3d(0.0, 0.0, half_axes * body.half_axes.z());
+}
+
 TEST(FindObjectPointsTest, PointsOnThePlaneAndOutsideBoxesAreNotOfTheObject) {
   const Sequence sequence = CuboidSequence(1, 12);
-  const Landmark& body = TrueBody(sequence, 0);
-  const Eigen::Vector3d foot =
-      body.frame_from_object * Eigen::Vector3d(0.0, 0.0, -body.half_axes.z());
-  const Eigen::Vector3d above =
-      body.frame_from_object * Eigen::Vector3d(0.0, 0.0, 3.0 * body.half_axes.z());
-  const auto found = FindObjectPoints(sequence, {Seen(sequence, foot), Seen(sequence, above)}, {});
+  const auto found = FindObjectPoints(sequence,
+                                      {Seen(sequence, OnAxis(sequence, -1.0)),  // the foot
+                                       Seen(sequence, OnAxis(sequence, 3.0))},
+                                      {});
   EXPECT_TRUE(found[0].empty());
 }
 
 TEST(FindObjectPointsTest, TheWorldOfThePointsDoesNotMatter) {
   const Sequence sequence = CuboidSequence(1, 12);
-  const Eigen::Vector3d top = TrueBody(sequence, 0).frame_from_object *
-                              Eigen::Vector3d(0.0, 0.0, TrueBody(sequence, 0).half_axes.z());
+  const Eigen::Vector3d top = OnAxis(sequence, 1.0);
   MapPoint point = Seen(sequence, top);
   point.position_in_world = {100.0, 200.0, 300.0};
   const auto found = FindObjectPoints(sequence, {point}, {});
@@ -69,8 +72,7 @@ PointOptions ExactPoints() {
 
 TEST(PointsInFramesTest, AreInTheCameraOfEachDetection) {
   const Sequence sequence = CuboidSequence(1, 12);
-  const Eigen::Vector3d top = TrueBody(sequence, 0).frame_from_object *
-                              Eigen::Vector3d(0.0, 0.0, TrueBody(sequence, 0).half_axes.z());
+  const Eigen::Vector3d top = OnAxis(sequence, 1.0);
   const PointsInFrames points(sequence, {Seen(sequence, top)}, {});
   for (size_t i = 0; i < sequence.detections.size(); ++i) {
     const Landmark in_camera = *TrueLandmarkInCamera(sequence, sequence.detections[i]);
@@ -148,11 +150,7 @@ MeanErrors MeanErrorsOf(const Sequence& sequence, const LandmarkEstimates& estim
 // A box has two yaws, and boxes have errors.
 TEST(PointsInFramesTest, MakeSingleFramesBetter) {
   const Sequence sequence = CuboidSequence(4, 8);
-  Sequence noisy = sequence;
-  for (Detection& detection : noisy.detections) {
-    detection.box.x_max += RandomUniform(-6, 6);
-    detection.box.y_min += RandomUniform(-6, 6);
-  }
+  const Sequence noisy = WithBoxNoise(sequence, 6.0);
   const auto priors = TrueCuboidPriors(sequence, 0.2);
   UprightOptions options;
   options.axes_weight = 0.0;

@@ -8,7 +8,6 @@
 #include "initialisation/initialise.h"
 #include "support/random.h"
 #include "support/scene.h"
-#include "synthesis/simulate.h"
 
 namespace soslam {
 namespace {

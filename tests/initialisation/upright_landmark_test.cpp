@@ -28,7 +28,7 @@ TEST(UprightLandmark, StandsUprightOnItsPlane) {
   }
 }
 
-TEST(UprightLandmark, HasTheGivenYawFootAndHalfAxes) {
+TEST(UprightLandmark, HasTheGivenYawFootAndHalfAxesAndTellsThem) {
   for (int i = 0; i < 100; ++i) {
     const Plane plane = RandomPlane();
     const UprightVector parameters = RandomUprightParameters();
@@ -43,14 +43,6 @@ TEST(UprightLandmark, HasTheGivenYawFootAndHalfAxes) {
     const Eigen::Vector3d along_axes =
         UprightRotation(plane.normal, 0.0).conjugate() * from_nearest;
     EXPECT_LT((along_axes - Eigen::Vector3d(parameters(1), parameters(2), 0.0)).norm(), 1e-12);
-  }
-}
-
-TEST(UprightParameters, AreThoseThatTheLandmarkWasMadeOf) {
-  for (int i = 0; i < 100; ++i) {
-    const Plane plane = RandomPlane();
-    const UprightVector parameters = RandomUprightParameters();
-    const Landmark landmark = UprightGround(plane).LandmarkAt(parameters, 1.5);
     EXPECT_LT((UprightGround(plane).ParametersOf(landmark) - parameters).norm(), 1e-12);
   }
 }

@@ -10,7 +10,6 @@
 #include <numbers>
 
 #include "geometry/angles.h"
-#include "initialisation/closed_form.h"
 #include "initialisation/upright_observation.h"
 #include "support/level_sequence.h"
 #include "support/shape_exponents.h"
