@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planes/estimate_planes.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -38,6 +37,21 @@ UpPrior Attitude(const Sequence& sequence) {
 PlanesEstimate Estimate(const Sequence& sequence, const PlanesOptions& options = ModelOptions()) {
   return FindPlanes(sequence, TrueCuboidPriors(sequence, kLogSigma), Attitude(sequence), options, 2)
       .value();
+}
+
+// Of the detections of an object only the first is left.
+void KeepOneDetectionOf(int object_index, Sequence* sequence) {
+  bool seen = false;
+  std::erase_if(sequence->detections, [&](const Detection& detection) {
+    return detection.object_index == object_index && std::exchange(seen, true);
+  });
+}
+
+// Objects stand on the planes in turn.
+void ExpectInTurn(const PlanesEstimate& estimate) {
+  for (size_t i = 0; i < estimate.objects.size(); ++i) {
+    EXPECT_EQ(estimate.objects[i].plane_index, static_cast<int>(i % 2)) << i;
+  }
 }
 
 void ExpectGiven(const Sequence& sequence, const PlanesEstimate& estimate, double angle,
@@ -81,9 +95,9 @@ TEST(EstimatePlanes, SeparatesAShelfFromTheFloor) {
     const PlanesEstimate estimate = Estimate(sequence);
     ASSERT_EQ(estimate.planes.size(), 2u);
     ExpectGiven(sequence, estimate, 0.2 * kRadPerDeg, 0.005);
-    for (size_t i = 0; i < sequence.objects.size(); ++i) {
-      EXPECT_EQ(estimate.objects[i].plane_index, static_cast<int>(i % 2)) << i;
-      EXPECT_EQ(estimate.objects[i].reason, SupportReason::kOwnHeight) << i;
+    ExpectInTurn(estimate);
+    for (const ObjectSupport& object : estimate.objects) {
+      EXPECT_EQ(object.reason, SupportReason::kOwnHeight);
     }
   }
 }
@@ -104,9 +118,7 @@ TEST(EstimatePlanes, WhatHangsHasCeilings) {
             .value();
     ASSERT_EQ(estimate.planes.size(), 2u);
     ExpectGiven(sequence, estimate, 0.2 * kRadPerDeg, 0.005);
-    for (size_t i = 0; i < sequence.objects.size(); ++i) {
-      EXPECT_EQ(estimate.objects[i].plane_index, static_cast<int>(i % 2)) << i;
-    }
+    ExpectInTurn(estimate);
   }
 }
 
@@ -115,11 +127,7 @@ TEST(EstimatePlanes, WhatHasNoPlaneToBeMountedOnHasNoSupport) {
   auto priors = TrueCuboidPriors(sequence, kLogSigma);
   priors[0]->mount = Mount::kOnWall;
   priors[1]->mount = Mount::kHanging;  // seen once: no height
-  const auto first = std::ranges::find(sequence.detections, 1, &Detection::object_index);
-  const int frame = first->frame_index;
-  std::erase_if(sequence.detections, [&](const Detection& detection) {
-    return detection.object_index == 1 && detection.frame_index != frame;
-  });
+  KeepOneDetectionOf(1, &sequence);
   const PlanesEstimate estimate =
       FindPlanes(sequence, priors, Attitude(sequence), ModelOptions(), 2).value();
   EXPECT_EQ(estimate.planes.size(), 1u);
@@ -239,12 +247,7 @@ TEST(EstimatePlanes, HeightsCountOnlyWithSizePrior) {
 // the object's label says on which it stands.
 TEST(EstimatePlanes, AnObjectSeenOnceNeedsItsHeight) {
   Sequence sequence = SyntheticSequence(WithShelf(CuboidScene(2, 5), 0.3), false);
-  for (const int once : {0, 1}) {
-    bool seen = false;
-    std::erase_if(sequence.detections, [&](const Detection& detection) {
-      return detection.object_index == once && std::exchange(seen, true);
-    });
-  }
+  for (const int once : {0, 1}) KeepOneDetectionOf(once, &sequence);
   const PlanesEstimate without = EstimateWithHeights(sequence, 0.05, false);
   const PlanesEstimate with = EstimateWithHeights(sequence, 0.05, true);
   ASSERT_EQ(with.planes.size(), 2u);

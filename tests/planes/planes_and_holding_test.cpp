@@ -36,6 +36,13 @@ PlanesAndHolding EstimateHeld(const Sequence& sequence) {
                                   HoldingOptions(), 2);
 }
 
+void ExpectTheFloor(const Sequence& sequence, const PlanesAndHolding& held) {
+  const auto error = CompareWithGiven(sequence, held.estimate, 0);
+  ASSERT_TRUE(error);
+  EXPECT_LT(error->angle, 3.0 * kRadPerDeg);
+  EXPECT_LT(std::abs(error->offset), 0.05);
+}
+
 const TriedHolding* Tried(const PlanesAndHolding& held, CameraHolding holding) {
   const auto at = std::ranges::find(held.estimate.holdings, holding, &TriedHolding::holding);
   return at == held.estimate.holdings.end() ? nullptr : &*at;
@@ -53,10 +60,7 @@ TEST(SlowEstimatePlanesAndHolding, FindsUpForEachRoll) {
       EXPECT_EQ(held.estimate.holding, kRolls.at(quarters));
       EXPECT_EQ(held.estimate.holding_tilt_variance, 0.0);
       ASSERT_EQ(held.estimate.planes.size(), 1u);
-      const auto error = CompareWithGiven(sequence, held.estimate, 0);
-      ASSERT_TRUE(error);
-      EXPECT_LT(error->angle, 3.0 * kRadPerDeg);
-      EXPECT_LT(std::abs(error->offset), 0.05);
+      ExpectTheFloor(sequence, held);
     }
   }
 }
@@ -112,9 +116,7 @@ TEST(EstimatePlanesAndHolding, VerticalsThatBodiesContradictAreDoubted) {
   const Eigen::Vector3d tilted(std::sin(10.0 * kRadPerDeg), 0.0, std::cos(10.0 * kRadPerDeg));
   const PlanesAndHolding held = EstimateWithVerticals(sequence, tilted);
   EXPECT_FALSE(held.estimate.verticals);
-  const auto error = CompareWithGiven(sequence, held.estimate, 0);
-  ASSERT_TRUE(error);
-  EXPECT_LT(error->angle, 3.0 * kRadPerDeg);
+  ExpectTheFloor(sequence, held);
 }
 
 // A cube may lie on any side, but its camera is not below its support plane.

@@ -12,6 +12,7 @@
 #include "geometry/angles.h"
 #include "planes/planes_and_holding.h"
 #include "planes/scene_axis.h"
+#include "support/looking_at.h"
 #include "support/random.h"
 
 namespace soslam {
@@ -55,10 +56,8 @@ constexpr double kCorrelation = 20.0 * kRadPerDeg;
 Rigid3d LevelCamera(double heading, double downwards) {
   const Eigen::Vector3d forward(std::cos(heading) * std::cos(downwards),
                                 std::sin(heading) * std::cos(downwards), -std::sin(downwards));
-  const Eigen::Vector3d right(std::sin(heading), -std::cos(heading), 0.0);
-  Eigen::Matrix3d axes;
-  axes << right, forward.cross(right), forward;
-  return {Eigen::Quaterniond(axes), RandomVector(-1, 1)};
+  const Eigen::Vector3d centre = RandomVector(-1, 1);
+  return LookingAt(centre, centre + forward);
 }
 
 double AngleToUp(const std::vector<Rigid3d>& poses) {
@@ -225,23 +224,14 @@ std::vector<Rigid3d> Drifted(const std::vector<Rigid3d>& truth, double drift) {
   return drifted;
 }
 
-// Six verticals two to four metres in front of each true camera, seen exactly.
+// Six verticals in front of each true camera, seen exactly.
 std::vector<SegmentView> ViewsOf(const std::vector<Rigid3d>& truth,
                                  const std::vector<Rigid3d>& odometry) {
-  const Camera camera = TestCamera();
   std::vector<SegmentView> views;
   for (size_t i = 0; i < truth.size(); ++i) {
-    const Rigid3d camera_from_world = truth[i].Inverse();
-    SegmentView view{camera, {}, odometry[i]};
-    while (view.segments.size() < 6) {
-      const Eigen::Vector3d foot =
-          truth[i] *
-          Eigen::Vector3d(RandomUniform(-1, 1), RandomUniform(0, 0.7), RandomUniform(2, 4));
-      const auto begin = camera.Project(camera_from_world * foot);
-      const auto end = camera.Project(camera_from_world * (foot + 0.5 * Eigen::Vector3d::UnitZ()));
-      if (begin && end) view.segments.push_back({*begin, *end});
-    }
-    views.push_back(view);
+    views.push_back(
+        ViewOfEdges(truth[i], std::vector<Eigen::Vector3d>(6, Eigen::Vector3d::UnitZ())));
+    views.back().world_from_camera = odometry[i];
   }
   return views;
 }
