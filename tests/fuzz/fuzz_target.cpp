@@ -48,7 +48,7 @@ fs::path HostileInput::AsFolder() const {
   return folder;
 }
 
-FuzzTarget::FuzzTarget(const std::string& name, Read read) { All().emplace(name, read); }
+FuzzTarget::FuzzTarget(const std::string& name, const Read& read) { All().emplace(name, read); }
 
 std::map<std::string, FuzzTarget::Read>& FuzzTarget::All() {
   static std::map<std::string, Read> targets;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -28,13 +29,13 @@ class HostileInput {
   TemporaryFolder files_;
 };
 
-// One way of reading hostile input. Each is a global variable, which registers it under its name.
+// One way of reading hostile input. Each is a global constant, which registers it under its name.
 class FuzzTarget {
  public:
   // Whatever `read` throws is a finding.
-  using Read = void (*)(const HostileInput& input);
+  using Read = std::function<void(const HostileInput& input)>;
 
-  FuzzTarget(const std::string& name, Read read);
+  FuzzTarget(const std::string& name, const Read& read);
   // All targets by name.
   static std::map<std::string, Read>& All();
 };
@@ -53,6 +54,12 @@ bool IsAccepted(const std::filesystem::path& path, const ReadFile& read) {
     CheckNames(error, path);
     return false;
   }
+}
+
+// Reads the input at `path` in each of these ways, each of which may refuse it so.
+template <typename... Readers>
+void ReadBy(const std::filesystem::path& path, const Readers&... readers) {
+  (IsAccepted(path, [&] { readers(path); }), ...);
 }
 
 }  // namespace soslam

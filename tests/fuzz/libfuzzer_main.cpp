@@ -10,7 +10,7 @@
 
 namespace {
 
-soslam::FuzzTarget::Read g_read = nullptr;
+soslam::FuzzTarget::Read g_read;
 
 [[noreturn]] void ListTargets() {
   for (const auto& [name, read] : soslam::FuzzTarget::All()) std::cout << name << "\n";
@@ -32,7 +32,7 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
     const auto found = soslam::FuzzTarget::All().find(std::string(argument.substr(kTarget.size())));
     if (found != soslam::FuzzTarget::All().end()) g_read = found->second;
   }
-  if (g_read != nullptr) return 0;
+  if (g_read) return 0;
   std::cerr << "expected --target=<name>, one of those that --list prints\n";
   std::exit(2);
 }

@@ -71,14 +71,11 @@ const FuzzTarget kSemanticTable("semantic_table", [](const HostileInput& input) 
 });
 
 const FuzzTarget kCatalogue("catalogue", [](const HostileInput& input) {
-  const auto file = input.AsFile("catalogue");
-  IsAccepted(file, [&] { ReadFurnitureCatalogue(file); });
-  IsAccepted(file, [&] { ReadCatalogueNames(file); });
+  ReadBy(input.AsFile("catalogue"), ReadFurnitureCatalogue, ReadCatalogueNames);
 });
 
 const FuzzTarget kScene("scene", [](const HostileInput& input) {
-  const auto file = input.AsFile("scene.json");
-  IsAccepted(file, [&] { ReadScene(file); });
+  ReadBy(input.AsFile("scene.json"), ReadScene);
 });
 
 }  // namespace

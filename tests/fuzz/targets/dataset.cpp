@@ -16,13 +16,15 @@ namespace soslam {
 namespace {
 
 // What is imported can be written, and what is written can be read.
-void Import(const HostileInput& input, const ImportOptions& options) {
-  const auto folder = input.AsFolder();
-  Sequence sequence;
-  if (!IsAccepted(folder, [&] { sequence = ImportDataset(folder, options); })) return;
-  const auto file = input.Output("sequence.json");
-  WriteSequence(file, sequence, {});
-  ReadSequence(file, PlaneNeed::kNotNeeded);
+FuzzTarget::Read Import(const ImportOptions& options) {
+  return [=](const HostileInput& input) {
+    const auto folder = input.AsFolder();
+    Sequence sequence;
+    if (!IsAccepted(folder, [&] { sequence = ImportDataset(folder, options); })) return;
+    const auto file = input.Output("sequence.json");
+    WriteSequence(file, sequence, {});
+    ReadSequence(file, PlaneNeed::kNotNeeded);
+  };
 }
 
 ImportOptions OfFormat(DatasetFormat format) {
@@ -33,55 +35,46 @@ ImportOptions OfFormat(DatasetFormat format) {
   return options;
 }
 
-ImportOptions OfDetections(DetectionsFormat format, const std::string& detections) {
-  ImportOptions options = OfFormat(DatasetFormat::kSoslam);
-  options.detections = detections;
-  options.folder.detections_format = format;
+ImportOptions OfTumRgbd() {
+  ImportOptions options = OfFormat(DatasetFormat::kTumRgbd);
+  options.folder.align_odometry = true;
   return options;
 }
 
-const FuzzTarget kSoslam("import_soslam", [](const HostileInput& input) {
-  Import(input, OfFormat(DatasetFormat::kSoslam));
-});
-const FuzzTarget kTumRgbd("import_tum_rgbd", [](const HostileInput& input) {
-  ImportOptions options = OfFormat(DatasetFormat::kTumRgbd);
-  options.folder.align_odometry = true;
-  Import(input, options);
-});
-const FuzzTarget kIclNuim("import_icl_nuim", [](const HostileInput& input) {
-  Import(input, OfFormat(DatasetFormat::kIclNuim));
-});
-const FuzzTarget kKittiTracking("import_kitti_tracking", [](const HostileInput& input) {
-  Import(input, OfFormat(DatasetFormat::kKittiTracking));
-});
-const FuzzTarget kKittiDetector("import_kitti_detector", [](const HostileInput& input) {
+ImportOptions OfKittiDetector() {
   ImportOptions options = OfFormat(DatasetFormat::kKittiTracking);
   options.detections = "detector";
-  Import(input, options);
-});
-const FuzzTarget kKittiObject("import_kitti_object", [](const HostileInput& input) {
-  Import(input, OfFormat(DatasetFormat::kKittiObject));
-});
-const FuzzTarget kSlamSynthetic("import_slam_synthetic", [](const HostileInput& input) {
-  Import(input, OfFormat(DatasetFormat::kSlamSynthetic));
-});
-const FuzzTarget kYolo("import_yolo", [](const HostileInput& input) {
-  Import(input, OfDetections(DetectionsFormat::kYolo, "boxes"));
-});
-const FuzzTarget kCoco("import_coco", [](const HostileInput& input) {
-  ImportOptions options = OfDetections(DetectionsFormat::kCoco, "boxes.json");
-  options.folder.class_names = "names.json";
-  Import(input, options);
-});
-const FuzzTarget kNerfstudio("import_nerfstudio", [](const HostileInput& input) {
+  return options;
+}
+
+ImportOptions OfDetections(DetectionsFormat format, const std::string& detections,
+                           const std::string& class_names = "") {
+  ImportOptions options = OfFormat(DatasetFormat::kSoslam);
+  options.detections = detections;
+  options.folder.detections_format = format;
+  options.folder.class_names = class_names;
+  return options;
+}
+
+ImportOptions OfNerfstudio() {
   ImportOptions options = OfFormat(DatasetFormat::kSoslam);
   options.folder.images = options.folder.odometry = options.folder.camera_file = "transforms.json";
   options.folder.trajectory_format = TrajectoryFormat::kNerfstudio;
-  Import(input, options);
-});
-const FuzzTarget kKittiClasses("import_kitti_classes", [](const HostileInput& input) {
-  Import(input, OfDetections(DetectionsFormat::kKitti, "boxes"));
-});
+  return options;
+}
+
+const FuzzTarget kImports[] = {
+    {"import_soslam", Import(OfFormat(DatasetFormat::kSoslam))},
+    {"import_tum_rgbd", Import(OfTumRgbd())},
+    {"import_icl_nuim", Import(OfFormat(DatasetFormat::kIclNuim))},
+    {"import_kitti_tracking", Import(OfFormat(DatasetFormat::kKittiTracking))},
+    {"import_kitti_detector", Import(OfKittiDetector())},
+    {"import_kitti_object", Import(OfFormat(DatasetFormat::kKittiObject))},
+    {"import_slam_synthetic", Import(OfFormat(DatasetFormat::kSlamSynthetic))},
+    {"import_yolo", Import(OfDetections(DetectionsFormat::kYolo, "boxes"))},
+    {"import_coco", Import(OfDetections(DetectionsFormat::kCoco, "boxes.json", "names.json"))},
+    {"import_kitti_classes", Import(OfDetections(DetectionsFormat::kKitti, "boxes"))},
+    {"import_nerfstudio", Import(OfNerfstudio())}};
 
 const FuzzTarget kBoxArchives("box_archives", [](const HostileInput& input) {
   const auto archive = input.AsFile("boxes.zip");
@@ -100,43 +93,31 @@ const FuzzTarget kBoxJson("box_json", [](const HostileInput& input) {
 
 const FuzzTarget kCameras("cameras", [](const HostileInput& input) {
   for (const char* name : {"camera.json", "camera.yaml", "camera.xml", "cameras.txt"}) {
-    const auto file = input.AsFile(name);
-    IsAccepted(file, [&] { ReadCameraFile(file); });
+    ReadBy(input.AsFile(name), ReadCameraFile);
   }
 });
 
 // A folder is a model as text, as the files of a folder end with a line.
 const FuzzTarget kColmap("colmap", [](const HostileInput& input) {
-  const auto folder = input.AsFolder();
-  IsAccepted(folder, [&] { ReadColmapModel(folder); });
-  const auto file = input.AsFile("model.bin");
-  IsAccepted(file, [&] { ReadColmapCamera(file); });
-  IsAccepted(file, [&] { ReadColmapPoses(file); });
-  IsAccepted(file, [&] { ReadColmapPoints(file); });
+  ReadBy(input.AsFolder(), ReadColmapModel);
+  ReadBy(input.AsFile("model.bin"), ReadColmapCamera, ReadColmapPoses, ReadColmapPoints);
 });
 
 const FuzzTarget kDatasetJson("dataset_json", [](const HostileInput& input) {
   const auto file = input.AsFile("dataset.json");
   IsAccepted(file, [&] { ReadCamera(file); });
   IsAccepted(file, [&] { ReadCamera(file, CameraYAxis::kUp); });
-  IsAccepted(file, [&] { ReadPlanes(file); });
-  IsAccepted(file, [&] { ReadObjects(file); });
+  ReadBy(file, ReadPlanes, ReadObjects);
 });
 
 const FuzzTarget kDetectionsCsv("detections_csv", [](const HostileInput& input) {
-  const auto file = input.AsFile("detections.csv");
-  IsAccepted(file, [&] { ReadDetectionsCsv(file); });
-  IsAccepted(file, [&] { ReadLabelFile(file); });
-  const auto yaml = input.AsFile("data.yaml");
-  IsAccepted(yaml, [&] { ReadLabelFile(yaml); });
+  ReadBy(input.AsFile("detections.csv"), ReadDetectionsCsv, ReadLabelFile);
+  ReadBy(input.AsFile("data.yaml"), ReadLabelFile);
 });
 
 const FuzzTarget kKittiLabels("kitti_labels", [](const HostileInput& input) {
-  const auto file = input.AsFile("000000.txt");
-  IsAccepted(file, [&] { ReadKittiCalibration(file); });
-  IsAccepted(file, [&] { ReadKittiTrackingLabels(file); });
-  IsAccepted(file, [&] { ReadKittiObjectLabels(file); });
-  IsAccepted(file, [&] { ReadKittiBoxes(file); });
+  ReadBy(input.AsFile("000000.txt"), ReadKittiCalibration, ReadKittiTrackingLabels,
+         ReadKittiObjectLabels, ReadKittiBoxes);
 });
 
 const FuzzTarget kLists("lists", [](const HostileInput& input) {
@@ -148,10 +129,7 @@ const FuzzTarget kLists("lists", [](const HostileInput& input) {
 
 const FuzzTarget kTrajectories("trajectories", [](const HostileInput& input) {
   const auto file = input.AsFile("trajectory.txt");
-  IsAccepted(file, [&] { ReadTrajectory(file); });
-  IsAccepted(file, [&] { ReadKittiTrajectory(file); });
-  IsAccepted(file, [&] { ReadEurocTrajectory(file); });
-  IsAccepted(file, [&] { ReadColmapPoses(file); });
+  ReadBy(file, ReadTrajectory, ReadKittiTrajectory, ReadEurocTrajectory, ReadColmapPoses);
   std::vector<Finding> findings;
   IsAccepted(file, [&] { ReadNerfstudioPoses(file, &findings); });
 });

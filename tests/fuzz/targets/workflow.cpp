@@ -49,8 +49,7 @@ const FuzzTarget kResults("results", [](const HostileInput& input) {
 });
 
 const FuzzTarget kPublished("published", [](const HostileInput& input) {
-  const auto file = input.AsFile("published.json");
-  IsAccepted(file, [&] { ReadPublished(file); });
+  ReadBy(input.AsFile("published.json"), ReadPublished);
 });
 
 }  // namespace
