@@ -45,6 +45,13 @@ class InspectionTest : public testing::Test {
     if (found == columns.end()) throw std::out_of_range(column);
     return inspection.table.rows.at(row).at(found - columns.begin());
   }
+  // Expects these values in a row, by column.
+  static void ExpectRow(const Inspection& inspection, size_t row,
+                        const std::vector<std::pair<std::string, Value>>& values) {
+    for (const auto& [column, value] : values) {
+      EXPECT_EQ(At(inspection, row, column), value) << column << " of row " << row;
+    }
+  }
 
   Sequence sequence_ = RandomSequence();
 
@@ -60,11 +67,8 @@ TEST_F(InspectionTest, SequencesHaveARowPerObject) {
   EXPECT_EQ(Said(inspection, "detections"), "10 used, 19 rejected: 17 near_border, 2 duplicate");
   EXPECT_THAT(Said(inspection, "frames"), HasSubstr("5, ids 10 to 30, segments: 2"));
   ASSERT_EQ(inspection.table.rows.size(), 4u);
-  EXPECT_EQ(At(inspection, 1, "object"), 4);
-  EXPECT_EQ(At(inspection, 1, "plane"), 3);
-  EXPECT_EQ(At(inspection, 1, "views"), 2);
-  EXPECT_EQ(At(inspection, 1, "first_frame"), 15);
-  EXPECT_EQ(At(inspection, 1, "static"), true);
+  ExpectRow(inspection, 1,
+            {{"object", 4}, {"plane", 3}, {"views", 2}, {"first_frame", 15}, {"static", true}});
 }
 
 TEST_F(InspectionTest, LandmarksHaveARowPerObservationAndObject) {
@@ -76,13 +80,12 @@ TEST_F(InspectionTest, LandmarksHaveARowPerObservationAndObject) {
   EXPECT_THAT(Said(inspection, "found"), HasSubstr("2 of 3 observations"));
   EXPECT_EQ(Said(inspection, "failures"), "1 plane_behind_camera, 1 too_few_views");
   ASSERT_EQ(inspection.table.rows.size(), 6u);
-  EXPECT_EQ(At(inspection, 0, "x"),
-            estimates.observations[0].hypotheses[0].landmark_in_camera.Centre().x());
-  EXPECT_EQ(At(inspection, 0, "hypotheses"), 2);
-  EXPECT_EQ(At(inspection, 1, "failure"), "plane_behind_camera");
-  EXPECT_TRUE(At(inspection, 1, "x").is_null());
-  EXPECT_EQ(At(inspection, 3, "label"), "label");
-  EXPECT_EQ(At(inspection, 4, "failure"), "not an ellipsoid");
+  ExpectRow(inspection, 0,
+            {{"x", estimates.observations[0].hypotheses[0].landmark_in_camera.Centre().x()},
+             {"hypotheses", 2}});
+  ExpectRow(inspection, 1, {{"failure", "plane_behind_camera"}, {"x", nullptr}});
+  ExpectRow(inspection, 3, {{"label", "label"}});
+  ExpectRow(inspection, 4, {{"failure", "not an ellipsoid"}});
   EXPECT_TRUE(At(Read(), 3, "label").is_null()) << "nobody knows it without the sequence";
 }
 
@@ -129,10 +132,8 @@ TEST_F(InspectionTest, MetricsHaveARowPerObject) {
   EXPECT_THAT(Said(inspection, "all"), HasSubstr("yaw error - (median -) deg"));
   EXPECT_THAT(Said(inspection, "trajectory"), HasSubstr("0.0100 m, of the odometry 0.0200 m"));
   EXPECT_THAT(Said(inspection, "held out"), HasSubstr("in 3 frames: 5 of 6 detections"));
-  EXPECT_EQ(At(inspection, 0, "iou"), 0.75);
-  EXPECT_TRUE(At(inspection, 0, "held_out_iou").is_null());
-  EXPECT_TRUE(At(inspection, 1, "centre_error").is_null());
-  EXPECT_EQ(At(inspection, 1, "held_out_iou"), 0.9);
+  ExpectRow(inspection, 0, {{"iou", 0.75}, {"held_out_iou", nullptr}});
+  ExpectRow(inspection, 1, {{"centre_error", nullptr}, {"held_out_iou", 0.9}});
 }
 
 TEST_F(InspectionTest, MetricsWithoutIdsHaveARowPerLandmark) {
@@ -170,10 +171,9 @@ TEST_F(InspectionTest, MetricsWithoutIdsHaveARowPerLandmark) {
   EXPECT_EQ(Said(inspection, "missed"), "41 (mouse): gated; near_border 4");
   EXPECT_THAT(Said(inspection, "false"), HasSubstr("background"));
   ASSERT_EQ(inspection.table.rows.size(), 3u);
-  EXPECT_EQ(At(inspection, 0, "true_object"), 40);
-  EXPECT_EQ(At(inspection, 0, "iou"), 0.75);
-  EXPECT_EQ(At(inspection, 1, "reason"), "background");
-  EXPECT_EQ(At(inspection, 2, "fate"), "ignored");
+  ExpectRow(inspection, 0, {{"true_object", 40}, {"iou", 0.75}});
+  ExpectRow(inspection, 1, {{"reason", "background"}});
+  ExpectRow(inspection, 2, {{"fate", "ignored"}});
 }
 
 TEST_F(InspectionTest, PlanesSayWhatStandsOnThem) {
@@ -210,8 +210,7 @@ TEST_F(InspectionTest, AssociationsHaveARowPerObject) {
   const Inspection inspection = Read();
   EXPECT_THAT(Said(inspection, "agreement"), HasSubstr("precision 1.000, recall 0.500"));
   EXPECT_EQ(Said(inspection, "detections"), "10: 10 new_track");
-  EXPECT_EQ(At(inspection, 0, "given_object"), 4);
-  EXPECT_EQ(At(inspection, 0, "label_votes"), "3 cup, 1 mug");
+  ExpectRow(inspection, 0, {{"given_object", 4}, {"label_votes", "3 cup, 1 mug"}});
 }
 
 TEST_F(InspectionTest, SemanticTablesHaveARowPerLabel) {
@@ -221,10 +220,8 @@ TEST_F(InspectionTest, SemanticTablesHaveARowPerLabel) {
   WriteSemanticRows(File(), {"sizes", std::nullopt, {cup}}, {});
   const Inspection inspection = Read();
   EXPECT_EQ(Said(inspection, "what"), "sizes");
-  EXPECT_EQ(At(inspection, 0, "aliases"), "mug, beaker");
-  EXPECT_EQ(At(inspection, 0, "height"), 0.1);
-  EXPECT_EQ(At(inspection, 0, "p"), 2.0);
-  EXPECT_EQ(At(inspection, 0, "p_vertical"), 1.25);
+  ExpectRow(inspection, 0,
+            {{"aliases", "mug, beaker"}, {"height", 0.1}, {"p", 2.0}, {"p_vertical", 1.25}});
 }
 
 TEST_F(InspectionTest, PointsHaveARowPerFrame) {
@@ -237,9 +234,7 @@ TEST_F(InspectionTest, PointsHaveARowPerFrame) {
   EXPECT_EQ(Said(inspection, "reprojection error"), "median 1.00 px");
   EXPECT_THAT(Said(inspection, "98 % lie within"), HasSubstr("x 0.000 to 0.500"));
   ASSERT_EQ(inspection.table.rows.size(), 3u);
-  EXPECT_EQ(At(inspection, 1, "frame"), 5);
-  EXPECT_EQ(At(inspection, 1, "points"), 2);
-  EXPECT_EQ(At(inspection, 1, "median_error"), 1.0);
+  ExpectRow(inspection, 1, {{"frame", 5}, {"points", 2}, {"median_error", 1.0}});
 }
 
 TEST_F(InspectionTest, ReconstructionsHaveARowPerComponent) {
@@ -269,9 +264,8 @@ TEST_F(InspectionTest, EdgesHaveARowPerFrame) {
   EXPECT_EQ(At(inspection, 0, "frame"), 7);
   EXPECT_GT(At(inspection, 0, "edges").get<int>(), 60);
   EXPECT_GT(At(inspection, 0, "mean_distance").get<double>(), 1.0);
-  EXPECT_EQ(At(inspection, 1, "frame"), 1234567);
-  EXPECT_EQ(At(inspection, 1, "edges"), 0);
-  EXPECT_TRUE(At(inspection, 1, "mean_distance").is_null()) << "there is no edge";
+  // There is no edge.
+  ExpectRow(inspection, 1, {{"frame", 1234567}, {"edges", 0}, {"mean_distance", nullptr}});
 }
 
 TEST_F(InspectionTest, SymmetryHasARowPerObservation) {
@@ -286,10 +280,8 @@ TEST_F(InspectionTest, SymmetryHasARowPerObservation) {
   WriteSymmetry(File(), {record}, {});
   const Inspection inspection = Read(sequence_);
   EXPECT_EQ(Said(inspection, "curves"), "1 total; up to 2 yaws each");
-  EXPECT_EQ(At(inspection, 0, "label"), "label");
-  EXPECT_EQ(At(inspection, 0, "pairs"), 1);
+  ExpectRow(inspection, 0, {{"label", "label"}, {"pairs", 1}, {"initial_yaw", nullptr}});
   EXPECT_NEAR(At(inspection, 0, "yaw_error").get<double>(), 18.0 / std::numbers::pi, 1e-9);
-  EXPECT_TRUE(At(inspection, 0, "initial_yaw").is_null());
 }
 
 TEST_F(InspectionTest, WhatIsNoArtefactIsRefused) {

@@ -11,8 +11,6 @@
 #include "inspection/projection.h"
 #include "support/random.h"
 #include "support/scene.h"
-#include "support/true_map.h"
-#include "synthesis/simulate.h"
 
 namespace soslam {
 namespace {

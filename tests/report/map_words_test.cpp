@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <set>
@@ -13,6 +14,7 @@ namespace soslam {
 namespace {
 
 using nlohmann::json;
+using testing::HasSubstr;
 
 json World(const json& scale) { return {{"scale", scale}, {"up", {{"sigma_deg", 0.44}}}}; }
 
@@ -33,9 +35,8 @@ TEST(ScaleFromWorld, SaysHowGoodScaleAndUpAreAndWhatTheyRestOn) {
       scale.sentence,
       "Scale ± 20 % (95 %), from the usual heights of 7 detected things. Up ± 0.4° (one standard "
       "deviation).");
-  EXPECT_NE(ScaleFromWorld(World(Scale({"objects", "camera_height_m"})), {})
-                .sentence.find("of 7 detected things and the camera's height given. Up"),
-            std::string::npos);
+  EXPECT_THAT(ScaleFromWorld(World(Scale({"objects", "camera_height_m"})), {}).sentence,
+              HasSubstr("of 7 detected things and the camera's height given. Up"));
   EXPECT_EQ(scale.warning, "");
 }
 
@@ -48,14 +49,14 @@ TEST(ScaleFromWorld, SaysWhatContradictsScaleAndUp) {
   scale = Scale({"objects"});
   scale["contradicted_by"] = {"scale_contradicted"};
   json world = World(scale);
-  world["findings"] = {{{"check", "up_direction"}}};
-  EXPECT_NE(ScaleFromWorld(world, {}).warning.find("objects look alike in other ways to hold"),
-            std::string::npos);
-  world["findings"] = {{{"check", "camera_holding_of_planes"}}};
-  EXPECT_NE(ScaleFromWorld(world, {}).warning.find("flat surfaces contradict each other"),
-            std::string::npos);
-  world["findings"] = {{{"check", "cameras_turned"}}};
-  EXPECT_EQ(ScaleFromWorld(world, {}).warning,
+  const auto warning_of = [&](const char* check) {
+    world["findings"] = {{{"check", check}}};
+    return ScaleFromWorld(world, {}).warning;
+  };
+  EXPECT_THAT(warning_of("up_direction"), HasSubstr("objects look alike in other ways to hold"));
+  EXPECT_THAT(warning_of("camera_holding_of_planes"),
+              HasSubstr("flat surfaces contradict each other"));
+  EXPECT_EQ(warning_of("cameras_turned"),
             "The scale may be wrong by more than that: the heights of objects contradict one "
             "another. Up may be wrong by more than that: the photos are turned in many ways.");
 }

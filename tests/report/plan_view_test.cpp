@@ -9,8 +9,6 @@
 #include <numbers>
 #include <regex>
 
-#include "geometry/angles.h"
-
 namespace soslam {
 namespace {
 

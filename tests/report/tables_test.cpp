@@ -45,6 +45,12 @@ nlohmann::json Score(int found, double f1) {
             {"ids_agree", 1}}}};
 }
 
+nlohmann::json FalseLandmark(int id, const std::string& label, const nlohmann::json& true_object,
+                             const std::string& reason) {
+  return {{"object", id},     {"label", label}, {"fate", "false"}, {"true_object", true_object},
+          {"reason", reason}, {"detail", ""}};
+}
+
 // What tables read of the metrics.json of a map: a cup that is missed, and a television that is
 // false.
 nlohmann::json MapMetrics(const nlohmann::json& alignments) {
@@ -57,13 +63,7 @@ nlohmann::json MapMetrics(const nlohmann::json& alignments) {
         {"objects",
          {{{"true_object", 7}, {"label", "cup"}, {"reason", "not_detected"}, {"detail", "0 of 9"}},
           {{"true_object", 8}, {"label", "book"}, {"reason", nullptr}, {"detail", nullptr}}}},
-        {"landmarks",
-         {{{"object", 2},
-           {"label", "tv"},
-           {"fate", "false"},
-           {"true_object", nullptr},
-           {"reason", "background"},
-           {"detail", ""}}}}}}};
+        {"landmarks", nlohmann::json::array({FalseLandmark(2, "tv", nullptr, "background")})}}}};
 }
 
 using testing::ElementsAre;
@@ -134,11 +134,6 @@ using testing::IsEmpty;
 
 const json kExact = json::array({Alignment("none", 1.0, 3, 0.0)});
 
-json FalseLandmark(int id, const json& true_object, const char* reason) {
-  return {{"object", id},     {"label", "jar"}, {"fate", "false"}, {"true_object", true_object},
-          {"reason", reason}, {"detail", ""}};
-}
-
 json FoundLandmark(int true_object, const json& wrong_part) {
   return {{"object", 5},
           {"label", "bowl"},
@@ -179,8 +174,8 @@ TEST(LostTable, JoinsTheObjectsOfAReason) {
 
 TEST(LostTable, TheLandmarkOfAMissedObjectIsNotListedAgain) {
   json metrics = MapMetrics(kExact);
-  metrics["map_quality"]["landmarks"] = {FalseLandmark(1, 7, "wrong_size"),
-                                         FalseLandmark(3, 8, "duplicate")};
+  metrics["map_quality"]["landmarks"] = {FalseLandmark(1, "jar", 7, "wrong_size"),
+                                         FalseLandmark(3, "jar", 8, "duplicate")};
   EXPECT_THAT(
       CellTexts(LostTable(OneMap(metrics), {"OursS"})),
       ElementsAre("room OursS missed not detected cup 7", "room OursS false duplicate jar 3"));
