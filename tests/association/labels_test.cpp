@@ -6,9 +6,6 @@
 #include <cmath>
 #include <set>
 
-#include "base/error.h"
-#include "support/expect_error.h"
-
 namespace soslam {
 namespace {
 
@@ -68,13 +65,6 @@ TEST(LabelConfusionTest, AnUncertainObjectHasTheMeanProbability) {
   const LabelConfusion confusion(kLabels, Confusing(0.06, ""));
   EXPECT_NEAR(confusion.Probability("cup", {{"cup", 0.5}, {"tv", 0.5}}), 0.5 * (0.94 + 0.02),
               1e-12);
-}
-
-TEST(LabelConfusionTest, MalformedGroupsAreRefused) {
-  for (const std::string groups : {"cup,", ";", "cup,bowl;cup,tv", "cup,,tv", " "}) {
-    ExpectError<SettingsError>([&] { LabelConfusion(kLabels, Confusing(0.1, groups)); },
-                               {"interchangeable_labels", groups});
-  }
 }
 
 }  // namespace

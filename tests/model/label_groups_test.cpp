@@ -19,9 +19,12 @@ TEST(LabelGroupsTest, LabelsOfAGroupHaveOneRepresentative) {
 }
 
 TEST(LabelGroupsTest, MalformedGroupsAreRefused) {
-  ExpectError<SettingsError>([] { LabelGroups("cup, ; tv"); },
-                             {"interchangeable_labels", "'' as a label"});
-  ExpectError<SettingsError>([] { LabelGroups("cup, bowl; tv, cup"); }, {"'cup' twice"});
+  for (const std::string groups : {"cup, ; tv", "cup,", ";", "cup,,tv", " "}) {
+    ExpectError<SettingsError>([&] { LabelGroups{groups}; },
+                               {"interchangeable_labels", groups, "'' as a label"});
+  }
+  ExpectError<SettingsError>([] { LabelGroups("cup, bowl; tv, cup"); },
+                             {"interchangeable_labels", "'cup' twice"});
 }
 
 TEST(LabelInWordsTest, NamesAlternatives) {

@@ -16,7 +16,6 @@
 #include "support/association_scenes.h"
 #include "support/random.h"
 #include "support/scene.h"
-#include "synthesis/simulate.h"
 
 namespace soslam {
 namespace {
@@ -49,11 +48,16 @@ void MoveCameras(const std::function<Eigen::Vector3d(size_t)>& centre, Sequence*
   SeePlanesFromPoses(sequence);
 }
 
+// Changes each detection.
+std::function<void(Sequence*)> Each(const std::function<void(Detection*)>& change) {
+  return [=](Sequence* sequence) {
+    for (Detection& detection : sequence->detections) change(&detection);
+  };
+}
+
 // Makes another box of each.
 std::function<void(Sequence*)> Boxes(const std::function<Box(const Box&)>& other) {
-  return [=](Sequence* sequence) {
-    for (Detection& detection : sequence->detections) detection.box = other(detection.box);
-  };
+  return Each([=](Detection* detection) { detection->box = other(detection->box); });
 }
 
 constexpr const char* kNoDegeneracy = "None";  // what has an answer
@@ -77,9 +81,7 @@ std::vector<Degeneracy> Degeneracies() {
          SeePlanesFromPoses(sequence);
        }},
       {"PlaneThroughTheCameras",
-       [](Sequence* sequence) {
-         for (Detection& detection : sequence->detections) detection.plane_in_camera.offset = 0.0;
-       }},
+       Each([](Detection* detection) { detection->plane_in_camera.offset = 0.0; })},
       {"PlaneSeenFromItsEdge",
        [](Sequence* sequence) {
          for (Detection& detection : sequence->detections) {
@@ -89,9 +91,7 @@ std::vector<Degeneracy> Degeneracies() {
          }
        }},
       {"GrazingPlane",
-       [](Sequence* sequence) {
-         for (Detection& detection : sequence->detections) detection.plane_in_camera.offset *= 1e-6;
-       }},
+       Each([](Detection* detection) { detection->plane_in_camera.offset *= 1e-6; })},
       {"BoxesWithoutArea", Boxes([](Box box) -> Box {
          return {box.x_min, box.y_min, box.x_min, box.y_min};
        })},
@@ -108,10 +108,7 @@ std::vector<Degeneracy> Degeneracies() {
          const double x = RandomUniform(0, 300), y = RandomUniform(0, 200);
          return {x, y, x + RandomUniform(1, 300), y + RandomUniform(1, 200)};
        })},
-      {"NoEdgeIsMeasured",
-       [](Sequence* sequence) {
-         for (Detection& detection : sequence->detections) detection.is_one_sided.fill(true);
-       }},
+      {"NoEdgeIsMeasured", Each([](Detection* detection) { detection->is_one_sided.fill(true); })},
       {"CamerasOnALineThroughABody",
        [](Sequence* sequence) {
          const Vector3d from = sequence->frames.front().world_from_camera.translation;
