@@ -11,26 +11,10 @@
 #include <string>
 
 #include "artefact/json_file.h"
+#include "support/temporary_folder.h"
 
 namespace soslam {
 namespace {
-
-class ResultsFolder {
- public:
-  ResultsFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "soslam-bench-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot create " + name);
-    path_ = name;
-  }
-  ~ResultsFolder() { std::filesystem::remove_all(path_); }
-  ResultsFolder(const ResultsFolder&) = delete;
-  ResultsFolder& operator=(const ResultsFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 // Whether it succeeded.
 bool RunAllVariants(const std::filesystem::path& results) {
@@ -53,7 +37,7 @@ std::map<std::string, double> CpuSecondsOfStages(const std::filesystem::path& re
 
 void AllVariants(benchmark::State& state) {
   for (auto _ : state) {
-    const ResultsFolder results;
+    const TemporaryFolder results;
     if (!RunAllVariants(results.path())) {
       state.SkipWithError("make run failed");
       return;

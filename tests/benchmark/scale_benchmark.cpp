@@ -7,8 +7,8 @@
 #include <fstream>
 #include <string>
 
+#include "benchmark/drive.h"
 #include "benchmark/inputs.h"
-#include "support/drive.h"
 
 namespace soslam {
 namespace {

@@ -59,12 +59,6 @@ double TrajectoryError(const Sequence& sequence, const std::vector<Rigid3d>& wor
   return std::sqrt(squares / static_cast<double>(world_from_camera.size()));
 }
 
-std::vector<Rigid3d> DeadReckoning(const Sequence& sequence) {
-  std::vector<Rigid3d> world_from_camera;
-  for (const Frame& frame : sequence.frames) world_from_camera.push_back(frame.world_from_camera);
-  return world_from_camera;
-}
-
 // Median error of the centres, m.
 double MedianError(const Sequence& sequence, const MapEstimate& map) {
   std::vector<double> errors;
@@ -90,7 +84,7 @@ void Problem(benchmark::State& state, const char* name) {
   state.counters["solver_iterations"] = map.solver.iterations;
   state.counters["final_cost"] = map.solver.final_cost;
   state.counters["trajectory_error_m"] = TrajectoryError(sequence, map.world_from_camera);
-  state.counters["dead_reckoning_error_m"] = TrajectoryError(sequence, DeadReckoning(sequence));
+  state.counters["dead_reckoning_error_m"] = TrajectoryError(sequence, PosesOf(sequence));
   state.counters["centre_error_m"] = MedianError(sequence, map);
 }
 [[maybe_unused]] const bool kAreRegistered = [] {

@@ -15,9 +15,8 @@ inline constexpr int kDriveViews = 20;
 // A drive past objects of three shapes on both sides, half a metre per frame; boxes, odometry,
 // ratios and starts have noise. Nothing hides anything, and no object is met twice.
 struct Drive {
-  // At least kDriveViews frames and two objects. The odometry turns by `turn_sigma_rad` too much or
-  // too little about each axis from frame to frame.
-  Drive(int frames, int objects, double turn_sigma_rad = 0.00175);
+  // At least kDriveViews frames and two objects.
+  Drive(int frames, int objects);
 
   Sequence sequence;
   std::vector<std::optional<ShapePrior>> priors;

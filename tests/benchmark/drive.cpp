@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "support/drive.h"
+#include "benchmark/drive.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,10 +11,11 @@ namespace soslam {
 namespace {
 
 constexpr double kMetresPerFrame = 0.5;
-constexpr double kFirstDepth = 13.0;   // m, from where an object is seen first
-constexpr double kCameraHeight = 1.1;  // m
-constexpr double kBoxSigma = 0.02;     // of width or height
-constexpr double kStepSigma = 0.003;   // m per frame and axis
+constexpr double kFirstDepth = 13.0;    // m, from where an object is seen first
+constexpr double kCameraHeight = 1.1;   // m
+constexpr double kBoxSigma = 0.02;      // of width or height
+constexpr double kStepSigma = 0.003;    // m per frame and axis
+constexpr double kTurnSigma = 0.00175;  // rad per frame and axis
 
 class Noise {
  public:
@@ -60,7 +61,7 @@ Box Noisy(const Box& box, Noise* noise) {
           box.y_max + noise->Normal(y)};
 }
 
-void AddFrames(int frames, double turn_sigma_rad, Noise* noise, Sequence* sequence) {
+void AddFrames(int frames, Noise* noise, Sequence* sequence) {
   for (int i = 0; i < frames; ++i) {
     Frame frame;
     frame.id = i;
@@ -70,7 +71,7 @@ void AddFrames(int frames, double turn_sigma_rad, Noise* noise, Sequence* sequen
       const Rigid3d step = TruePose(i - 1).Inverse() * TruePose(i);
       frame.world_from_camera =
           sequence->frames.back().world_from_camera *
-          Rigid3d{step.rotation * ExpRotation(noise->NormalVector(turn_sigma_rad)),
+          Rigid3d{step.rotation * ExpRotation(noise->NormalVector(kTurnSigma)),
                   step.translation + noise->NormalVector(kStepSigma)};
     }
     sequence->frames.push_back(frame);
@@ -89,11 +90,11 @@ Landmark Disturbed(const Landmark& truth, const Frame& frame, Noise* noise) {
 
 }  // namespace
 
-Drive::Drive(int frames, int objects, double turn_sigma_rad) {
+Drive::Drive(int frames, int objects) {
   Noise noise;
   sequence.camera = {640, 480, 520.0, 520.0, 319.5, 239.5};
   sequence.planes.push_back({0, Plane{}});
-  AddFrames(frames, turn_sigma_rad, &noise, &sequence);
+  AddFrames(frames, &noise, &sequence);
   for (int i = 0; i < objects; ++i) {
     const int first = static_cast<int>(std::int64_t{i} * (frames - kDriveViews) / (objects - 1));
     const Landmark truth = TrueLandmark(i, kMetresPerFrame * first, &noise);
