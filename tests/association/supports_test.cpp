@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <random>
 
 #include "association/agreement.h"
 #include "association/association.h"
@@ -123,8 +122,6 @@ TEST(LabelEvidenceTest, BoxesDecideAmongSimilarLabels) {
     EXPECT_EQ(LabelOf(track), "cup");  // what it is called
   }
 }
-
-double RandomNormal() { return std::normal_distribution<double>()(TestRandom()); }
 
 // The rotation of a camera that looks along the world's x axis, with z up.
 Eigen::Quaterniond LevelCamera() {

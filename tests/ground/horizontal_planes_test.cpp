@@ -18,10 +18,7 @@ class HorizontalPlanesTest : public testing::Test {
  protected:
   void AddPoint(const Eigen::Vector3d& in_room) {
     constexpr double kSigma = 0.003 / kUnit;
-    std::normal_distribution<double> normal(0.0, kSigma);
-    auto& random = TestRandom();
-    const Eigen::Vector3d noise(normal(random), normal(random), normal(random));
-    points_.push_back({world_from_room_ * (in_room / kUnit + noise),
+    points_.push_back({world_from_room_ * (in_room / kUnit + RandomNormalVector(kSigma)),
                        kSigma * kSigma * Eigen::Matrix3d::Identity(),
                        {0, 1}});
   }

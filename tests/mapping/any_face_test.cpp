@@ -159,8 +159,7 @@ FaceScore ScoreOf(int scenes, double log_sigma) {
     Body body{of_label, kRestingFaces[static_cast<size_t>(RandomUniform(0.0, 2.999))],
               RandomUniform(-3.0, 3.0)};
     for (int axis = 0; axis < 2; ++axis) {
-      body.own_half_axes[axis] *=
-          std::exp(std::normal_distribution<double>(0.0, log_sigma)(TestRandom()));
+      body.own_half_axes[axis] *= std::exp(RandomNormal(log_sigma));
     }
     const Views views{.box_sigma_fraction = 0.015, .seed = static_cast<unsigned>(i)};
     const auto iou_of = [&](Attitude attitude) {

@@ -25,9 +25,6 @@ namespace {
 
 constexpr int kFrames = 8;
 
-double Normal(double sigma) { return std::normal_distribution<double>(0.0, sigma)(TestRandom()); }
-Eigen::Vector3d NormalVector(double sigma) { return {Normal(sigma), Normal(sigma), Normal(sigma)}; }
-
 // What the back end assumes of the errors, without what it does about wrong assumptions.
 OptimiseOptions ModelOptions() {
   OptimiseOptions options;
@@ -78,15 +75,16 @@ Truth RandomTruth(const Case& c, const OptimiseOptions& options) {
   landmark.shape_exponents = c.shape_exponents;
   landmark.half_axes.z() = RandomUniform(0.3, 0.6);
   for (int i = 0; i < 2; ++i) {
-    landmark.half_axes[i] =
-        landmark.half_axes.z() * truth.prior.ratio[i] * std::exp(Normal(truth.prior.log_sigma[i]));
+    landmark.half_axes[i] = landmark.half_axes.z() * truth.prior.ratio[i] *
+                            std::exp(RandomNormal(truth.prior.log_sigma[i]));
   }
   // Standing on z = 0, as well as bodies are said to stand.
   const double tilt = options.standing_angle_sigma_deg * kRadPerDeg;
-  landmark.frame_from_object = {ExpRotation({Normal(tilt), Normal(tilt), 0.0}) *
-                                    UprightRotation(Eigen::Vector3d::UnitZ(), RandomUniform(-3, 3)),
-                                {RandomUniform(-0.1, 0.1), RandomUniform(-0.1, 0.1),
-                                 landmark.half_axes.z() + Normal(options.standing_height_sigma_m)}};
+  landmark.frame_from_object = {
+      ExpRotation({RandomNormal(tilt), RandomNormal(tilt), 0.0}) *
+          UprightRotation(Eigen::Vector3d::UnitZ(), RandomUniform(-3, 3)),
+      {RandomUniform(-0.1, 0.1), RandomUniform(-0.1, 0.1),
+       landmark.half_axes.z() + RandomNormal(options.standing_height_sigma_m)}};
   truth.world_from_camera = CamerasOnArc(kFrames, c.arc_rad);
   return truth;
 }
@@ -96,14 +94,15 @@ Sequence Observe(const Truth& truth, const OptimiseOptions& options) {
   Sequence sequence = ViewsOfBody(truth.landmark_in_world, truth.world_from_camera);
   std::array<double, 4> misfits{};
   if (options.misfit_sigma_fraction > 0.0) {
-    for (double& misfit : misfits) misfit = Normal(options.misfit_sigma_fraction);
+    for (double& misfit : misfits) misfit = RandomNormal(options.misfit_sigma_fraction);
   }
   for (size_t i = 0; i < truth.world_from_camera.size(); ++i) {
     if (i > 0) {
       Rigid3d step = truth.world_from_camera[i - 1].Inverse() * truth.world_from_camera[i];
-      step.rotation = step.rotation *
-                      ExpRotation(NormalVector(options.odometry_rotation_sigma_deg * kRadPerDeg));
-      step.translation += NormalVector(options.odometry_translation_sigma_m);
+      step.rotation =
+          step.rotation *
+          ExpRotation(RandomNormalVector(options.odometry_rotation_sigma_deg * kRadPerDeg));
+      step.translation += RandomNormalVector(options.odometry_translation_sigma_m);
       sequence.frames[i].world_from_camera = sequence.frames[i - 1].world_from_camera * step;
     }
     Box& box = sequence.detections[i].box;
@@ -113,8 +112,8 @@ Sequence Observe(const Truth& truth, const OptimiseOptions& options) {
            box.x_max + misfits[2] * width, box.y_max + misfits[3] * height};
     const double sigma_x = options.detection_sigma_fraction * width;
     const double sigma_y = options.detection_sigma_fraction * height;
-    box = {box.x_min + Normal(sigma_x), box.y_min + Normal(sigma_y), box.x_max + Normal(sigma_x),
-           box.y_max + Normal(sigma_y)};
+    box = {box.x_min + RandomNormal(sigma_x), box.y_min + RandomNormal(sigma_y),
+           box.x_max + RandomNormal(sigma_x), box.y_max + RandomNormal(sigma_y)};
   }
   return sequence;
 }
@@ -282,7 +281,7 @@ EdgeImage DisplacedEdges(const Camera& camera, const Landmark& landmark_in_camer
         camera.Project(landmark_in_camera.frame_from_object *
                        landmark_in_camera.half_axes.cwiseProduct(point.in_unit_body));
     const Eigen::Vector2d across(-point.along.y(), point.along.x());
-    const Eigen::Vector2d middle = *pixel + Normal(kSigmaPx) * across;
+    const Eigen::Vector2d middle = *pixel + RandomNormal(kSigmaPx) * across;
     const Eigen::Vector2d half = 0.5 * kPiecePx * point.along;
     cv::line(maps.edges, to_image(middle - half), to_image(middle + half), cv::Scalar(255), 1,
              cv::LINE_8, kFractionBits);

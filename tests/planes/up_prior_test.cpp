@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -17,6 +16,8 @@
 
 namespace soslam {
 namespace {
+
+const Eigen::Vector3d kZ = Eigen::Vector3d::UnitZ();
 
 // A camera anywhere in a room around the origin that looks somewhat downwards, not level.
 Rigid3d CameraInRoom(double heading) {
@@ -120,8 +121,6 @@ TEST(RobustUpPriorFromCameras, SomeCamerasMayBeTurnedInAnyWay) {
 
 // Turned about their optical axes, cameras that are held so have the up that they had before.
 TEST(UpPriorFromCameras, RolledCamerasHaveTheUpOfLevelOnes) {
-  constexpr std::array kRolls = {CameraHolding::kLevel, CameraHolding::kRolled90,
-                                 CameraHolding::kRolled180, CameraHolding::kRolled270};
   for (int quarters = 0; quarters < 4; ++quarters) {
     const Eigen::Quaterniond roll(
         Eigen::AngleAxisd(quarters * 90.0 * kRadPerDeg, Eigen::Vector3d::UnitZ()));
@@ -130,9 +129,9 @@ TEST(UpPriorFromCameras, RolledCamerasHaveTheUpOfLevelOnes) {
       const Rigid3d level = LevelCamera(i * 30.0 * kRadPerDeg, 20.0 * kRadPerDeg);
       poses.push_back({level.rotation * roll, level.translation});
     }
-    const auto up =
-        UpPriorFromCameras(poses, kRollSigma, kPitchSigma, kCorrelation, kRolls.at(quarters))
-            .up_in_world;
+    const auto up = UpPriorFromCameras(poses, kRollSigma, kPitchSigma, kCorrelation,
+                                       kCameraHoldings.at(quarters))
+                        .up_in_world;
     EXPECT_LT(std::atan2(up.head<2>().norm(), up.z()), 3.0 * kRadPerDeg) << quarters;
   }
 }
@@ -150,13 +149,15 @@ constexpr double kSigma = 1.0 * kRadPerDeg;
 constexpr double kSegmentCorrelation = 20.0 * kRadPerDeg;
 constexpr double kMaxVerticalTilt = 12.0 * kRadPerDeg;
 
-// Verticals, and twice as many edges of any direction.
-std::vector<SegmentView> Room(const Eigen::Vector3d& up, int cameras, double arc) {
+// Cameras all around see each of these directions so often, among other edges of any direction.
+std::vector<SegmentView> Room(const std::vector<Eigen::Vector3d>& directions, int often,
+                              int others) {
   std::vector<SegmentView> views;
-  for (int i = 0; i < cameras; ++i) {
-    std::vector<Eigen::Vector3d> directions(8, up);
-    for (int k = 0; k < 16; ++k) directions.push_back(RandomRotation() * up);
-    views.push_back(ViewOfEdges(CameraInRoom(arc * i / cameras), directions));
+  for (int i = 0; i < 12; ++i) {
+    std::vector<Eigen::Vector3d> seen;
+    for (int k = 0; k < often; ++k) seen.insert(seen.end(), directions.begin(), directions.end());
+    for (int k = 0; k < others; ++k) seen.emplace_back(RandomRotation() * kZ);
+    views.push_back(ViewOfEdges(CameraInRoom(0.5 * i), seen));
   }
   return views;
 }
@@ -171,11 +172,11 @@ UpPrior HeldAttitude(const std::vector<SegmentView>& views) {
 TEST(WithVerticals, FindsUpAmongOtherEdges) {
   double before = 0.0;
   for (int i = 0; i < 10; ++i) {
-    const auto views = Room(Eigen::Vector3d::UnitZ(), 12, 6.0);
+    const auto views = Room({kZ}, 8, 16);
     const UpPrior held = HeldAttitude(views);
     const auto found = WithVerticals(held, views, kSigma, kSegmentCorrelation, kMaxVerticalTilt);
-    EXPECT_LT(AngleBetween(found.up_in_world, Eigen::Vector3d::UnitZ()), 0.3 * kRadPerDeg);
-    before += AngleBetween(held.up_in_world, Eigen::Vector3d::UnitZ()) / 10;
+    EXPECT_LT(AngleBetween(found.up_in_world, kZ), 0.3 * kRadPerDeg);
+    before += AngleBetween(held.up_in_world, kZ) / 10;
   }
   EXPECT_GT(before, 0.5 * kRadPerDeg);
 }
@@ -183,7 +184,7 @@ TEST(WithVerticals, FindsUpAmongOtherEdges) {
 // Up is what most edges say, but never far from how cameras are held.
 TEST(WithVerticals, StaysNearTheAttitude) {
   const Eigen::Vector3d slanted(std::sin(0.7), 0.0, std::cos(0.7));
-  const auto views = Room(slanted, 12, 6.0);
+  const auto views = Room({slanted}, 8, 16);
   const UpPrior held = HeldAttitude(views);
   const auto found = WithVerticals(held, views, kSigma, kSegmentCorrelation, kMaxVerticalTilt);
   EXPECT_LT(AngleBetween(found.up_in_world, held.up_in_world), 1.5 * kMaxVerticalTilt);
@@ -202,11 +203,9 @@ LevelTrajectory LevelInRoom(const std::vector<SegmentView>& views, double odomet
 // A walk once around, cameras looking outwards and a little down.
 std::vector<Rigid3d> TrueTrajectory() {
   std::vector<Rigid3d> poses;
-  const Eigen::Quaterniond forward_x((Eigen::Matrix3d() << 0, 0, 1, -1, 0, 0, 0, -1, 0).finished());
   for (int i = 0; i < kTurnFrames; ++i) {
     const double heading = 2.0 * std::numbers::pi * i / kTurnFrames;
-    const Eigen::Quaterniond turn(Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()));
-    poses.push_back({turn * forward_x * ExpRotation({-0.2, 0.0, 0.0}),
+    poses.push_back({LevelCamera(heading, 0.2).rotation,
                      {2.0 * std::cos(heading), 2.0 * std::sin(heading), 1.2}});
   }
   return poses;
@@ -229,8 +228,7 @@ std::vector<SegmentView> ViewsOf(const std::vector<Rigid3d>& truth,
                                  const std::vector<Rigid3d>& odometry) {
   std::vector<SegmentView> views;
   for (size_t i = 0; i < truth.size(); ++i) {
-    views.push_back(
-        ViewOfEdges(truth[i], std::vector<Eigen::Vector3d>(6, Eigen::Vector3d::UnitZ())));
+    views.push_back(ViewOfEdges(truth[i], std::vector<Eigen::Vector3d>(6, kZ)));
     views.back().world_from_camera = odometry[i];
   }
   return views;
@@ -262,7 +260,7 @@ TEST(Level, TakesDriftOutOfATrajectory) {
   const std::vector<Rigid3d> drifted = Drifted(truth, kDrift);
   const LevelTrajectory level = LevelInRoom(ViewsOf(truth, drifted), 0.2);
   ASSERT_EQ(level.world_from_camera.size(), truth.size());
-  EXPECT_GT(WorstUp(truth, drifted, Eigen::Vector3d::UnitZ()), 5.0 * kRadPerDeg);
+  EXPECT_GT(WorstUp(truth, drifted, kZ), 5.0 * kRadPerDeg);
   EXPECT_LT(WorstUp(truth, level.world_from_camera, level.attitude.up_in_world),
             0.25 * kTurnFrames * kDrift);
   EXPECT_LT(WorstPosition(truth, level.world_from_camera), 0.5 * WorstPosition(truth, drifted));
@@ -288,21 +286,10 @@ TEST(Level, TakesExactOdometryAsItIs) {
   }
 }
 
-const Eigen::Vector3d kZ = Eigen::Vector3d::UnitZ();
-
-// Edges along two horizontal directions at right angles and upwards, among others of any direction.
+// Edges along two horizontal directions at right angles and upwards.
 std::vector<SegmentView> FurnishedRoom(double yaw, int others) {
   const Eigen::Vector3d along(std::cos(yaw), std::sin(yaw), 0.0);
-  std::vector<SegmentView> views;
-  for (int i = 0; i < 12; ++i) {
-    std::vector<Eigen::Vector3d> directions;
-    for (int k = 0; k < 6; ++k) {
-      directions.insert(directions.end(), {along, kZ.cross(along), kZ});
-    }
-    for (int k = 0; k < others; ++k) directions.push_back(RandomRotation() * along);
-    views.push_back(ViewOfEdges(CameraInRoom(0.5 * i), directions));
-  }
-  return views;
+  return Room({along, kZ.cross(along), kZ}, 6, others);
 }
 
 double OffAxis(const Eigen::Vector3d& axis, double yaw) {
@@ -326,13 +313,7 @@ TEST(SceneAxis, IsTheDirectionOfMostEdges) {
 TEST(SceneAxis, IsNoneWhereEdgesHaveNoCommonDirection) {
   EXPECT_FALSE(SceneAxis(kZ, {}, kCorrelation));
   for (int i = 0; i < 20; ++i) {
-    std::vector<SegmentView> views;
-    for (int camera = 0; camera < 12; ++camera) {
-      std::vector<Eigen::Vector3d> directions;
-      for (int k = 0; k < 20; ++k) directions.emplace_back(RandomRotation() * kZ);
-      views.push_back(ViewOfEdges(CameraInRoom(0.5 * camera), directions));
-    }
-    EXPECT_FALSE(SceneAxis(kZ, views, kCorrelation));
+    EXPECT_FALSE(SceneAxis(kZ, Room({}, 0, 20), kCorrelation));
   }
 }
 

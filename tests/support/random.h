@@ -26,6 +26,14 @@ inline Eigen::Vector3d RandomVector(double min, double max) {
   return {RandomUniform(min, max), RandomUniform(min, max), RandomUniform(min, max)};
 }
 
+inline double RandomNormal(double sigma = 1.0) {
+  return std::normal_distribution<double>(0.0, sigma)(TestRandom());
+}
+
+inline Eigen::Vector3d RandomNormalVector(double sigma) {
+  return {RandomNormal(sigma), RandomNormal(sigma), RandomNormal(sigma)};
+}
+
 inline Eigen::Quaterniond RandomRotation() {
   std::normal_distribution<double> normal;
   auto& random = TestRandom();

@@ -26,9 +26,7 @@ class PointSimulator {
         world_from_camera_(std::move(world_from_camera)),
         options_(options),
         size_m_(SizeForPoints(cuboid)),
-        share_drift_(share_drift) {
-    for (double& part : unit_drift_) part = Normal(1.0);
-  }
+        share_drift_(share_drift) {}
 
   PointsOfObject Points(int count, double least_prior, double most_prior) {
     PointsOfObject points;
@@ -89,11 +87,11 @@ class PointSimulator {
     if (RandomUniform(0.0, 1.0) < prior) {
       switch (OneOf({sigma, (1.0 - kRoughShare) * sigma, kRoughShare * rough})) {
         case 0:
-          return std::abs(Normal(sigma));
+          return std::abs(RandomNormal(sigma));
         case 1:
-          return -std::abs(Normal(sigma));
+          return -std::abs(RandomNormal(sigma));
         default:
-          return -std::abs(Normal(rough));
+          return -std::abs(RandomNormal(rough));
       }
     }
     const double near = (1.0 - outlier) * bell * sigma;
@@ -103,15 +101,12 @@ class PointSimulator {
       case 0:
         return RandomUniform(0.0, outside);
       case 1:
-        return -std::abs(Normal(sigma));
+        return -std::abs(RandomNormal(sigma));
       default:
         return RandomUniform(-deepest, 0.0);
     }
   }
 
-  static double Normal(double sigma) {
-    return std::normal_distribution<double>(0.0, sigma)(TestRandom());
-  }
   static int OneOf(std::initializer_list<double> weights) {
     return std::discrete_distribution<int>(weights)(TestRandom());
   }
@@ -121,7 +116,7 @@ class PointSimulator {
   const PointOptions& options_;
   double size_m_;
   bool share_drift_;
-  Eigen::Vector3d unit_drift_ = Eigen::Vector3d::Zero();  // in the world, per m of drift
+  const Eigen::Vector3d unit_drift_ = RandomNormalVector(1.0);  // in the world, per m of drift
 };
 
 }  // namespace soslam
