@@ -38,6 +38,13 @@ class BoxLikelihoodTest : public testing::Test {
     return box;
   }
 
+  // The expected box with its right edge moved out by a share of its width.
+  Box Wider(double share) const {
+    Box box = expected_.box;
+    box.x_max += share * box.Width();
+    return box;
+  }
+
   AssociateOptions options_ = EstimatedAssociation();
   Sequence sequence_ = SyntheticSequence(LabelledScene(3, 1, 30, {"box"}), false);
   std::vector<int> detections_;
@@ -95,11 +102,9 @@ TEST_F(BoxLikelihoodTest, TheLongerUnseenTheWider) {
 }
 
 TEST_F(BoxLikelihoodTest, OneEdgeMayBeCutOff) {
-  Box cut = expected_.box;
-  cut.x_max -= 0.5 * cut.Width();
-  const auto as_it_is = Match(cut);
+  const auto as_it_is = Match(Wider(-0.5));
   options_.cut_edge_probability = 0.05;
-  const auto as_cut = Match(cut);
+  const auto as_cut = Match(Wider(-0.5));
   ASSERT_TRUE(as_it_is && as_cut);
   EXPECT_EQ(as_cut->cut_edge, 2);
   EXPECT_LT(as_cut->cost, as_it_is->cost);
@@ -109,12 +114,8 @@ TEST_F(BoxLikelihoodTest, OneEdgeMayBeCutOff) {
 
 TEST_F(BoxLikelihoodTest, AOneSidedEdgeNeedsOnlyBeReached) {
   expected_.is_one_sided = {false, false, true, false};
-  Box cut = expected_.box;
-  cut.x_max -= 0.5 * cut.Width();
-  EXPECT_NEAR(Match(cut)->distance, 0.0, 0.1);
-  Box beyond = expected_.box;
-  beyond.x_max += 0.5 * beyond.Width();
-  EXPECT_GT(Match(beyond)->distance, 1.0);
+  EXPECT_NEAR(Match(Wider(-0.5))->distance, 0.0, 0.1);
+  EXPECT_GT(Match(Wider(0.5))->distance, 1.0);
 }
 
 TEST_F(BoxLikelihoodTest, NothingIsExpectedBehindTheCamera) {

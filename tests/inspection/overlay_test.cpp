@@ -17,8 +17,11 @@ namespace {
 
 const Camera kCamera = TestCamera();
 
-cv::Mat Black(int factor = 1) {
-  return cv::Mat::zeros(factor * kCamera.height, factor * kCamera.width, CV_8UC3);
+// On black.
+cv::Mat Drawn(const OverlayInput& input, int factor = 1) {
+  cv::Mat image = cv::Mat::zeros(factor * kCamera.height, factor * kCamera.width, CV_8UC3);
+  DrawOverlay(input, &image);
+  return image;
 }
 
 // The rectangle of the pixels of this colour, or a darker one of thin lines; empty when there are
@@ -49,26 +52,21 @@ TEST(OverlayTest, OutlinesOfAllShapesFillTheirOutlineBox) {
   for (const double exponent : {1.0, 1.3, 2.0}) {
     const Landmark landmark = LandmarkInView(exponent);
     for (const int factor : {1, 3}) {
-      cv::Mat image = Black(factor);
-      DrawOverlay({.camera = kCamera, .landmarks = {{landmark, ""}}}, &image);
+      const cv::Mat image = Drawn({.camera = kCamera, .landmarks = {{landmark, ""}}}, factor);
       ExpectAround(Where(image, palette::kSkyBlue), *OutlineBox(kCamera, landmark), factor);
     }
   }
 }
 
 TEST(OverlayTest, TheTruthIsDrawnAsTheBoxAroundIt) {
-  cv::Mat image = Black();
-  DrawOverlay({.camera = kCamera, .truths_in_camera = {LandmarkInView(2.0)}}, &image);
+  const cv::Mat image = Drawn({.camera = kCamera, .truths_in_camera = {LandmarkInView(2.0)}});
   ExpectAround(Where(image, palette::kVermilion), *OutlineBox(kCamera, LandmarkInView(1.0)));
 }
 
 TEST(OverlayTest, DetectionsAreDrawnWithTheirCaption) {
   const Box box{100.0, 150.0, 300.0, 350.0};
-  cv::Mat image = Black();
-  DrawOverlay({.camera = kCamera, .detections = {{box, ""}}}, &image);
-  ExpectAround(Where(image, palette::kYellow), box);
-  cv::Mat captioned = Black();
-  DrawOverlay({.camera = kCamera, .detections = {{box, "cup \xc3\xa4"}}}, &captioned);
+  ExpectAround(Where(Drawn({.camera = kCamera, .detections = {{box, ""}}}), palette::kYellow), box);
+  const cv::Mat captioned = Drawn({.camera = kCamera, .detections = {{box, "cup \xc3\xa4"}}});
   const cv::Mat above = captioned.rowRange(120, 145);
   EXPECT_GT(cv::countNonZero(above.reshape(1)), 0);
 }
@@ -76,8 +74,7 @@ TEST(OverlayTest, DetectionsAreDrawnWithTheirCaption) {
 // The arrow is where the object's x axis ends, nothing is where its -x axis does.
 TEST(OverlayTest, TheArrowShowsTheFront) {
   const Landmark landmark{{Eigen::Quaterniond::Identity(), {0.0, 0.0, 4.0}}, {1.0, 0.5, 0.5}};
-  cv::Mat image = Black();
-  DrawOverlay({.camera = kCamera, .landmarks = {{landmark, ""}}}, &image);
+  const cv::Mat image = Drawn({.camera = kCamera, .landmarks = {{landmark, ""}}});
   const auto is_drawn = [&](double x) {
     const Eigen::Vector2d pixel = *kCamera.Project({x, 0.0, 4.0});
     const cv::Rect near(static_cast<int>(pixel.x()) - 2, static_cast<int>(pixel.y()) - 2, 5, 5);
@@ -90,17 +87,15 @@ TEST(OverlayTest, TheArrowShowsTheFront) {
 TEST(OverlayTest, WhatIsBehindTheCameraIsNotDrawn) {
   Landmark behind = LandmarkInView(1.0);
   behind.frame_from_object.translation.z() = -4.0;
-  cv::Mat image = Black();
-  DrawOverlay({.camera = kCamera, .truths_in_camera = {behind}, .landmarks = {{behind, "x"}}},
-              &image);
+  const cv::Mat image =
+      Drawn({.camera = kCamera, .truths_in_camera = {behind}, .landmarks = {{behind, "x"}}});
   EXPECT_EQ(cv::countNonZero(image.reshape(1)), 0);
 }
 
 // Some of a body is beside or behind the camera: its box is cut off there.
 TEST(OverlayTest, WhatReachesBehindTheCameraIsCutOff) {
   const Landmark around{{Eigen::Quaterniond::Identity(), {0.0, 0.5, 1.0}}, {0.3, 0.2, 3.0}};
-  cv::Mat image = Black();
-  DrawOverlay({.camera = kCamera, .truths_in_camera = {around}}, &image);
+  const cv::Mat image = Drawn({.camera = kCamera, .truths_in_camera = {around}});
   EXPECT_FALSE(Where(image, palette::kVermilion).empty());
 }
 
@@ -128,10 +123,8 @@ TEST(OverlayTest, GridsOfPlanesReachAroundTheFeet) {
   const Plane floor{-Eigen::Vector3d::UnitY(), 1.0};
   const OverlayInput input{.camera = kCamera,
                            .grounds = {{floor, {{-5.0, 1.0, 12.0}, {5.0, 1.0, 12.0}}}}};
-  cv::Mat image = Black();
-  DrawOverlay(input, &image);
   cv::Mat grey;
-  cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
+  cv::cvtColor(Drawn(input), grey, cv::COLOR_BGR2GRAY);
   const cv::Rect drawn = cv::boundingRect(grey > 60);
   EXPECT_NEAR(drawn.y, kCamera.Project({0.0, 1.0, 13.0})->y(), 2.0);
   EXPECT_NEAR(drawn.y + drawn.height - 1, kCamera.Project({0.0, 1.0, 11.0})->y(), 2.0);

@@ -78,41 +78,37 @@ TEST_P(BadSceneTest, IsRefusedWithItsField) {
                           {"scene", GetParam().expected});
 }
 
-BadScene Bad(const char* name, const char* place, const json& value, const char* expected) {
-  return {name, place, value, expected};
-}
-
 json Parsed(const char* text) { return json::parse(text); }
 
-INSTANTIATE_TEST_SUITE_P(
-    All, BadSceneTest,
-    testing::Values(
-        Bad("Shape", "/objects/1/shape", "torus", "objects/1/shape"),
-        Bad("NegativeAxes", "/objects/0/half_axes/1", -0.1, "objects/0/half_axes/1"),
-        Bad("TwoAxes", "/objects/0/half_axes", Parsed("[1, 1]"), "objects/0/half_axes"),
-        Bad("UnknownPlane", "/objects/1/plane", 5, "objects/1/plane: there is no plane with id 5"),
-        Bad("ObjectTwice", "/objects/1/id", 2, "objects/1/id: 2"),
-        Bad("PlaneTwice", "/planes/1/id", 4, "planes/1/id: 4"),
-        Bad("LongNormal", "/planes/0/normal/2", 2, "planes/0/normal: has length 2"),
-        Bad("ZeroNormal", "/walls/0/normal/0", 0, "walls/0/normal"),
-        Bad("NoObjects", "/objects", json::array(), "objects"),
-        Bad("NoFrames", "/trajectory/frames", 0, "trajectory/frames"),
-        Bad("NoWaypoints", "/trajectory/waypoints", json::array(), "trajectory/waypoints"),
-        Bad("UnknownField", "/noise/blur", 1, "blur"),
-        Bad("CommaInLabel", "/objects/0/label", "a,b", "objects/0/label"),
-        Bad("InsideObject", "/objects/1/half_axes", Parsed("[5, 5, 5]"),
-            "frame 0 is inside the object with id 1"),
-        Bad("InsideTable", "/planes/1", Parsed(R"({
+const std::vector<BadScene> kBadScenes = {
+    {"Shape", "/objects/1/shape", "torus", "objects/1/shape"},
+    {"NegativeAxes", "/objects/0/half_axes/1", -0.1, "objects/0/half_axes/1"},
+    {"TwoAxes", "/objects/0/half_axes", Parsed("[1, 1]"), "objects/0/half_axes"},
+    {"UnknownPlane", "/objects/1/plane", 5, "objects/1/plane: there is no plane with id 5"},
+    {"ObjectTwice", "/objects/1/id", 2, "objects/1/id: 2"},
+    {"PlaneTwice", "/planes/1/id", 4, "planes/1/id: 4"},
+    {"LongNormal", "/planes/0/normal/2", 2, "planes/0/normal: has length 2"},
+    {"ZeroNormal", "/walls/0/normal/0", 0, "walls/0/normal"},
+    {"NoObjects", "/objects", json::array(), "objects"},
+    {"NoFrames", "/trajectory/frames", 0, "trajectory/frames"},
+    {"NoWaypoints", "/trajectory/waypoints", json::array(), "trajectory/waypoints"},
+    {"UnknownField", "/noise/blur", 1, "blur"},
+    {"CommaInLabel", "/objects/0/label", "a,b", "objects/0/label"},
+    {"InsideObject", "/objects/1/half_axes", Parsed("[5, 5, 5]"),
+     "frame 0 is inside the object with id 1"},
+    {"InsideTable", "/planes/1", Parsed(R"({
               "id": 7, "label": "table", "normal": [0, 0, 1], "d": -1.05,
               "table": {"position": [0, 0], "half_size": [1, 1], "thickness": 0.1}})"),
-            "frame 0 is inside a table"),
-        Bad("BelowFloor", "/planes/0/d", -2, "frame 0 is behind the plane with id 4"),
-        Bad("OutsideRoom", "/walls/0/d", -1, "behind walls/0"),
-        Bad("LooksDown", "/trajectory/waypoints/0/look_at", Parsed("[0, 0, 0]"),
-            "frame 0 looks straight up or down"),
-        Bad("LooksAtItself", "/trajectory/waypoints/0/look_at", Parsed("[0, 0, 1]"),
-            "frame 0 looks straight up or down, or at its own position")),
-    [](const auto& info) { return info.param.name; });
+     "frame 0 is inside a table"},
+    {"BelowFloor", "/planes/0/d", -2, "frame 0 is behind the plane with id 4"},
+    {"OutsideRoom", "/walls/0/d", -1, "behind walls/0"},
+    {"LooksDown", "/trajectory/waypoints/0/look_at", Parsed("[0, 0, 0]"),
+     "frame 0 looks straight up or down"},
+    {"LooksAtItself", "/trajectory/waypoints/0/look_at", Parsed("[0, 0, 1]"),
+     "frame 0 looks straight up or down, or at its own position"}};
+
+INSTANTIATE_TEST_SUITE_P(All, BadSceneTest, testing::ValuesIn(kBadScenes),
+                         [](const auto& info) { return info.param.name; });
 
 TEST(Scene, ObjectsStandUprightOnTheirPlane) {
   json document = ValidScene();
