@@ -210,7 +210,7 @@ struct View {
   LandmarkBlock InWorld(const Landmark& in_camera) const {
     return ToParameterBlock(Transform(UnpackPose(pose.data()), in_camera));
   }
-  // For a residual of a landmark in the world.
+  // The parameter blocks of a residual, with this landmark in the world.
   std::vector<const double*> Blocks(const LandmarkBlock& landmark) const {
     return {pose.data(), landmark.data(), &bias_px, &misfit};
   }

@@ -16,7 +16,7 @@ ScaleEvidence Object(double log_scale, double log_sigma, const std::string& labe
   return object;
 }
 
-// One that is hardly ever wrong.
+// An object that is hardly ever wrong.
 ScaleEvidence SureObject(double log_scale, double log_sigma) {
   ScaleEvidence object = Object(log_scale, log_sigma);
   object.wrong_probability = 1e-9;

@@ -17,7 +17,7 @@ namespace {
 
 const Camera kCamera = TestCamera();
 
-// On black.
+// The overlay on a black image.
 cv::Mat Drawn(const OverlayInput& input, int factor = 1) {
   cv::Mat image = cv::Mat::zeros(factor * kCamera.height, factor * kCamera.width, CV_8UC3);
   DrawOverlay(input, &image);

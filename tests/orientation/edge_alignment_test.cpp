@@ -140,7 +140,7 @@ TEST(EdgeTerm, PointsInNearerBoxesAndOutsideTheImageCostAsMuchAsCanBe) {
   EXPECT_NEAR(term.Support(truth), 0.0, 1e-12);
 }
 
-// In steps that single precision holds exactly.
+// A distance in steps that single precision holds exactly.
 float SmallDistance(int x, int y) { return 4.0F + static_cast<float>(2 * x + y) / 128.0F; }
 
 std::shared_ptr<const EdgeImage> ImageOf(const EdgeMaps& maps) {

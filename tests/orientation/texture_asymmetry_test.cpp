@@ -46,7 +46,7 @@ TEST(TextureAsymmetry, IsZeroForAUniformTextureAndWholeWhereNothingIsMirrored) {
   EXPECT_EQ(cost(RotatedAboutZ(landmark, std::numbers::pi / 2)), 4.0);
 }
 
-// Its front is 2.5 m away.
+// Half axes of a landmark whose front is 2.5 m away.
 const Eigen::Vector3d kHalfAxes = Eigen::Vector3d::Constant(0.5);
 
 // Two grey halves that meet in the middle of the image: every pair differs by all of the range.

@@ -39,7 +39,7 @@ PlanesEstimate Estimate(const Sequence& sequence, const PlanesOptions& options =
       .value();
 }
 
-// Of the detections of an object only the first is left.
+// Removes all detections of an object but the first.
 void KeepOneDetectionOf(int object_index, Sequence* sequence) {
   bool seen = false;
   std::erase_if(sequence->detections, [&](const Detection& detection) {
