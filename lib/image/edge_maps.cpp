@@ -112,13 +112,15 @@ cv::Mat DistanceMap(const cv::Mat& nearest_edge) {
 
 namespace {
 
-cv::Mat DetectEdges(const cv::Mat& grey, const EdgesOptions& options) {
-  cv::Mat blurred;  // with pixels of its own: the blur must not reach the image
-  if (options.blur_sigma_px > 0.0) {
-    cv::GaussianBlur(grey, blurred, cv::Size(), options.blur_sigma_px);
-  } else {
-    blurred = grey;
-  }
+// Pixels of its own, so that the blur does not reach the image.
+cv::Mat Blurred(const cv::Mat& grey, double sigma_px) {
+  if (!(sigma_px > 0.0)) return grey;
+  cv::Mat blurred;
+  cv::GaussianBlur(grey, blurred, cv::Size(), sigma_px);
+  return blurred;
+}
+
+cv::Mat DetectEdges(const cv::Mat& blurred, const EdgesOptions& options) {
   cv::Mat edges;
   constexpr int kSobelSize = 3;
   constexpr bool kEuclideanGradient = true;  // the same threshold in all directions
@@ -126,9 +128,9 @@ cv::Mat DetectEdges(const cv::Mat& grey, const EdgesOptions& options) {
   return edges;
 }
 
-std::vector<Eigen::Vector2f> DetectCorners(const cv::Mat& grey, const EdgesOptions& options) {
+std::vector<Eigen::Vector2f> DetectCorners(const cv::Mat& blurred, const EdgesOptions& options) {
   std::vector<cv::Point2f> points;
-  cv::goodFeaturesToTrack(grey, points, options.max_corners, options.corner_quality,
+  cv::goodFeaturesToTrack(blurred, points, options.max_corners, options.corner_quality,
                           options.corner_min_distance_px);
   std::vector<Eigen::Vector2f> corners;
   corners.reserve(points.size());
@@ -149,10 +151,11 @@ EdgeMaps ComputeEdgeMaps(const cv::Mat& grey, const EdgesOptions& options) {
   CV_Assert(grey.type() == CV_8UC1 && !grey.empty());
   EdgeMaps maps;
   maps.grey = grey;
-  maps.edges = DetectEdges(grey, options);
+  const cv::Mat blurred = Blurred(grey, options.blur_sigma_px);
+  maps.edges = DetectEdges(blurred, options);
   maps.nearest_edge = NearestEdgeMap(maps.edges);
   maps.distance = DistanceMap(maps.nearest_edge);
-  maps.corners = DetectCorners(grey, options);
+  maps.corners = DetectCorners(blurred, options);
   return maps;
 }
 

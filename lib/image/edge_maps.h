@@ -30,7 +30,7 @@ struct EdgesOptions {
   void Describe(OptionVisitor& visit) {
     visit.Group("Edges");
     visit.Real("blur_sigma_px", &blur_sigma_px, {0, 100},
-               "Gaussian blur before the edge detector; 0 for none");
+               "Gaussian blur before edges and corners are detected; 0 for none");
     visit.Real("canny_low", &canny_low, {0, 1e4},
                "Canny: gradient that continues an edge (3 x 3 Sobel, grey values 0 to 255)");
     visit.Real("canny_high", &canny_high, {0, 1e4},

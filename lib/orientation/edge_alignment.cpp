@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 #include <utility>
@@ -13,6 +14,9 @@
 
 namespace soslam {
 namespace {
+
+// Standard deviation of the blur before slopes are taken.
+constexpr double kSlopeBlurPx = std::numbers::sqrt2;
 
 // Up to this exponent, the larger of the two, an object has edges of its own, beyond it only a
 // silhouette.
@@ -86,7 +90,7 @@ std::vector<ModelPoint> VisibleModelPoints(const Camera& camera, const Landmark&
 
 FrameEdges::FrameEdges(EdgeMaps edge_maps) : maps(std::move(edge_maps)) {
   cv::Mat smooth;
-  cv::GaussianBlur(maps.grey, smooth, cv::Size(), 1.0);
+  cv::GaussianBlur(maps.grey, smooth, cv::Size(), kSlopeBlurPx);
   cv::Sobel(smooth, slope_x, CV_32F, 1, 0);
   cv::Sobel(smooth, slope_y, CV_32F, 0, 1);
 }

@@ -35,7 +35,7 @@ TEST(EdgeMapsTest, EdgesLieOnTheOutlineOfARectangle) {
   EXPECT_LT(cv::countNonZero(maps.edges), 130);
 }
 
-TEST(EdgeMapsTest, TheBlurReachesOnlyTheEdges) {
+TEST(EdgeMapsTest, TheBlurDoesNotReachTheImage) {
   const cv::Mat grey = Rectangle();
   EdgesOptions options;
   options.blur_sigma_px = 2.0;
