@@ -168,9 +168,8 @@ std::optional<Eigen::Vector2d> NearestEdge(const EdgeMaps& maps, const Eigen::Ve
 }
 
 std::vector<LineSegment> FindLineSegments(const cv::Mat& grey, double min_length_px) {
-  constexpr double kBlurPx = 1.0;  // noise breaks segments
   std::vector<cv::Vec4f> found;
-  cv::createLineSegmentDetector()->detect(Blurred(grey, kBlurPx), found);
+  cv::createLineSegmentDetector()->detect(grey, found);
   std::vector<LineSegment> segments;
   for (const cv::Vec4f& line : found) {
     const LineSegment segment{{line[0], line[1]}, {line[2], line[3]}};

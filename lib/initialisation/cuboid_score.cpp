@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <opencv2/core/types.hpp>
+#include <opencv2/imgproc.hpp>
 #include <optional>
 
 #include "geometry/angles.h"
@@ -16,6 +16,8 @@ namespace {
 
 // How far line segments may lie outside the box, as a fraction of its diagonal.
 constexpr double kMargin = 0.05;
+// Standard deviation of the blur before segments are found, which noise would break.
+constexpr double kSegmentBlurPx = 1.0;
 
 double Diagonal(const Box& box) { return std::hypot(box.Width(), box.Height()); }
 
@@ -143,8 +145,9 @@ CuboidEvidence EvidenceInBox(const EdgeMaps& maps, const Box& box, double min_se
   const cv::Rect inside = cv::Rect(first, last) & image;
   CuboidEvidence evidence{maps.distance, {}};
   if (inside.empty()) return evidence;
-  evidence.segments =
-      FindLineSegments(maps.grey(inside).clone(), min_segment_fraction * Diagonal(box));
+  cv::Mat smooth;
+  cv::GaussianBlur(maps.grey(inside), smooth, cv::Size(), kSegmentBlurPx);
+  evidence.segments = FindLineSegments(smooth, min_segment_fraction * Diagonal(box));
   const Eigen::Vector2d offset(inside.x, inside.y);
   for (LineSegment& segment : evidence.segments) {
     segment.begin += offset;
