@@ -150,9 +150,13 @@ help: ## List the targets
 	@echo 'dataset that is left out>, NETWORKS=networks'
 	@cd $(PIPELINES)/variants && echo Variants: *.json | sed 's/\.json//g'
 
+# Many variants keep all cores busy side by side, with one thread each.
+DEMO_JOBS = $(if $(filter -j% --jobserver%,$(MAKEFLAGS)),,--jobs=$(shell nproc))
+
 .PHONY: demo
-demo: ## Run all variants on the sequence that comes with the project, print the tables, make pages
-	@$(MAKE) run DATASET=room_a DATA_ROOT=data VARIANT=all
+demo: build ## Run all variants on the sequence that comes with the project, print the tables, make pages
+	@$(MAKE) $(DEMO_JOBS) run-built DATASET=room_a DATA_ROOT=data VARIANT=all \
+	  THREADS=$(or $(filter-out 0,$(THREADS)),1)
 	@$(MAKE) report
 	@echo
 	@echo 'These tables: $(RESULTS)/tables.md. Pages: $(RESULTS)/report.html, opens in a browser. Every'
