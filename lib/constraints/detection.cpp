@@ -19,7 +19,7 @@ bool DetectionResidual::Evaluate(double const* const* blocks, double* residuals,
                                  double** jacobians) const {
   const RelativeObservation observation(blocks);
   const Landmark& landmark = observation.landmark_in_camera();
-  // After a step that was too large, which the solver shortens.
+  // The step was too large: the solver shortens it.
   if (!landmark.half_axes.cwiseAbs2().allFinite()) return false;
   Eigen::Matrix<double, 4, kLandmarkDof> d_landmark;
   for (int i = 0; i < 4; ++i) {

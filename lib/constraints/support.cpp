@@ -16,7 +16,7 @@ SupportResidual::SupportResidual(const Plane& plane_in_world, double angle_varia
 bool SupportResidual::Evaluate(double const* const* blocks, double* residuals,
                                double** jacobians) const {
   const Landmark landmark = UnpackLandmark(blocks[0]);
-  // After a step that was too large, which the solver shortens.
+  // The step was too large: the solver shortens it.
   if (!landmark.half_axes.cwiseAbs2().allFinite()) return false;
   const Eigen::Vector3d& normal = plane_in_world_.normal;
   const Eigen::Matrix3d object_from_world =

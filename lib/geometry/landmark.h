@@ -100,8 +100,8 @@ std::optional<SilhouettePoint> FindSilhouettePoint(const Camera& camera,
                                                    const Landmark& landmark_in_camera,
                                                    const Eigen::Vector2d& direction,
                                                    const Eigen::Vector3d& start);
-// The same beyond the line l of an image: `plane` is K^T l, and `end_px` the largest plane . x /
-// x_z.
+// The silhouette's extreme point beyond a line l of the image, whose normal has unit length:
+// `plane` is K^T l, `end_px` the signed distance of the point from the line.
 std::optional<SilhouettePoint> FindSilhouettePoint(const Eigen::Vector3d& plane,
                                                    const Landmark& landmark_in_camera,
                                                    const Eigen::Vector3d& start);

@@ -112,7 +112,7 @@ cv::Mat DistanceMap(const cv::Mat& nearest_edge) {
 
 namespace {
 
-// Pixels of its own, so that the blur does not reach the image.
+// The image after a Gaussian blur, in other pixels than `grey`; `grey` itself without blur.
 cv::Mat Blurred(const cv::Mat& grey, double sigma_px) {
   if (!(sigma_px > 0.0)) return grey;
   cv::Mat blurred;

@@ -16,7 +16,7 @@ namespace {
 
 // How far line segments may lie outside the box, as a fraction of its diagonal.
 constexpr double kMargin = 0.05;
-// Standard deviation of the blur before segments are found, which noise would break.
+// Standard deviation of the blur before segments are found, as noise would break them.
 constexpr double kSegmentBlurPx = 1.0;
 
 double Diagonal(const Box& box) { return std::hypot(box.Width(), box.Height()); }

@@ -21,8 +21,6 @@ constexpr double kSameOptimumYaw = 0.5 * kRadPerDeg;
 // At least so many of the lowest minima of a sweep are refined: any of them may become the best
 // one.
 constexpr size_t kRefinedMinima = 6;
-// Minima with a cost this far above the lowest are not refined: they are e^10 times less likely.
-constexpr double kUnlikelyCost = 10.0;
 // Number of times that the step of the grid is halved about a minimum.
 constexpr int kHalvings = 4;
 // Yaws farther apart than this many steps of the grid have a yaw without a landmark between them.
@@ -241,11 +239,7 @@ std::vector<UprightSolution> LocalOptima(const UprightObservation& observation,
   };
   const Fitter fitter(observation, objective);
   std::vector<UprightFit> optima;
-  const std::vector<double> costs = sweep.Costs();
-  std::vector<size_t> minima = CircularMinima(costs);
-  std::erase_if(minima, [&, lowest = minima.empty() ? 0 : minima.front()](size_t i) {
-    return costs[i] > costs[lowest] + kUnlikelyCost;
-  });
+  std::vector<size_t> minima = CircularMinima(sweep.Costs());
   minima.resize(std::min(minima.size(), std::max(max_count, kRefinedMinima)));
   for (const size_t i : minima) {
     const auto fit = fitter.RefineYaw(*sweep.fits[i], step);

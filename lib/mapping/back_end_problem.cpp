@@ -305,7 +305,8 @@ void BackEndProblem::Solve(int max_iterations) {
     // step, each is optimised alone.
     options.inner_iteration_ordering = LandmarkOrdering();
     options.use_inner_iterations = options.inner_iteration_ordering->NumElements() > 0;
-    options.inner_iteration_tolerance = options.function_tolerance;  // until the end
+    // Ceres ends inner iterations for good once they gain less than this.
+    options.inner_iteration_tolerance = options.function_tolerance;
   }
   IterationProgress progress;
   options.callbacks.push_back(&progress);

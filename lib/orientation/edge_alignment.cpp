@@ -15,7 +15,7 @@
 namespace soslam {
 namespace {
 
-// Standard deviation of the blur before slopes are taken.
+// Standard deviation of the blur before slopes are taken: that of two blurs by one pixel.
 constexpr double kSlopeBlurPx = std::numbers::sqrt2;
 
 // Up to this exponent, the larger of the two, an object has edges of its own, beyond it only a

@@ -47,6 +47,21 @@ TEST(PointTermTest, GradientAgreesWithNumbers) {
   }
 }
 
+TEST(PointTermTest, ConvergesSlowlyAlsoInAnotherView) {
+  const Landmark body = BodyInCamera(kCuboidExponent);
+  const auto points = [&] {
+    return std::make_unique<PointTerm>(RandomPoints(body, 3), body, SizeForPoints(body),
+                                       PointOptions(), 1.0);
+  };
+  LandmarkCosts costs;
+  const double without_points = NegligibleDecrease(costs);
+  costs.push_back(points());
+  const double with_points = NegligibleDecrease(costs);
+  EXPECT_GT(with_points, without_points);
+  costs.front() = std::make_unique<ViewCost>(points(), RandomRigid(), 0.5);
+  EXPECT_EQ(NegligibleDecrease(costs), with_points);
+}
+
 TEST(PointTermTest, CostsNothingWherePointsAreOnTheSurfaceAndElsewhereSomething) {
   const Landmark cuboid = BodyInCamera(kCuboidExponent);
   const PointTerm term(PointsOnFaces(cuboid, 60), cuboid, SizeForPoints(cuboid), {}, 1.0);

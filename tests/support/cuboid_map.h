@@ -57,8 +57,8 @@ inline Sequence WithBoxNoise(Sequence sequence, double most_px) {
   return sequence;
 }
 
-// A rigid motion of the whole world leaves the cost unchanged and moves the result: expects that of
-// the solver's final cost within a share, and of landmarks up to their IoU.
+// A rigid motion of the whole world leaves the cost unchanged and moves the result: expects the
+// same final cost within `final_cost_share`, and moved landmarks with an IoU above `min_iou`.
 inline void ExpectThatTheMapMovesWithTheWorld(const BackEndInput& input,
                                               const OptimiseOptions& options,
                                               double final_cost_share, double min_iou) {
