@@ -169,7 +169,7 @@ Camera.width: 640
 Camera.height: 480
 )";
 
-// Of a camera whose distortion has another name.
+// A camera whose distortion has another name.
 constexpr const char* kDistCoeff = R"(width: 640
 height: 480
 K: [500, 0, 319.5, 0, 510, 239.5, 0, 0, 1]
