@@ -39,7 +39,9 @@ double Extent(const Eigen::Vector3d& half_axes, const ShapeExponents& p,
 
 TEST(SupportFunction, DerivativesAgreeWithNumbers) {
   for (size_t i = 0; i < kRandomCases; ++i) {
-    const auto [p, half_axes, direction] = RandomCase(i).OffKinks(0.1);
+    const RandomCase off = RandomCase(i).OffKinks(0.1);
+    const ShapeExponents& p = off.p;
+    const Eigen::Vector3d &half_axes = off.half_axes, &direction = off.direction;
     const SupportValue value = SupportFunction(half_axes, p, direction);
     const auto towards = [&](const Eigen::Vector3d& at) { return Extent(half_axes, p, at); };
     const auto of_log_half_axes = [&](const Eigen::Vector3d& at) {
@@ -54,7 +56,9 @@ TEST(SupportFunction, DerivativesAgreeWithNumbers) {
 
 TEST(SupportHessian, IsTheDerivativeOfTheSupportPoint) {
   for (size_t i = 0; i < kRandomCases; ++i) {
-    const auto [p, half_axes, direction] = RandomCase(i).OffKinks(0.1);
+    const RandomCase off = RandomCase(i).OffKinks(0.1);
+    const ShapeExponents& p = off.p;
+    const Eigen::Vector3d &half_axes = off.half_axes, &direction = off.direction;
     const auto point_towards = [&](const Eigen::Vector3d& at) {
       return SupportFunction(half_axes, p, at).point;
     };

@@ -11,6 +11,7 @@
 #include "geometry/wireframe.h"
 #include "support/cuboid_corners.h"
 #include "support/random.h"
+#include "support/shape_exponents.h"
 #include "support/upright_bodies.h"
 
 namespace soslam {
