@@ -44,6 +44,19 @@ TEST(EdgeMapsTest, TheBlurDoesNotReachTheImage) {
   EXPECT_EQ(cv::norm(maps.grey, Rectangle(), cv::NORM_INF), 0.0);
 }
 
+TEST(EdgeMapsTest, EdgesAndCornersAreThoseOfTheBlurredImage) {
+  EdgesOptions options;
+  options.blur_sigma_px = 2.0;
+  const EdgeMaps maps = ComputeEdgeMaps(Rectangle(), options);
+  cv::Mat blurred;
+  cv::GaussianBlur(Rectangle(), blurred, cv::Size(), options.blur_sigma_px);
+  options.blur_sigma_px = 0.0;
+  const EdgeMaps of_blurred = ComputeEdgeMaps(blurred, options);
+  EXPECT_EQ(cv::norm(maps.edges, of_blurred.edges, cv::NORM_INF), 0.0);
+  EXPECT_EQ(maps.corners, of_blurred.corners);
+  EXPECT_NE(maps.corners, ComputeEdgeMaps(Rectangle(), options).corners);
+}
+
 TEST(EdgeMapsTest, CornersAreTheRectanglesCorners) {
   const EdgeMaps maps = ComputeEdgeMaps(Rectangle(), {});
   ASSERT_EQ(maps.corners.size(), 4U);
