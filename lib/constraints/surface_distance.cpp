@@ -14,7 +14,7 @@ constexpr double kNearCentre = 1e-9;
 // would jump where the sections' sides meet.
 constexpr double kSharpSection = 40.0;
 
-// In the object's frame.
+// In the object's frame. Without derivatives d_point and d_log_half_axes are not set.
 struct Distance {
   double value;
   Eigen::Vector3d normal;
@@ -33,7 +33,7 @@ Distance Larger(const Distance& one, const Distance& other) {
 }
 
 Distance FirstOrderDistance(const Eigen::Vector3d& half_axes, const ShapeExponents& dual,
-                            const Eigen::Vector3d& x) {
+                            const Eigen::Vector3d& x, bool with_derivatives) {
   const Eigen::Array3d inverse_axes = half_axes.array().inverse();
   const Eigen::Array3d u = x.array() * inverse_axes;
   if (!(u.abs().maxCoeff() > kNearCentre)) {
@@ -41,10 +41,11 @@ Distance FirstOrderDistance(const Eigen::Vector3d& half_axes, const ShapeExponen
             Eigen::Vector3d::Zero()};
   }
   Eigen::Matrix3d hessian;  // of F by u
-  const auto [norm, slopes] = SuperquadricNorm(u, dual, &hessian);
+  const auto [norm, slopes] = SuperquadricNorm(u, dual, with_derivatives ? &hessian : nullptr);
   const Eigen::Vector3d gradient = (slopes * inverse_axes).matrix();  // dF / dx
   const double slope = gradient.norm();
   const double value = (norm - 1.0) / slope;
+  if (!with_derivatives) return {value, gradient / slope, {}, {}};
   const Eigen::Vector3d d_slope =
       ((hessian * gradient.cwiseProduct(inverse_axes.matrix())).array() * inverse_axes).matrix() /
       slope;
@@ -53,17 +54,18 @@ Distance FirstOrderDistance(const Eigen::Vector3d& half_axes, const ShapeExponen
           -x.cwiseProduct(d_point) + value / (slope * slope) * gradient.cwiseAbs2()};
 }
 
-Distance DistanceInObject(const Landmark& landmark, const Eigen::Vector3d& x) {
+Distance DistanceInObject(const Landmark& landmark, const Eigen::Vector3d& x,
+                          bool with_derivatives) {
   const Eigen::Vector3d& half_axes = landmark.half_axes;
   ShapeExponents dual = DualExponents(landmark.shape_exponents);
   if (!std::isinf(dual.vertical)) {
     if (std::isinf(dual.horizontal)) dual.horizontal = kSharpSection;
-    return FirstOrderDistance(half_axes, dual, x);
+    return FirstOrderDistance(half_axes, dual, x, with_derivatives);
   }
   const Distance side =
       std::isinf(dual.horizontal)
           ? Larger(FaceDistance(half_axes, 0, x), FaceDistance(half_axes, 1, x))
-          : FirstOrderDistance(half_axes, dual, Eigen::Vector3d(x.x(), x.y(), 0.0));
+          : FirstOrderDistance(half_axes, dual, {x.x(), x.y(), 0.0}, with_derivatives);
   return Larger(side, FaceDistance(half_axes, 2, x));
 }
 
@@ -74,7 +76,7 @@ double SurfaceDistance(const Landmark& landmark, const Eigen::Vector3d& point,
   const Eigen::Matrix3d rotation = landmark.frame_from_object.rotation.toRotationMatrix();
   const Eigen::Vector3d from_centre = point - landmark.Centre();
   const Eigen::Vector3d x = rotation.transpose() * from_centre;
-  const Distance distance = DistanceInObject(landmark, x);
+  const Distance distance = DistanceInObject(landmark, x, jacobian != nullptr);
   if (normal != nullptr) *normal = rotation * distance.normal;
   if (jacobian != nullptr) {
     const Eigen::Vector3d d_point = rotation * distance.d_point;

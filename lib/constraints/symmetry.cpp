@@ -59,16 +59,15 @@ std::optional<SymmetryDescriptor::Pair> SymmetryDescriptor::EvaluateAt(
   return side ? Compare(*side, mirror_plane, with_jacobian) : std::nullopt;
 }
 
-std::optional<Eigen::RowVectorXd> SymmetryDescriptor::Residuals(
-    const Eigen::Vector2d& pixel, double min_viewing_cosine,
-    const std::vector<double>& mirror_planes) const {
+bool SymmetryDescriptor::EvaluatePlanes(const Eigen::Vector2d& pixel, double min_viewing_cosine,
+                                        const std::vector<double>& mirror_planes,
+                                        Eigen::Ref<Eigen::VectorXd> residuals) const {
+  residuals.setConstant(std::numeric_limits<double>::quiet_NaN());
   const auto point = surface_.FromPixel(pixel);
-  if (!point) return std::nullopt;
-  Eigen::RowVectorXd residuals = Eigen::RowVectorXd::Constant(
-      static_cast<Eigen::Index>(mirror_planes.size()), std::numeric_limits<double>::quiet_NaN());
-  if (!surface_.AreSeen(*point, min_viewing_cosine)) return residuals;
+  if (!point) return false;
+  if (!surface_.AreSeen(*point, min_viewing_cosine)) return true;
   const auto side = FirstSide(pixel, *point, false);
-  if (!side) return residuals;
+  if (!side) return true;
   const bool is_in_map =
       descriptor_ == Descriptor::kGrey || descriptor_ == Descriptor::kDistanceTransform;
   const VisibleSurface::MirrorLine line = surface_.MirrorImages(*point);
@@ -83,7 +82,7 @@ std::optional<Eigen::RowVectorXd> SymmetryDescriptor::Residuals(
       residuals[i] = pair->residual;
     }
   }
-  return residuals;
+  return true;
 }
 
 std::optional<VisibleSurface::Point> SymmetryDescriptor::VisiblePoint(

@@ -85,11 +85,11 @@ class SymmetryDescriptor {
   std::optional<Pair> EvaluateAt(const Eigen::Vector2d& pixel, const VisibleSurface::Point& point,
                                  bool with_jacobian, double mirror_plane = 0.0) const;
 
-  // The residuals of Evaluate for several mirror planes: NaN if there is no pair. None when the
-  // pixel's ray misses the surface.
-  std::optional<Eigen::RowVectorXd> Residuals(const Eigen::Vector2d& pixel,
-                                              double min_viewing_cosine,
-                                              const std::vector<double>& mirror_planes) const;
+  // Fills in the residuals of Evaluate for several mirror planes; NaN if there is no pair. False
+  // when the pixel's ray misses the surface.
+  bool EvaluatePlanes(const Eigen::Vector2d& pixel, double min_viewing_cosine,
+                      const std::vector<double>& mirror_planes,
+                      Eigen::Ref<Eigen::VectorXd> residuals) const;
 
  private:
   struct Value {

@@ -11,6 +11,8 @@ VisibleSurface::VisibleSurface(const Camera& camera, const Landmark& landmark_in
           landmark_in_camera.frame_from_object.rotation.toRotationMatrix()),
       centre_in_camera_(landmark_in_camera.Centre()),
       camera_in_object_(-(camera_from_object_rotation_.transpose() * centre_in_camera_)),
+      image_from_object_rotation_(camera.Intrinsics() * camera_from_object_rotation_),
+      centre_in_image_(camera.Intrinsics() * centre_in_camera_),
       surface_(landmark_in_camera.half_axes, landmark_in_camera.shape_exponents),
       size_(MeanHalfAxis(landmark_in_camera)) {}
 
@@ -80,10 +82,9 @@ VisibleSurface::Point VisibleSurface::MirrorImage(const Point& point, double mir
 }
 
 VisibleSurface::MirrorLine VisibleSurface::MirrorImages(const Point& point) const {
-  const Eigen::Matrix3d image_from_object = camera_.Intrinsics() * camera_from_object_rotation_;
   const Eigen::Vector3d mirrored = point.in_object.cwiseProduct(Eigen::Vector3d(1, -1, 1));
-  return {image_from_object * mirrored + camera_.Intrinsics() * centre_in_camera_,
-          2.0 * size_ * image_from_object.col(1)};
+  return {image_from_object_rotation_ * mirrored + centre_in_image_,
+          2.0 * size_ * image_from_object_rotation_.col(1)};
 }
 
 std::optional<VisibleSurface::Pixel> VisibleSurface::ToPixel(const Point& point,
@@ -106,9 +107,11 @@ std::optional<VisibleSurface::Pixel> VisibleSurface::ToPixel(const Point& point,
 
 bool VisibleSurface::AreSeen(const Point& point, double min_viewing_cosine) const {
   const Eigen::Vector3d mirror(1, -1, 1);
-  const Eigen::Vector3d normal = surface_.Gradient(point.in_object).normalized();
+  const Eigen::Vector3d normal = surface_.Gradient(point.in_object);
+  const double least = min_viewing_cosine * normal.norm();
   const auto is_seen = [&](const Eigen::Vector3d& in_object, const Eigen::Vector3d& outward) {
-    return outward.dot((camera_in_object_ - in_object).normalized()) >= min_viewing_cosine;
+    const Eigen::Vector3d to_camera = camera_in_object_ - in_object;
+    return outward.dot(to_camera) >= least * to_camera.norm();
   };
   return is_seen(point.in_object, normal) &&
          is_seen(point.in_object.cwiseProduct(mirror), normal.cwiseProduct(mirror));

@@ -65,6 +65,8 @@ class VisibleSurface {
   Eigen::Matrix3d camera_from_object_rotation_;
   Eigen::Vector3d centre_in_camera_;
   Eigen::Vector3d camera_in_object_;
+  Eigen::Matrix3d image_from_object_rotation_;  // K R
+  Eigen::Vector3d centre_in_image_;             // homogeneous pixels, K t
   BodySurface surface_;
   double size_;
 };

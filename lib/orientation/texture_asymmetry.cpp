@@ -72,34 +72,38 @@ std::optional<MirroredTexture> TextureAsymmetry::Find(const Landmark& landmark_i
   const double squared_scale =
       std::pow(Scale(landmark_in_camera, symmetry_options_.descriptor, options_), 2);
   std::vector<Eigen::Vector2d> samples;
-  std::vector<Eigen::RowVectorXd> rows;
+  const auto num_places = static_cast<Eigen::Index>(places_.size());
+  // One column per sample, with room for as many as there often are; NaN if there is no pair.
+  Eigen::MatrixXd residuals(num_places, 256);
   ForEachSample(image_, symmetry_options_, [&](const Eigen::Vector2d& pixel) {
-    auto row = descriptor.Residuals(pixel, symmetry_options_.min_viewing_cosine, places_);
-    if (!row) return false;
-    samples.push_back(pixel);
-    rows.push_back(std::move(*row));
-    return true;
+    const auto column = static_cast<Eigen::Index>(samples.size());
+    if (column == residuals.cols()) residuals.conservativeResize(num_places, 2 * column);
+    const bool is_on_surface = descriptor.EvaluatePlanes(
+        pixel, symmetry_options_.min_viewing_cosine, places_, residuals.col(column));
+    if (is_on_surface) samples.push_back(pixel);
+    return is_on_surface;
   });
-  // One row per sample, one column per offset; NaN if there is no pair.
-  Eigen::ArrayXXd residuals(samples.size(), places_.size());
-  for (size_t i = 0; i < samples.size(); ++i) {
-    residuals.row(static_cast<Eigen::Index>(i)) = rows[i];
-  }
   std::optional<MirroredTexture> best;
   Eigen::Index best_place = 0;
-  for (Eigen::Index place = 0; place < residuals.cols(); ++place) {
-    const Eigen::ArrayXd squared = residuals.col(place).square();
-    const auto pairs = static_cast<double>(squared.isFinite().count());
-    if (pairs < symmetry_options_.MinPairs(samples.size())) continue;
-    const double sum = squared.isFinite().select(squared / (squared + squared_scale), 0.0).sum();
-    const double asymmetry = sum / pairs;
+  std::vector<double> sums(places_.size()), pairs(places_.size());
+  for (size_t i = 0; i < samples.size(); ++i) {
+    for (Eigen::Index place = 0; place < num_places; ++place) {
+      const double residual = residuals(place, static_cast<Eigen::Index>(i));
+      if (std::isnan(residual)) continue;
+      sums[place] += residual * residual / (residual * residual + squared_scale);
+      pairs[place] += 1.0;
+    }
+  }
+  for (Eigen::Index place = 0; place < num_places; ++place) {
+    if (pairs[place] < symmetry_options_.MinPairs(samples.size())) continue;
+    const double asymmetry = sums[place] / pairs[place];
     if (best && best->asymmetry <= asymmetry) continue;
     best = MirroredTexture{asymmetry, places_[place], {}};
     best_place = place;
   }
   if (!best) return std::nullopt;
   for (size_t i = 0; i < samples.size(); ++i) {
-    if (std::isfinite(residuals(static_cast<Eigen::Index>(i), best_place))) {
+    if (!std::isnan(residuals(best_place, static_cast<Eigen::Index>(i)))) {
       best->pixels.push_back(samples[i]);
     }
   }
