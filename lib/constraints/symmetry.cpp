@@ -48,15 +48,15 @@ SymmetryDescriptor::SymmetryDescriptor(Descriptor descriptor, const SymmetryImag
 std::optional<SymmetryDescriptor::Pair> SymmetryDescriptor::Evaluate(
     const Eigen::Vector2d& pixel, std::optional<double> min_viewing_cosine, bool with_jacobian,
     double mirror_plane) const {
-  const auto point = VisiblePoint(pixel, min_viewing_cosine, with_jacobian);
+  const auto point = VisiblePoint(pixel, min_viewing_cosine);
   return point ? EvaluateAt(pixel, *point, with_jacobian, mirror_plane) : std::nullopt;
 }
 
 std::optional<SymmetryDescriptor::Pair> SymmetryDescriptor::EvaluateAt(
     const Eigen::Vector2d& pixel, const VisibleSurface::Point& point, bool with_jacobian,
     double mirror_plane) const {
-  const auto side = FirstSide(pixel, point, with_jacobian);
-  return side ? Compare(*side, mirror_plane, with_jacobian) : std::nullopt;
+  const auto value = Describe(pixel, point, with_jacobian);
+  return value ? Compare(pixel, point, *value, with_jacobian, mirror_plane) : std::nullopt;
 }
 
 bool SymmetryDescriptor::EvaluatePlanes(const Eigen::Vector2d& pixel, double min_viewing_cosine,
@@ -66,8 +66,8 @@ bool SymmetryDescriptor::EvaluatePlanes(const Eigen::Vector2d& pixel, double min
   const auto point = surface_.FromPixel(pixel);
   if (!point) return false;
   if (!surface_.AreSeen(*point, min_viewing_cosine)) return true;
-  const auto side = FirstSide(pixel, *point, false);
-  if (!side) return true;
+  const auto own = Describe(pixel, *point, false);
+  if (!own) return true;
   const bool is_in_map =
       descriptor_ == Descriptor::kGrey || descriptor_ == Descriptor::kDistanceTransform;
   const VisibleSurface::MirrorLine line = surface_.MirrorImages(*point);
@@ -77,8 +77,8 @@ bool SymmetryDescriptor::EvaluatePlanes(const Eigen::Vector2d& pixel, double min
       const Eigen::Vector3d pixel_times_depth = line.at_zero + mirror_plane * line.by_plane;
       if (!(pixel_times_depth.z() > 0.0)) continue;
       const auto value = LookUp(pixel_times_depth.hnormalized());
-      if (value) residuals[i] = side->value.value - value->value;
-    } else if (const auto pair = Compare(*side, mirror_plane, false)) {
+      if (value) residuals[i] = own->value - value->value;
+    } else if (const auto pair = Compare(pixel, *point, *own, false, mirror_plane)) {
       residuals[i] = pair->residual;
     }
   }
@@ -86,48 +86,39 @@ bool SymmetryDescriptor::EvaluatePlanes(const Eigen::Vector2d& pixel, double min
 }
 
 std::optional<VisibleSurface::Point> SymmetryDescriptor::VisiblePoint(
-    const Eigen::Vector2d& pixel, std::optional<double> min_viewing_cosine,
-    bool with_jacobian) const {
-  auto point = surface_.FromPixel(pixel, with_jacobian);
+    const Eigen::Vector2d& pixel, std::optional<double> min_viewing_cosine) const {
+  auto point = surface_.FromPixel(pixel);
   if (point && min_viewing_cosine && !surface_.AreSeen(*point, *min_viewing_cosine)) {
     return std::nullopt;
   }
   return point;
 }
 
-std::optional<SymmetryDescriptor::Side> SymmetryDescriptor::FirstSide(
-    const Eigen::Vector2d& pixel, const VisibleSurface::Point& point, bool with_jacobian) const {
-  const auto value = Describe(pixel, point, LandmarkJacobian2::Zero(), with_jacobian);
-  if (!value) return std::nullopt;
-  return Side{pixel, point, *value};
-}
-
-std::optional<SymmetryDescriptor::Pair> SymmetryDescriptor::Compare(const Side& side,
-                                                                    double mirror_plane,
-                                                                    bool with_jacobian) const {
-  const VisibleSurface::Point mirrored = surface_.MirrorImage(side.point, mirror_plane);
-  const auto mirror = surface_.ToPixel(mirrored, with_jacobian);
-  if (!mirror) return std::nullopt;
+std::optional<SymmetryDescriptor::Pair> SymmetryDescriptor::Compare(
+    const Eigen::Vector2d& pixel, const VisibleSurface::Point& point, const Value& value,
+    bool with_jacobian, double mirror_plane) const {
+  const VisibleSurface::Point mirrored = surface_.MirrorImage(point, mirror_plane);
+  const auto mirror_pixel = surface_.ToPixel(mirrored);
+  if (!mirror_pixel) return std::nullopt;
   Pair pair;
-  pair.mirror_pixel = mirror->pixel;
+  pair.mirror_pixel = *mirror_pixel;
   if (descriptor_ == Descriptor::kBrief || descriptor_ == Descriptor::kFreak) {
     const auto distance = descriptor_ == Descriptor::kBrief
-                              ? image_.brief.Distance(side.pixel, mirror->pixel)
-                              : image_.freak.Distance(side.pixel, mirror->pixel);
+                              ? image_.brief.Distance(pixel, *mirror_pixel)
+                              : image_.freak.Distance(pixel, *mirror_pixel);
     if (!distance) return std::nullopt;
     pair.residual = *distance;
     return pair;
   }
-  const auto value = Describe(mirror->pixel, mirrored, mirror->jacobian, with_jacobian);
-  if (!value) return std::nullopt;
-  pair.residual = side.value.value - value->value;
-  if (with_jacobian) pair.jacobian = side.value.jacobian - value->jacobian;
+  const auto mirror_value = Describe(*mirror_pixel, mirrored, with_jacobian);
+  if (!mirror_value) return std::nullopt;
+  pair.residual = value.value - mirror_value->value;
+  if (with_jacobian) pair.jacobian = value.jacobian - mirror_value->jacobian;
   return pair;
 }
 
 std::optional<SymmetryDescriptor::Value> SymmetryDescriptor::Describe(
-    const Eigen::Vector2d& pixel, const VisibleSurface::Point& point,
-    const LandmarkJacobian2& pixel_jacobian, bool with_jacobian) const {
+    const Eigen::Vector2d& pixel, const VisibleSurface::Point& point, bool with_jacobian) const {
   switch (descriptor_) {
     case Descriptor::kBrief:
     case Descriptor::kFreak:
@@ -137,7 +128,10 @@ std::optional<SymmetryDescriptor::Value> SymmetryDescriptor::Describe(
       const auto sample = LookUp(pixel);
       if (!sample) return std::nullopt;
       Value value{sample->value};
-      if (with_jacobian) value.jacobian = sample->gradient.transpose() * pixel_jacobian;
+      const bool is_pixel_fixed = point.side > 0.0;
+      if (with_jacobian && !is_pixel_fixed) {
+        value.jacobian = surface_.PixelDerivative(point, sample->gradient);
+      }
       return value;
     }
     default:
@@ -163,16 +157,19 @@ std::optional<SymmetryDescriptor::Value> SymmetryDescriptor::DistanceToEdge(
     const Eigen::Vector2d& pixel, const VisibleSurface::Point& point, bool with_jacobian) const {
   const auto edge_pixel = EdgePixel(pixel, point.in_object);
   if (!edge_pixel) return std::nullopt;
-  const auto edge = descriptor_ == Descriptor::kLinearisedDt
-                        ? surface_.FromPixelOnTangentPlane(*edge_pixel, point, with_jacobian)
-                        : surface_.FromPixel(*edge_pixel, with_jacobian);
+  const bool is_on_plane = descriptor_ == Descriptor::kLinearisedDt;
+  const auto edge = is_on_plane ? surface_.FromPixelOnTangentPlane(*edge_pixel, point)
+                                : surface_.FromPixel(*edge_pixel);
   if (!edge) return std::nullopt;
 
   const Eigen::Vector3d difference = edge->in_object - point.in_object;
-  Value value{difference.norm(), LandmarkJacobian1::Zero()};
+  Value value{difference.norm()};
   // On an edge the distance has a kink; 0 is one of its subgradients.
   if (with_jacobian && value.value > 0.0) {
-    value.jacobian = difference.transpose() / value.value * (edge->jacobian - point.jacobian);
+    const Eigen::Vector3d direction = difference / value.value;
+    value.jacobian = (is_on_plane ? surface_.DerivativeOnTangentPlane(*edge, point, direction)
+                                  : surface_.Derivative(*edge, direction)) -
+                     surface_.Derivative(point, direction);
   }
   return value;
 }

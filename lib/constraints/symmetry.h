@@ -78,10 +78,8 @@ class SymmetryDescriptor {
   // The first half of Evaluate, which is the same for all descriptors: the intersection of the
   // pixel's ray with the surface.
   std::optional<VisibleSurface::Point> VisiblePoint(const Eigen::Vector2d& pixel,
-                                                    std::optional<double> min_viewing_cosine,
-                                                    bool with_jacobian) const;
-  // The second half, at the VisiblePoint of the same pixel on the same landmark, with the same
-  // `with_jacobian`.
+                                                    std::optional<double> min_viewing_cosine) const;
+  // The second half, at the VisiblePoint of the same pixel on the same landmark.
   std::optional<Pair> EvaluateAt(const Eigen::Vector2d& pixel, const VisibleSurface::Point& point,
                                  bool with_jacobian, double mirror_plane = 0.0) const;
 
@@ -101,18 +99,12 @@ class SymmetryDescriptor {
     Eigen::Vector2d pixel;
     Eigen::Vector3d in_object;  // m
   };
-  // A pixel, the intersection of its ray with the surface, and its descriptor.
-  struct Side {
-    Eigen::Vector2d pixel;
-    VisibleSurface::Point point;
-    Value value;
-  };
 
-  std::optional<Side> FirstSide(const Eigen::Vector2d& pixel, const VisibleSurface::Point& point,
-                                bool with_jacobian) const;
-  std::optional<Pair> Compare(const Side& side, double mirror_plane, bool with_jacobian) const;
+  std::optional<Pair> Compare(const Eigen::Vector2d& pixel, const VisibleSurface::Point& point,
+                              const Value& value, bool with_jacobian, double mirror_plane) const;
+  // The value at a point, and at its pixel.
   std::optional<Value> Describe(const Eigen::Vector2d& pixel, const VisibleSurface::Point& point,
-                                const LandmarkJacobian2& pixel_jacobian, bool with_jacobian) const;
+                                bool with_jacobian) const;
   std::optional<Value> DistanceToEdge(const Eigen::Vector2d& pixel,
                                       const VisibleSurface::Point& point, bool with_jacobian) const;
   // The map's value at a pixel, for kGrey and kDistanceTransform.

@@ -141,8 +141,6 @@ double YawDifferenceModuloPi(double yaw, double other);
 // camera frame.
 inline constexpr int kLandmarkDof = 9;
 using LandmarkStep = Eigen::Matrix<double, kLandmarkDof, 1>;
-using LandmarkJacobian3 = Eigen::Matrix<double, 3, kLandmarkDof>;
-using LandmarkJacobian2 = Eigen::Matrix<double, 2, kLandmarkDof>;
 using LandmarkJacobian1 = Eigen::Matrix<double, 1, kLandmarkDof>;
 
 // The landmark to which a step leads.

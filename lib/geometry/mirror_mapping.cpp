@@ -20,65 +20,26 @@ Eigen::Vector3d VisibleSurface::RayInObject(const Eigen::Vector2d& pixel) const 
   return camera_from_object_rotation_.transpose() * camera_.Ray(pixel);
 }
 
-LandmarkJacobian3 VisibleSurface::FixedPointJacobian(const Eigen::Vector3d& point_in_object) const {
-  // R replaced by exp(w) R changes R^T v to R^T (v - w x v), v = R point_in_object.
-  LandmarkJacobian3 jacobian = LandmarkJacobian3::Zero();
-  jacobian.leftCols<3>() = camera_from_object_rotation_.transpose() *
-                           Skew(camera_from_object_rotation_ * point_in_object);
-  jacobian.middleCols<3>(3) = -camera_from_object_rotation_.transpose();
-  return jacobian;
-}
-
-std::optional<VisibleSurface::Point> VisibleSurface::FromPixel(const Eigen::Vector2d& pixel,
-                                                               bool with_jacobian) const {
+std::optional<VisibleSurface::Point> VisibleSurface::FromPixel(const Eigen::Vector2d& pixel) const {
   const Eigen::Vector3d ray = RayInObject(pixel);
   const auto depth = surface_.Entry(camera_in_object_, ray);
   if (!depth) return std::nullopt;
-
-  Point point;
-  point.in_object = camera_in_object_ + *depth * ray;
-  if (with_jacobian) {
-    // Implicit derivative: the depth along the ray changes such that F = 1 still holds.
-    const Eigen::Vector3d gradient = surface_.Gradient(point.in_object);
-    point.jacobian = FixedPointJacobian(point.in_object);
-    LandmarkJacobian1 change = gradient.transpose() * point.jacobian;
-    change.tail<3>() -= gradient.cwiseProduct(point.in_object).transpose();
-    point.jacobian -= ray * (change / gradient.dot(ray));
-  }
-  return point;
+  return Point{camera_in_object_ + *depth * ray};
 }
 
 std::optional<VisibleSurface::Point> VisibleSurface::FromPixelOnTangentPlane(
-    const Eigen::Vector2d& pixel, const Point& tangent, bool with_jacobian) const {
+    const Eigen::Vector2d& pixel, const Point& tangent) const {
   const Eigen::Vector3d ray = RayInObject(pixel);
   const Eigen::Vector3d normal = surface_.Gradient(tangent.in_object);
-  const double slope = normal.dot(ray);
-  const double depth = (1.0 - normal.dot(camera_in_object_)) / slope;
+  const double depth = (1.0 - normal.dot(camera_in_object_)) / normal.dot(ray);
   if (!std::isfinite(depth) || !(depth > 0.0)) return std::nullopt;
-
-  Point point;
-  point.in_object = camera_in_object_ + depth * ray;
-  if (with_jacobian) {
-    // The plane normal . x = 1 moves with the tangent point and the half axes.
-    const Eigen::Vector3d d_normal = surface_.Hessian(tangent.in_object) * point.in_object;
-    point.jacobian = FixedPointJacobian(point.in_object);
-    LandmarkJacobian1 plane =
-        normal.transpose() * point.jacobian + d_normal.transpose() * tangent.jacobian;
-    plane.tail<3>() -=
-        (normal.cwiseProduct(point.in_object) + d_normal.cwiseProduct(tangent.in_object))
-            .transpose();
-    point.jacobian -= ray * (plane / slope);
-  }
-  return point;
+  return Point{camera_in_object_ + depth * ray};
 }
 
 VisibleSurface::Point VisibleSurface::MirrorImage(const Point& point, double mirror_plane) const {
   const double shift = 2.0 * mirror_plane * size_;
-  Point mirrored = point;
-  mirrored.in_object.y() = shift - mirrored.in_object.y();
-  mirrored.jacobian.row(1) = -mirrored.jacobian.row(1);
-  mirrored.jacobian.row(1).tail<3>().array() += shift / 3.0;
-  return mirrored;
+  const Eigen::Vector3d& x = point.in_object;
+  return {{x.x(), shift - x.y(), x.z()}, -point.side, shift - point.shift};
 }
 
 VisibleSurface::MirrorLine VisibleSurface::MirrorImages(const Point& point) const {
@@ -87,22 +48,61 @@ VisibleSurface::MirrorLine VisibleSurface::MirrorImages(const Point& point) cons
           2.0 * size_ * image_from_object_rotation_.col(1)};
 }
 
-std::optional<VisibleSurface::Pixel> VisibleSurface::ToPixel(const Point& point,
-                                                             bool with_jacobian) const {
-  const Eigen::Vector3d offset_in_camera = camera_from_object_rotation_ * point.in_object;
-  const Eigen::Vector3d in_camera = offset_in_camera + centre_in_camera_;
-  const auto projected = camera_.Project(in_camera);
-  if (!projected) return std::nullopt;
+std::optional<Eigen::Vector2d> VisibleSurface::ToPixel(const Point& point) const {
+  return camera_.Project(camera_from_object_rotation_ * point.in_object + centre_in_camera_);
+}
 
-  Pixel pixel;
-  pixel.pixel = *projected;
-  if (with_jacobian) {
-    LandmarkJacobian3 motion = camera_from_object_rotation_ * point.jacobian;
-    motion.leftCols<3>() -= Skew(offset_in_camera);
-    motion.middleCols<3>(3) += Eigen::Matrix3d::Identity();
-    pixel.jacobian = camera_.ProjectionJacobian(in_camera) * motion;
-  }
-  return pixel;
+LandmarkJacobian1 VisibleSurface::FixedPointDerivative(const Eigen::Vector3d& point_in_object,
+                                                       const Eigen::Vector3d& direction) const {
+  // R replaced by exp(w) R changes R^T v to R^T (v - w x v), v = R point_in_object.
+  const Eigen::Vector3d in_camera = camera_from_object_rotation_ * direction;
+  LandmarkJacobian1 derivative = LandmarkJacobian1::Zero();
+  derivative.head<3>() = in_camera.cross(camera_from_object_rotation_ * point_in_object);
+  derivative.segment<3>(3) = -in_camera;
+  return derivative;
+}
+
+LandmarkJacobian1 VisibleSurface::Derivative(const Point& point,
+                                             const Eigen::Vector3d& direction) const {
+  const Eigen::Vector3d mirror(1.0, point.side, 1.0);
+  const Eigen::Vector3d x =
+      mirror.cwiseProduct(point.in_object - point.shift * Eigen::Vector3d::UnitY());
+  const Eigen::Vector3d along = mirror.cwiseProduct(direction);
+  // Implicit derivative: the depth along the ray changes such that F = 1 still holds.
+  const Eigen::Vector3d ray = x - camera_in_object_;
+  const Eigen::Vector3d gradient = surface_.Gradient(x);
+  const double by_depth = along.dot(ray) / gradient.dot(ray);
+  LandmarkJacobian1 derivative = FixedPointDerivative(x, along - by_depth * gradient);
+  derivative.tail<3>() += by_depth * gradient.cwiseProduct(x).transpose();
+  derivative.tail<3>().array() += direction.y() * point.shift / 3.0;
+  return derivative;
+}
+
+LandmarkJacobian1 VisibleSurface::DerivativeOnTangentPlane(const Point& point, const Point& tangent,
+                                                           const Eigen::Vector3d& direction) const {
+  // The plane normal . x = 1 moves with the tangent point and the half axes.
+  const Eigen::Vector3d& x = point.in_object;
+  const Eigen::Vector3d ray = x - camera_in_object_;
+  const Eigen::Vector3d normal = surface_.Gradient(tangent.in_object);
+  const Eigen::Vector3d d_normal = surface_.Hessian(tangent.in_object) * x;
+  const double by_depth = direction.dot(ray) / normal.dot(ray);
+  LandmarkJacobian1 derivative = FixedPointDerivative(x, direction - by_depth * normal) -
+                                 by_depth * Derivative(tangent, d_normal);
+  derivative.tail<3>() +=
+      by_depth * (normal.cwiseProduct(x) + d_normal.cwiseProduct(tangent.in_object)).transpose();
+  return derivative;
+}
+
+LandmarkJacobian1 VisibleSurface::PixelDerivative(const Point& point,
+                                                  const Eigen::Vector2d& direction) const {
+  const Eigen::Vector3d from_centre = camera_from_object_rotation_ * point.in_object;
+  const Eigen::Vector3d in_camera =
+      camera_.ProjectionJacobian(from_centre + centre_in_camera_).transpose() * direction;
+  LandmarkJacobian1 derivative =
+      Derivative(point, camera_from_object_rotation_.transpose() * in_camera);
+  derivative.head<3>() += from_centre.cross(in_camera).transpose();
+  derivative.segment<3>(3) += in_camera.transpose();
+  return derivative;
 }
 
 bool VisibleSurface::AreSeen(const Point& point, double min_viewing_cosine) const {

@@ -15,26 +15,25 @@ namespace soslam {
 // plane is y = 0. A camera inside the body sees nothing of it.
 class VisibleSurface {
  public:
+  // A point on a pixel's ray, or its mirror image.
   struct Point {
     Eigen::Vector3d in_object;
-    LandmarkJacobian3 jacobian = LandmarkJacobian3::Zero();  // only when asked for
-  };
-  struct Pixel {
-    Eigen::Vector2d pixel;
-    LandmarkJacobian2 jacobian = LandmarkJacobian2::Zero();  // only when asked for
+    // y is `side` times that of the point on the ray, plus `shift`.
+    double side = 1.0;  // -1 for a mirror image
+    double shift = 0.0;
   };
 
   VisibleSurface(const Camera& camera, const Landmark& landmark_in_camera);
 
   // P-dagger, eq. (13): the nearer intersection of the pixel's ray with the surface. None when the
   // ray misses the surface.
-  std::optional<Point> FromPixel(const Eigen::Vector2d& pixel, bool with_jacobian = false) const;
+  std::optional<Point> FromPixel(const Eigen::Vector2d& pixel) const;
 
   // The intersection of the pixel's ray with the plane that is tangent to the surface at `tangent`,
   // a surface point (eq. 23). None when the ray is parallel to the plane or meets it behind the
   // camera.
-  std::optional<Point> FromPixelOnTangentPlane(const Eigen::Vector2d& pixel, const Point& tangent,
-                                               bool with_jacobian = false) const;
+  std::optional<Point> FromPixelOnTangentPlane(const Eigen::Vector2d& pixel,
+                                               const Point& tangent) const;
 
   // S, the mirror image in the xz plane; again a surface point. With another `mirror_plane`, in the
   // plane y = mirror_plane * MeanHalfAxis: the image is then near the surface where that is flat,
@@ -50,7 +49,16 @@ class VisibleSurface {
   MirrorLine MirrorImages(const Point& point) const;
 
   // P: the projection of a point to its pixel, visible or not. None behind the camera.
-  std::optional<Pixel> ToPixel(const Point& point, bool with_jacobian = false) const;
+  std::optional<Eigen::Vector2d> ToPixel(const Point& point) const;
+
+  // Derivatives along a direction, the product of the direction with a Jacobian by the landmark: of
+  // a point that FromPixel gives for a fixed pixel, or of its mirror image, ...
+  LandmarkJacobian1 Derivative(const Point& point, const Eigen::Vector3d& direction) const;
+  // ... of a point that FromPixelOnTangentPlane gives, ...
+  LandmarkJacobian1 DerivativeOnTangentPlane(const Point& point, const Point& tangent,
+                                             const Eigen::Vector3d& direction) const;
+  // ... and of the pixel of a point as in the first.
+  LandmarkJacobian1 PixelDerivative(const Point& point, const Eigen::Vector2d& direction) const;
 
   // True if the cosine between the outward normal and the direction to the camera is at least this
   // at a surface point and at its mirror image; it is 0 on the outline.
@@ -58,8 +66,9 @@ class VisibleSurface {
 
  private:
   Eigen::Vector3d RayInObject(const Eigen::Vector2d& pixel) const;
-  // The derivative of R^T (x - t) for a point x fixed in the camera frame.
-  LandmarkJacobian3 FixedPointJacobian(const Eigen::Vector3d& point_in_object) const;
+  // The derivative of `direction` . R^T (x - t) for a point x fixed in the camera frame.
+  LandmarkJacobian1 FixedPointDerivative(const Eigen::Vector3d& point_in_object,
+                                         const Eigen::Vector3d& direction) const;
 
   Camera camera_;
   Eigen::Matrix3d camera_from_object_rotation_;

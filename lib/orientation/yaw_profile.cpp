@@ -23,8 +23,7 @@ std::vector<std::optional<double>> SymmetryCosts(const SymmetryImage& image, con
     sums.push_back({{descriptor, image, camera, landmark_in_camera}});
   }
   for (const Eigen::Vector2d& pixel : samples) {
-    const auto point =
-        sums.front().descriptor.VisiblePoint(pixel, options.min_viewing_cosine, false);
+    const auto point = sums.front().descriptor.VisiblePoint(pixel, options.min_viewing_cosine);
     if (!point) continue;
     for (Sum& sum : sums) {
       const auto pair = sum.descriptor.EvaluateAt(pixel, *point, false);

@@ -54,7 +54,7 @@ TEST(SymmetryDescriptor, ResidualsOfSeveralMirrorPlanesAreThoseOfEachPair) {
       const Eigen::Vector2d pixel(RandomUniform(200, 440), RandomUniform(150, 330));
       Eigen::VectorXd residuals(3);
       EXPECT_EQ(of.EvaluatePlanes(pixel, 0.3, planes, residuals),
-                of.VisiblePoint(pixel, std::nullopt, false).has_value());
+                of.VisiblePoint(pixel, std::nullopt).has_value());
       for (Eigen::Index k = 0; k < 3; ++k) {
         const auto pair = of.Evaluate(pixel, 0.3, false, planes[k]);
         EXPECT_EQ(std::isnan(residuals[k]), !pair);

@@ -21,16 +21,16 @@ Landmark CentralLandmark(const ShapeExponents& shape_exponents = kEllipsoidExpon
 
 Eigen::Vector2d RandomPixel() { return {RandomUniform(295, 345), RandomUniform(220, 265)}; }
 
-// Central differences of a point or pixel over the nine parameters; their error is about 1e-9 here.
+// Central differences over the nine parameters; their error is about 1e-9 here.
 template <typename Function>
-void ExpectJacobian(const Eigen::MatrixXd& analytic, const Landmark& landmark,
-                    const Function& function) {
+void ExpectDerivative(const LandmarkJacobian1& analytic, const Landmark& landmark,
+                      const Function& function) {
   constexpr double kStep = 1e-5;
   for (int i = 0; i < kLandmarkDof; ++i) {
     const LandmarkStep step = kStep * LandmarkStep::Unit(i);
-    const Eigen::VectorXd numeric =
+    const double numeric =
         (function(Moved(landmark, step)) - function(Moved(landmark, -step))) / (2.0 * kStep);
-    EXPECT_LT((analytic.col(i) - numeric).norm(), 1e-6 * (1.0 + numeric.norm())) << i;
+    EXPECT_NEAR(analytic[i], numeric, 1e-6 * (1.0 + std::abs(numeric))) << i;
   }
 }
 
@@ -43,7 +43,7 @@ TEST(VisibleSurface, PointIsOnTheSurfaceOnTheRayAndVisible) {
     const auto point = surface.FromPixel(pixel);
     ASSERT_TRUE(point);
     EXPECT_NEAR(SurfaceNorm(landmark.half_axes, p, point->in_object), 1.0, 1e-9);
-    EXPECT_LT((surface.ToPixel(*point)->pixel - pixel).norm(), 1e-9);
+    EXPECT_LT((*surface.ToPixel(*point) - pixel).norm(), 1e-9);
     const double depth =
         *NearestIntersection(landmark, Eigen::Vector3d::Zero(), TestCamera().Ray(pixel));
     EXPECT_LT(
@@ -91,30 +91,49 @@ TEST(VisibleSurface, TangentPlaneAgreesAtTheContactAndToFirstOrderAround) {
   }
 }
 
-TEST(VisibleSurface, JacobiansAgreeWithNumbers) {
-  for (int i = 0; i < 80; ++i) {
+TEST(VisibleSurface, DerivativesAgreeWithNumbers) {
+  for (int i = 0; i < 200; ++i) {
     const ShapeExponents p = kTestedExponents[static_cast<size_t>(i) % kTestedExponents.size()];
     SCOPED_TRACE(p);
     const Landmark landmark = CentralLandmark(p);
     const Eigen::Vector2d pixel = RandomPixel();
     const Eigen::Vector2d edge = pixel + Eigen::Vector2d(7, -5);
+    const double mirror_plane = i % 2 == 0 ? 0.0 : 0.2;
+    const Eigen::Vector3d along = RandomDirection();
+    const Eigen::Vector2d in_image = RandomVector(-1.0, 1.0).head<2>();
     const VisibleSurface surface(TestCamera(), landmark);
-    const auto point = *surface.FromPixel(pixel, true);
-    ExpectJacobian(point.jacobian, landmark, [&](const Landmark& moved) -> Eigen::VectorXd {
-      return VisibleSurface(TestCamera(), moved).FromPixel(pixel)->in_object;
+    const auto point = *surface.FromPixel(pixel);
+    const auto mirrored = surface.MirrorImage(point, mirror_plane);
+    const auto mirrored_at = [&](const VisibleSurface& at) {
+      return at.MirrorImage(*at.FromPixel(pixel), mirror_plane);
+    };
+    ExpectDerivative(surface.Derivative(point, along), landmark, [&](const Landmark& moved) {
+      return along.dot(VisibleSurface(TestCamera(), moved).FromPixel(pixel)->in_object);
     });
-    ExpectJacobian(surface.FromPixelOnTangentPlane(edge, point, true)->jacobian, landmark,
-                   [&](const Landmark& moved) -> Eigen::VectorXd {
-                     const VisibleSurface at(TestCamera(), moved);
-                     return at.FromPixelOnTangentPlane(edge, *at.FromPixel(pixel))->in_object;
-                   });
-    for (const double mirror_plane : {0.0, 0.2}) {
-      ExpectJacobian(surface.ToPixel(surface.MirrorImage(point, mirror_plane), true)->jacobian,
-                     landmark, [&](const Landmark& moved) -> Eigen::VectorXd {
+    ExpectDerivative(surface.Derivative(mirrored, along), landmark, [&](const Landmark& moved) {
+      return along.dot(mirrored_at(VisibleSurface(TestCamera(), moved)).in_object);
+    });
+    const auto on_plane = *surface.FromPixelOnTangentPlane(edge, point);
+    ExpectDerivative(
+        surface.DerivativeOnTangentPlane(on_plane, point, along), landmark,
+        [&](const Landmark& moved) {
+          const VisibleSurface at(TestCamera(), moved);
+          return along.dot(at.FromPixelOnTangentPlane(edge, *at.FromPixel(pixel))->in_object);
+        });
+    ExpectDerivative(surface.PixelDerivative(mirrored, in_image), landmark,
+                     [&](const Landmark& moved) {
                        const VisibleSurface at(TestCamera(), moved);
-                       return at.ToPixel(at.MirrorImage(*at.FromPixel(pixel), mirror_plane))->pixel;
+                       return in_image.dot(*at.ToPixel(mirrored_at(at)));
                      });
-    }
+  }
+}
+
+// Of a fixed pixel.
+TEST(VisibleSurface, PixelDerivativeOfAPointOnItsRayIsZero) {
+  for (int i = 0; i < 20; ++i) {
+    const VisibleSurface surface(TestCamera(), CentralLandmark());
+    const auto point = *surface.FromPixel(RandomPixel());
+    EXPECT_LT(surface.PixelDerivative(point, {1.0, 1.0}).norm(), 1e-9);
   }
 }
 
@@ -142,13 +161,13 @@ TEST(VisibleSurface, HiddenFacesOfTheCuboidLookAway) {
         landmark.frame_from_object.Inverse() * Eigen::Vector3d::Zero();
     for (int axis = 0; axis < 3; ++axis) {
       for (const double side : {-1.0, 1.0}) {
-        VisibleSurface::Point point{landmark.half_axes.cwiseProduct(RandomVector(-0.99, 0.99)), {}};
+        VisibleSurface::Point point{landmark.half_axes.cwiseProduct(RandomVector(-0.99, 0.99))};
         point.in_object[axis] = side * landmark.half_axes[axis];
         const bool is_hidden = side * camera_in_object[axis] <= landmark.half_axes[axis];
         // What is not hidden is what the pixel's ray meets first.
         const auto pixel = surface.ToPixel(point);
         ASSERT_TRUE(pixel);
-        const auto seen = surface.FromPixel(pixel->pixel);
+        const auto seen = surface.FromPixel(*pixel);
         ASSERT_TRUE(seen);
         EXPECT_EQ((seen->in_object - point.in_object).norm() > 1e-9, is_hidden);
       }
