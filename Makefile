@@ -137,7 +137,7 @@ help: ## List the targets
 	@echo 'make <target> [NAME=value ...]'
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 16 | sed 's/^/  /'
 	@echo 'DATASET=<folder in DATA_ROOT, or its path>, VARIANT=<name>|"<name> <name>"|all, DATA_ROOT=data,'
-	@echo 'RESULTS=results, PIPELINES=pipelines, BUILD=build, THREADS=0 (threads per stage; 0 = all cores, demo: 1)'
+	@echo 'RESULTS=results, PIPELINES=pipelines, BUILD=build, THREADS=0 (threads per stage; 0 = all cores)'
 	@echo 'OUTSIDE_PATHS=--allow_outside_paths (images may lie outside their dataset: see docs/datasets.md)'
 	@echo 'STAGE=<name> as in the table of `make status`, LAUNCH=<command that starts each stage, as srun>'
 	@echo 'Sweeps (see docs/sweeps.md): DATASETS="<name> <name>", SCENES="<scene file> ...", SEEDS="1 2 3" of the'
@@ -150,13 +150,9 @@ help: ## List the targets
 	@echo 'dataset that is left out>, NETWORKS=networks'
 	@cd $(PIPELINES)/variants && echo Variants: *.json | sed 's/\.json//g'
 
-# Many variants keep all cores busy side by side, with one thread each.
-DEMO_JOBS = $(if $(filter -j% --jobserver%,$(MAKEFLAGS)),,--jobs=$(shell nproc))
-
 .PHONY: demo
-demo: build ## Run all variants on the sequence that comes with the project, print the tables, make pages
-	@$(MAKE) $(DEMO_JOBS) run-built DATASET=room_a DATA_ROOT=data VARIANT=all \
-	  THREADS=$(or $(filter-out 0,$(THREADS)),1)
+demo: ## Run all variants on the sequence that comes with the project, print the tables, make pages
+	@$(MAKE) run DATASET=room_a DATA_ROOT=data VARIANT=all
 	@$(MAKE) report
 	@echo
 	@echo 'These tables: $(RESULTS)/tables.md. Pages: $(RESULTS)/report.html, opens in a browser. Every'
@@ -209,9 +205,12 @@ SEVERAL_JOBS = $(if $(filter -j% --jobserver%,$(MAKEFLAGS)),--output-sync QUIET=
 # not write beside the next one.
 LOCK = $(RESULTS)/.$(DATASET).lock
 
+# Stages of many variants run side by side: most of them do not keep all cores busy alone.
+SIDE_BY_SIDE = $(if $(filter all,$(VARIANT)),$(if $(filter -j% --jobserver%,$(MAKEFLAGS)),,--jobs=$(shell nproc)))
+
 .PHONY: run
 run: build ## Run DATASET=<name> through VARIANT=<name>|all; only what is out of date, past what fails
-	+@$(MAKE) run-built
+	+@$(MAKE) $(SIDE_BY_SIDE) run-built
 
 .PHONY: run-built
 run-built:
