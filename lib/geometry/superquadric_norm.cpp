@@ -45,10 +45,12 @@ PairNorm NormOfPair(double x, double y, double p) {
 // The factor p - 1 of a norm's curvature; 0 where the norm is linear but for its kinks.
 double Curvature(double p) { return std::isinf(p) ? 0.0 : p - 1.0; }
 
-// (u / norm)^(p - 2), the part of a component in the curvature; 0 where the norm has a kink.
-double CurvatureAlong(double u, double norm, double p) {
-  if (std::isinf(p) || (p < 2.0 && !(u > 0.0))) return 0.0;
-  return AbsolutePower(u / norm, p - 2.0);
+// (u / norm)^(p - 2), the part of a component in the curvature, from its slope (u / norm)^(p - 1);
+// 0 where the norm has a kink.
+double CurvatureAlong(double u, double slope, double norm, double p) {
+  if (std::isinf(p)) return 0.0;
+  if (!(u > 0.0)) return p == 2.0 ? 1.0 : 0.0;
+  return slope * norm / u;
 }
 
 }  // namespace
@@ -91,14 +93,14 @@ NormValue SuperquadricNorm(const Eigen::Array3d& u, const ShapeExponents& expone
     hessian->setZero();
     if (section.value > 0.0) {
       *hessian -= section_slopes * section_slopes.transpose();
-      (*hessian)(0, 0) += CurvatureAlong(size.x(), section.value, of_sections);
-      (*hessian)(1, 1) += CurvatureAlong(size.y(), section.value, of_sections);
+      (*hessian)(0, 0) += CurvatureAlong(size.x(), section.d_x, section.value, of_sections);
+      (*hessian)(1, 1) += CurvatureAlong(size.y(), section.d_y, section.value, of_sections);
       *hessian *= norm.d_x * Curvature(of_sections) / section.value;
     }
     Eigen::Matrix3d outer = -slopes * slopes.transpose();
-    outer += CurvatureAlong(section.value, norm.value, of_curve) * section_slopes *
+    outer += CurvatureAlong(section.value, norm.d_x, norm.value, of_curve) * section_slopes *
              section_slopes.transpose();
-    outer(2, 2) += CurvatureAlong(size.z(), norm.value, of_curve);
+    outer(2, 2) += CurvatureAlong(size.z(), norm.d_y, norm.value, of_curve);
     *hessian += Curvature(of_curve) / norm.value * outer;
   }
   return {norm.value, slopes};
