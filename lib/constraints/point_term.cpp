@@ -51,12 +51,14 @@ PointTerm::PointTerm(const std::vector<ObjectPoint>& points, const Landmark& sta
     : outlier_probability_(options.point_outlier_probability),
       weight_(weight),
       for_solver_(for_solver) {
+  const double sharp_m = options.point_sigma_fraction * size_m;
+  const double rough_m = options.point_roughness_fraction * size_m;
   for (const ObjectPoint& point : points) {
     const double of_range_m = options.point_range_fraction * point.position.norm();
     const auto sigmas_m = [&](double variance) {
-      const double of_position_m = std::hypot(std::sqrt(std::max(0.0, variance)), of_range_m);
-      return std::pair(std::hypot(options.point_sigma_fraction * size_m, of_position_m),
-                       std::hypot(options.point_roughness_fraction * size_m, of_position_m));
+      const double of_position_m2 = std::max(0.0, variance) + of_range_m * of_range_m;
+      return std::pair(std::sqrt(sharp_m * sharp_m + of_position_m2),
+                       std::sqrt(rough_m * rough_m + of_position_m2));
     };
     Eigen::Vector3d normal;
     SurfaceDistance(start_in_camera, point.position, nullptr, &normal);
