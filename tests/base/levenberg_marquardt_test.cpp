@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "constraints/landmark_cost.h"
+#include "base/quadratic_model.h"
 
 namespace soslam {
 namespace {
