@@ -198,18 +198,20 @@ map: ## Make a map of IMAGES=<folder of photos, or a video> with NETWORK=<file.o
 	  MAP_VARIANT='$(or $(strip $(patsubst all,OursSP,$(VARIANT))),OursSP)' BIN=$(BIN) BUILD=$(BUILD) \
 	  MAKE='$(MAKE_PROGRAM)' pipelines/map.sh
 
+GIVEN_JOBS = $(filter -j% --jobserver%,$(MAKEFLAGS))
 # Stages that run side by side must not mix their lines; synchronised, progress would come too late.
-SEVERAL_JOBS = $(if $(filter -j% --jobserver%,$(MAKEFLAGS)),--output-sync QUIET=--quiet)
+SEVERAL_JOBS = $(if $(filter-out -j1,$(GIVEN_JOBS)),--output-sync QUIET=--quiet)
 
 # One run of a dataset at a time. What it started keeps the lock, so that a run that was killed does
 # not write beside the next one.
 LOCK = $(RESULTS)/.$(DATASET).lock
 
-# Stages of many variants run side by side: most of them do not keep all cores busy alone.
-SIDE_BY_SIDE = $(if $(filter all,$(VARIANT)),$(if $(filter -j% --jobserver%,$(MAKEFLAGS)),,--jobs=$(shell nproc)))
+# The stages of several variants run side by side, as few of them keep all cores busy alone.
+SEVERAL_VARIANTS = $(filter-out 1,$(words $(VARIANT)))$(filter all,$(VARIANT))
+SIDE_BY_SIDE = $(if $(SEVERAL_VARIANTS),$(if $(GIVEN_JOBS)$(LAUNCH),,--jobs=$(shell nproc)))
 
 .PHONY: run
-run: build ## Run DATASET=<name> through VARIANT=<name>|all; only what is out of date, past what fails
+run: build ## Run DATASET=<name> through VARIANT=<name>|all; only what is out of date, past what fails; -j1: with progress
 	+@$(MAKE) $(SIDE_BY_SIDE) run-built
 
 .PHONY: run-built

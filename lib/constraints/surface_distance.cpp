@@ -14,7 +14,7 @@ constexpr double kNearCentre = 1e-9;
 // would jump where the sections' sides meet.
 constexpr double kSharpSection = 40.0;
 
-// In the object's frame. Without derivatives d_point and d_log_half_axes are not set.
+// In the object's frame.
 struct Distance {
   double value;
   Eigen::Vector3d normal;
@@ -45,7 +45,9 @@ Distance FirstOrderDistance(const Eigen::Vector3d& half_axes, const ShapeExponen
   const Eigen::Vector3d gradient = (slopes * inverse_axes).matrix();  // dF / dx
   const double slope = gradient.norm();
   const double value = (norm - 1.0) / slope;
-  if (!with_derivatives) return {value, gradient / slope, {}, {}};
+  if (!with_derivatives) {
+    return {value, gradient / slope, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  }
   const Eigen::Vector3d d_slope =
       ((hessian * gradient.cwiseProduct(inverse_axes.matrix())).array() * inverse_axes).matrix() /
       slope;

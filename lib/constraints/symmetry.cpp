@@ -59,9 +59,9 @@ std::optional<SymmetryDescriptor::Pair> SymmetryDescriptor::EvaluateAt(
   return value ? Compare(pixel, point, *value, with_jacobian, mirror_plane) : std::nullopt;
 }
 
-bool SymmetryDescriptor::EvaluatePlanes(const Eigen::Vector2d& pixel, double min_viewing_cosine,
-                                        const std::vector<double>& mirror_planes,
-                                        Eigen::Ref<Eigen::VectorXd> residuals) const {
+bool SymmetryDescriptor::EvaluateForPlanes(const Eigen::Vector2d& pixel, double min_viewing_cosine,
+                                           const std::vector<double>& mirror_planes,
+                                           Eigen::Ref<Eigen::VectorXd> residuals) const {
   residuals.setConstant(std::numeric_limits<double>::quiet_NaN());
   const auto point = surface_.FromPixel(pixel);
   if (!point) return false;
@@ -71,7 +71,7 @@ bool SymmetryDescriptor::EvaluatePlanes(const Eigen::Vector2d& pixel, double min
   const bool is_in_map =
       descriptor_ == Descriptor::kGrey || descriptor_ == Descriptor::kDistanceTransform;
   const VisibleSurface::MirrorLine line = surface_.MirrorImages(*point);
-  for (Eigen::Index i = 0; i < residuals.size(); ++i) {
+  for (size_t i = 0; i < mirror_planes.size(); ++i) {
     const double mirror_plane = mirror_planes[i];
     if (is_in_map) {  // a good part of the time of soslam-refine
       const Eigen::Vector3d pixel_times_depth = line.at_zero + mirror_plane * line.by_plane;
@@ -128,8 +128,7 @@ std::optional<SymmetryDescriptor::Value> SymmetryDescriptor::Describe(
       const auto sample = LookUp(pixel);
       if (!sample) return std::nullopt;
       Value value{sample->value};
-      const bool is_pixel_fixed = point.side > 0.0;
-      if (with_jacobian && !is_pixel_fixed) {
+      if (with_jacobian && !point.IsOnRay()) {
         value.jacobian = surface_.PixelDerivative(point, sample->gradient);
       }
       return value;
@@ -158,17 +157,19 @@ std::optional<SymmetryDescriptor::Value> SymmetryDescriptor::DistanceToEdge(
   const auto edge_pixel = EdgePixel(pixel, point.in_object);
   if (!edge_pixel) return std::nullopt;
   const bool is_on_plane = descriptor_ == Descriptor::kLinearisedDt;
-  const auto edge = is_on_plane ? surface_.FromPixelOnTangentPlane(*edge_pixel, point)
-                                : surface_.FromPixel(*edge_pixel);
-  if (!edge) return std::nullopt;
+  const auto on_surface = is_on_plane ? std::nullopt : surface_.FromPixel(*edge_pixel);
+  const auto on_plane =
+      is_on_plane ? surface_.FromPixelOnTangentPlane(*edge_pixel, point) : std::nullopt;
+  if (!on_surface && !on_plane) return std::nullopt;
 
-  const Eigen::Vector3d difference = edge->in_object - point.in_object;
+  const Eigen::Vector3d& edge = is_on_plane ? *on_plane : on_surface->in_object;
+  const Eigen::Vector3d difference = edge - point.in_object;
   Value value{difference.norm()};
   // On an edge the distance has a kink; 0 is one of its subgradients.
   if (with_jacobian && value.value > 0.0) {
     const Eigen::Vector3d direction = difference / value.value;
-    value.jacobian = (is_on_plane ? surface_.DerivativeOnTangentPlane(*edge, point, direction)
-                                  : surface_.Derivative(*edge, direction)) -
+    value.jacobian = (is_on_plane ? surface_.DerivativeOnTangentPlane(edge, point, direction)
+                                  : surface_.Derivative(*on_surface, direction)) -
                      surface_.Derivative(point, direction);
   }
   return value;

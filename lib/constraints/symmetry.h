@@ -83,11 +83,11 @@ class SymmetryDescriptor {
   std::optional<Pair> EvaluateAt(const Eigen::Vector2d& pixel, const VisibleSurface::Point& point,
                                  bool with_jacobian, double mirror_plane = 0.0) const;
 
-  // Fills in the residuals of Evaluate for several mirror planes; NaN if there is no pair. False
+  // Fills in the residuals of Evaluate, one for each mirror plane; NaN if there is no pair. False
   // when the pixel's ray misses the surface.
-  bool EvaluatePlanes(const Eigen::Vector2d& pixel, double min_viewing_cosine,
-                      const std::vector<double>& mirror_planes,
-                      Eigen::Ref<Eigen::VectorXd> residuals) const;
+  bool EvaluateForPlanes(const Eigen::Vector2d& pixel, double min_viewing_cosine,
+                         const std::vector<double>& mirror_planes,
+                         Eigen::Ref<Eigen::VectorXd> residuals) const;
 
  private:
   struct Value {

@@ -12,7 +12,7 @@ VisibleSurface::VisibleSurface(const Camera& camera, const Landmark& landmark_in
       centre_in_camera_(landmark_in_camera.Centre()),
       camera_in_object_(-(camera_from_object_rotation_.transpose() * centre_in_camera_)),
       image_from_object_rotation_(camera.Intrinsics() * camera_from_object_rotation_),
-      centre_in_image_(camera.Intrinsics() * centre_in_camera_),
+      centre_pixel_times_depth_(camera.Intrinsics() * centre_in_camera_),
       surface_(landmark_in_camera.half_axes, landmark_in_camera.shape_exponents),
       size_(MeanHalfAxis(landmark_in_camera)) {}
 
@@ -27,24 +27,24 @@ std::optional<VisibleSurface::Point> VisibleSurface::FromPixel(const Eigen::Vect
   return Point{camera_in_object_ + *depth * ray};
 }
 
-std::optional<VisibleSurface::Point> VisibleSurface::FromPixelOnTangentPlane(
-    const Eigen::Vector2d& pixel, const Point& tangent) const {
+std::optional<Eigen::Vector3d> VisibleSurface::FromPixelOnTangentPlane(const Eigen::Vector2d& pixel,
+                                                                       const Point& tangent) const {
   const Eigen::Vector3d ray = RayInObject(pixel);
   const Eigen::Vector3d normal = surface_.Gradient(tangent.in_object);
   const double depth = (1.0 - normal.dot(camera_in_object_)) / normal.dot(ray);
   if (!std::isfinite(depth) || !(depth > 0.0)) return std::nullopt;
-  return Point{camera_in_object_ + depth * ray};
+  return camera_in_object_ + depth * ray;
 }
 
 VisibleSurface::Point VisibleSurface::MirrorImage(const Point& point, double mirror_plane) const {
   const double shift = 2.0 * mirror_plane * size_;
   const Eigen::Vector3d& x = point.in_object;
-  return {{x.x(), shift - x.y(), x.z()}, -point.side, shift - point.shift};
+  return {{x.x(), shift - x.y(), x.z()}, -point.y_sign, shift - point.y_shift_m};
 }
 
 VisibleSurface::MirrorLine VisibleSurface::MirrorImages(const Point& point) const {
   const Eigen::Vector3d mirrored = point.in_object.cwiseProduct(Eigen::Vector3d(1, -1, 1));
-  return {image_from_object_rotation_ * mirrored + centre_in_image_,
+  return {image_from_object_rotation_ * mirrored + centre_pixel_times_depth_,
           2.0 * size_ * image_from_object_rotation_.col(1)};
 }
 
@@ -64,9 +64,9 @@ LandmarkJacobian1 VisibleSurface::FixedPointDerivative(const Eigen::Vector3d& po
 
 LandmarkJacobian1 VisibleSurface::Derivative(const Point& point,
                                              const Eigen::Vector3d& direction) const {
-  const Eigen::Vector3d mirror(1.0, point.side, 1.0);
+  const Eigen::Vector3d mirror(1.0, point.y_sign, 1.0);
   const Eigen::Vector3d x =
-      mirror.cwiseProduct(point.in_object - point.shift * Eigen::Vector3d::UnitY());
+      mirror.cwiseProduct(point.in_object - point.y_shift_m * Eigen::Vector3d::UnitY());
   const Eigen::Vector3d along = mirror.cwiseProduct(direction);
   // Implicit derivative: the depth along the ray changes such that F = 1 still holds.
   const Eigen::Vector3d ray = x - camera_in_object_;
@@ -74,22 +74,23 @@ LandmarkJacobian1 VisibleSurface::Derivative(const Point& point,
   const double by_depth = along.dot(ray) / gradient.dot(ray);
   LandmarkJacobian1 derivative = FixedPointDerivative(x, along - by_depth * gradient);
   derivative.tail<3>() += by_depth * gradient.cwiseProduct(x).transpose();
-  derivative.tail<3>().array() += direction.y() * point.shift / 3.0;
+  derivative.tail<3>().array() += direction.y() * point.y_shift_m / 3.0;
   return derivative;
 }
 
-LandmarkJacobian1 VisibleSurface::DerivativeOnTangentPlane(const Point& point, const Point& tangent,
+LandmarkJacobian1 VisibleSurface::DerivativeOnTangentPlane(const Eigen::Vector3d& in_object,
+                                                           const Point& tangent,
                                                            const Eigen::Vector3d& direction) const {
   // The plane normal . x = 1 moves with the tangent point and the half axes.
-  const Eigen::Vector3d& x = point.in_object;
-  const Eigen::Vector3d ray = x - camera_in_object_;
+  const Eigen::Vector3d ray = in_object - camera_in_object_;
   const Eigen::Vector3d normal = surface_.Gradient(tangent.in_object);
-  const Eigen::Vector3d d_normal = surface_.Hessian(tangent.in_object) * x;
+  const Eigen::Vector3d d_normal = surface_.Hessian(tangent.in_object) * in_object;
   const double by_depth = direction.dot(ray) / normal.dot(ray);
-  LandmarkJacobian1 derivative = FixedPointDerivative(x, direction - by_depth * normal) -
+  LandmarkJacobian1 derivative = FixedPointDerivative(in_object, direction - by_depth * normal) -
                                  by_depth * Derivative(tangent, d_normal);
   derivative.tail<3>() +=
-      by_depth * (normal.cwiseProduct(x) + d_normal.cwiseProduct(tangent.in_object)).transpose();
+      by_depth *
+      (normal.cwiseProduct(in_object) + d_normal.cwiseProduct(tangent.in_object)).transpose();
   return derivative;
 }
 

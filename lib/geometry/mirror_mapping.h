@@ -15,12 +15,14 @@ namespace soslam {
 // plane is y = 0. A camera inside the body sees nothing of it.
 class VisibleSurface {
  public:
-  // A point on a pixel's ray, or its mirror image.
+  // A point of the surface on a pixel's ray, or its mirror image.
   struct Point {
     Eigen::Vector3d in_object;
-    // y is `side` times that of the point on the ray, plus `shift`.
-    double side = 1.0;  // -1 for a mirror image
-    double shift = 0.0;
+    // y is y_sign times that of the point on the ray, plus y_shift_m.
+    double y_sign = 1.0;  // -1 for a mirror image
+    double y_shift_m = 0.0;
+
+    bool IsOnRay() const { return y_sign == 1.0 && y_shift_m == 0.0; }
   };
 
   VisibleSurface(const Camera& camera, const Landmark& landmark_in_camera);
@@ -32,8 +34,8 @@ class VisibleSurface {
   // The intersection of the pixel's ray with the plane that is tangent to the surface at `tangent`,
   // a surface point (eq. 23). None when the ray is parallel to the plane or meets it behind the
   // camera.
-  std::optional<Point> FromPixelOnTangentPlane(const Eigen::Vector2d& pixel,
-                                               const Point& tangent) const;
+  std::optional<Eigen::Vector3d> FromPixelOnTangentPlane(const Eigen::Vector2d& pixel,
+                                                         const Point& tangent) const;
 
   // S, the mirror image in the xz plane; again a surface point. With another `mirror_plane`, in the
   // plane y = mirror_plane * MeanHalfAxis: the image is then near the surface where that is flat,
@@ -51,13 +53,12 @@ class VisibleSurface {
   // P: the projection of a point to its pixel, visible or not. None behind the camera.
   std::optional<Eigen::Vector2d> ToPixel(const Point& point) const;
 
-  // Derivatives along a direction, the product of the direction with a Jacobian by the landmark: of
-  // a point that FromPixel gives for a fixed pixel, or of its mirror image, ...
+  // d (direction . point) / d landmark, for a point of a fixed pixel or its mirror image.
   LandmarkJacobian1 Derivative(const Point& point, const Eigen::Vector3d& direction) const;
-  // ... of a point that FromPixelOnTangentPlane gives, ...
-  LandmarkJacobian1 DerivativeOnTangentPlane(const Point& point, const Point& tangent,
+  // The same for what FromPixelOnTangentPlane gives; `tangent` moves with the landmark.
+  LandmarkJacobian1 DerivativeOnTangentPlane(const Eigen::Vector3d& in_object, const Point& tangent,
                                              const Eigen::Vector3d& direction) const;
-  // ... and of the pixel of a point as in the first.
+  // d (direction . ToPixel) / d landmark; zero for a point on its pixel's ray.
   LandmarkJacobian1 PixelDerivative(const Point& point, const Eigen::Vector2d& direction) const;
 
   // True if the cosine between the outward normal and the direction to the camera is at least this
@@ -75,7 +76,7 @@ class VisibleSurface {
   Eigen::Vector3d centre_in_camera_;
   Eigen::Vector3d camera_in_object_;
   Eigen::Matrix3d image_from_object_rotation_;  // K R
-  Eigen::Vector3d centre_in_image_;             // homogeneous pixels, K t
+  Eigen::Vector3d centre_pixel_times_depth_;    // K t
   BodySurface surface_;
   double size_;
 };

@@ -45,8 +45,8 @@ PairNorm NormOfPair(double x, double y, double p) {
 // The factor p - 1 of a norm's curvature; 0 where the norm is linear but for its kinks.
 double Curvature(double p) { return std::isinf(p) ? 0.0 : p - 1.0; }
 
-// (u / norm)^(p - 2), the part of a component in the curvature, from its slope (u / norm)^(p - 1);
-// 0 where the norm has a kink.
+// (u / norm)^(p - 2), the part of a component in the curvature, from its slope (u / norm)^(p - 1).
+// 0 at u = 0 where p < 2, as the norm has a kink there.
 double CurvatureAlong(double u, double slope, double norm, double p) {
   if (std::isinf(p)) return 0.0;
   if (!(u > 0.0)) return p == 2.0 ? 1.0 : 0.0;

@@ -73,12 +73,12 @@ std::optional<MirroredTexture> TextureAsymmetry::Find(const Landmark& landmark_i
       std::pow(Scale(landmark_in_camera, symmetry_options_.descriptor, options_), 2);
   std::vector<Eigen::Vector2d> samples;
   const auto num_places = static_cast<Eigen::Index>(places_.size());
-  // One column per sample, with room for as many as there often are; NaN if there is no pair.
-  Eigen::MatrixXd residuals(num_places, 256);
+  constexpr Eigen::Index kUsualSamples = 256;  // more than 150 corners and a grid of 8 x 8
+  Eigen::MatrixXd residuals(num_places, kUsualSamples);  // by sample; NaN if there is no pair
   ForEachSample(image_, symmetry_options_, [&](const Eigen::Vector2d& pixel) {
     const auto column = static_cast<Eigen::Index>(samples.size());
     if (column == residuals.cols()) residuals.conservativeResize(num_places, 2 * column);
-    const bool is_on_surface = descriptor.EvaluatePlanes(
+    const bool is_on_surface = descriptor.EvaluateForPlanes(
         pixel, symmetry_options_.min_viewing_cosine, places_, residuals.col(column));
     if (is_on_surface) samples.push_back(pixel);
     return is_on_surface;
@@ -89,7 +89,7 @@ std::optional<MirroredTexture> TextureAsymmetry::Find(const Landmark& landmark_i
   for (size_t i = 0; i < samples.size(); ++i) {
     for (Eigen::Index place = 0; place < num_places; ++place) {
       const double residual = residuals(place, static_cast<Eigen::Index>(i));
-      if (std::isnan(residual)) continue;
+      if (!std::isfinite(residual)) continue;
       sums[place] += residual * residual / (residual * residual + squared_scale);
       pairs[place] += 1.0;
     }
@@ -103,7 +103,7 @@ std::optional<MirroredTexture> TextureAsymmetry::Find(const Landmark& landmark_i
   }
   if (!best) return std::nullopt;
   for (size_t i = 0; i < samples.size(); ++i) {
-    if (!std::isnan(residuals(best_place, static_cast<Eigen::Index>(i)))) {
+    if (std::isfinite(residuals(best_place, static_cast<Eigen::Index>(i)))) {
       best->pixels.push_back(samples[i]);
     }
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All variants of data/room_a from its images, as `make run` makes them on two threads: on the
-// clock, and the CPU seconds of each stage as its processes took them.
+// All variants of data/room_a from its images, as `make run` makes them: on the clock, and the CPU
+// seconds of each stage as its processes took them.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
@@ -20,7 +20,7 @@ namespace {
 bool RunAllVariants(const std::filesystem::path& results) {
   const std::string command = fmt::format(
       "env --unset=MAKEFLAGS --unset=MAKELEVEL make --silent -C '{}' run DATASET=room_a "
-      "DATA_ROOT=data VARIANT=all THREADS=2 BUILD='{}' RESULTS='{}' > '{}'/log 2>&1",
+      "DATA_ROOT=data VARIANT=all BUILD='{}' RESULTS='{}' > '{}'/log 2>&1",
       SOSLAM_SOURCE_DIR, SOSLAM_BUILD_DIR, results.string(), results.string());
   return std::system(command.c_str()) == 0;
 }

@@ -53,7 +53,7 @@ TEST(SymmetryDescriptor, ResidualsOfSeveralMirrorPlanesAreThoseOfEachPair) {
       const SymmetryDescriptor of(descriptor, image, TestCamera(), FacingView().LandmarkInCamera());
       const Eigen::Vector2d pixel(RandomUniform(200, 440), RandomUniform(150, 330));
       Eigen::VectorXd residuals(3);
-      EXPECT_EQ(of.EvaluatePlanes(pixel, 0.3, planes, residuals),
+      EXPECT_EQ(of.EvaluateForPlanes(pixel, 0.3, planes, residuals),
                 of.VisiblePoint(pixel, std::nullopt).has_value());
       for (Eigen::Index k = 0; k < 3; ++k) {
         const auto pair = of.Evaluate(pixel, 0.3, false, planes[k]);

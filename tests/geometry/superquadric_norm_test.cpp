@@ -78,5 +78,18 @@ TEST(SuperquadricNorm, DerivativesAgreeWithNumbers) {
   }
 }
 
+// Where a component is zero; with exponents from 2 the norm has no kink there.
+TEST(SuperquadricNorm, HessianAgreesWithNumbersAtZero) {
+  for (const ShapeExponents& p : {ShapeExponents(2.0, 1.5), ShapeExponents(3.0, 2.0)}) {
+    const Eigen::Vector3d u(0.5, 0.0, 0.3);
+    Eigen::Matrix3d hessian;
+    SuperquadricNorm(u, p, &hessian);
+    const auto slopes_at = [&](const Eigen::Vector3d& at) -> Eigen::Vector3d {
+      return SuperquadricNorm(at, p).slopes;
+    };
+    const Eigen::Matrix3d error = hessian - NumericDerivatives(slopes_at, u);
+    EXPECT_LT(error.cwiseAbs().maxCoeff(), 1e-5) << p;
+  }
+}
 }  // namespace
 }  // namespace soslam

@@ -150,5 +150,19 @@ TEST(FrontDoorTest, DryRunAndStatusFollowTheRun) {
   EXPECT_THAT(make({"explain", "VARIANT=InitP", "STAGE=evaluate"}), HasSubstr("is done"));
 }
 
+TEST(FrontDoorTest, SeveralVariantsRunSideBySideUnlessToldOtherwise) {
+  const SmallPipeline pipeline;
+  const auto are_side_by_side = [&](const std::vector<std::string>& arguments) {
+    std::vector<std::string> words = pipeline.WordsOfProject(arguments);
+    std::erase(words, "-j2");
+    return ExpectSuccess(RunCommand(words)).find("--jobs=") != std::string::npos;
+  };
+  EXPECT_TRUE(are_side_by_side({"-n", "run", "VARIANT=InitP OursS"}));
+  EXPECT_TRUE(are_side_by_side({"-n", "run", "VARIANT=all"}));
+  EXPECT_FALSE(are_side_by_side({"-n", "run", "VARIANT=InitP"}));
+  EXPECT_FALSE(are_side_by_side({"-n", "-j1", "run", "VARIANT=all"}));
+  EXPECT_FALSE(are_side_by_side({"-n", "run", "VARIANT=all", "LAUNCH=srun"}));
+}
+
 }  // namespace
 }  // namespace soslam
