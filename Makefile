@@ -211,7 +211,8 @@ SEVERAL_VARIANTS = $(filter-out 1,$(words $(VARIANT)))$(filter all,$(VARIANT))
 SIDE_BY_SIDE = $(if $(SEVERAL_VARIANTS),$(if $(GIVEN_JOBS)$(LAUNCH),,--jobs=$(shell nproc)))
 
 .PHONY: run
-run: build ## Run DATASET=<name> through VARIANT=<name>|all; only what is out of date, past what fails; -j1: with progress
+run: build ## Run DATASET=<name> through VARIANT=<name>|all; only what is out of date, past what fails; -j1: one stage at a time
+	$(if $(SIDE_BY_SIDE),@echo 'run: stages side by side; each prints when it ends; with -j1 one by one, with progress')
 	+@$(MAKE) $(SIDE_BY_SIDE) run-built
 
 .PHONY: run-built

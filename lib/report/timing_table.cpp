@@ -46,7 +46,8 @@ std::string MachineNote(const std::vector<DatasetResult>& datasets) {
       }
     }
   }
-  return fmt::format("Measured on: {}.", fmt::join(machines, "; "));
+  return fmt::format("Measured on: {}. Stages that ran side by side have longer wall times.",
+                     fmt::join(machines, "; "));
 }
 
 struct TimeRow {

@@ -136,9 +136,11 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
                     std::back_inserter(info.findings));
   ReportFindings("optimise", info.findings);
   WriteMap(files.at("output"), map, sequence, info);
-  fmt::print("{} iterations, cost {:.6g} -> {:.6g}{}\n", map.solver.iterations,
-             map.solver.initial_cost, map.solver.final_cost,
-             map.solver.converged ? "" : ", not converged");
+  // Texture, edges and points are added once boxes and planes have converged.
+  const bool has_images = UsesEdges(options) || options.points.point_evidence;
+  fmt::print("{} iterations, cost {:.6g}{} -> {:.6g}{}{}\n", map.solver.iterations,
+             map.solver.initial_cost, has_images ? " of boxes" : "", map.solver.final_cost,
+             has_images ? " with images" : "", map.solver.converged ? "" : ", not converged");
 }
 
 namespace {
