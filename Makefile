@@ -212,7 +212,7 @@ SIDE_BY_SIDE = $(if $(SEVERAL_VARIANTS),$(if $(GIVEN_JOBS)$(LAUNCH),,--jobs=$(sh
 
 .PHONY: run
 run: build ## Run DATASET=<name> through VARIANT=<name>|all; only what is out of date, past what fails; -j1: one stage at a time
-	$(if $(SIDE_BY_SIDE),@echo 'run: stages side by side; each prints when it ends; with -j1 one by one, with progress')
+	$(if $(SIDE_BY_SIDE),@echo 'run: stages side by side; each prints when it ends (-j1: one by one with progress)')
 	+@$(MAKE) $(SIDE_BY_SIDE) run-built
 
 .PHONY: run-built
