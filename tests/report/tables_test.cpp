@@ -305,7 +305,9 @@ TEST_F(TimingTableTest, MeasuredAndPublishedTimesOnTheirMachines) {
                           "room observations - - 1.0 - - - - - - - - - - - - - - - -",
                           "desk published ms - - 5.8 ± 1.4 - - - - - - - - - - - - - - - -",
                           "desk published observations - - 1.0 - - - - - - - - - - - - - - - -"));
-  EXPECT_THAT(table.notes.front(), testing::StartsWith("Measured on: A CPU, 4 cores, 2 threads."));
+  EXPECT_EQ(table.notes.front(),
+            "Measured on: A CPU, 4 cores, 2 threads. Stages that ran side by side have longer wall "
+            "times.");
   EXPECT_EQ(table.notes.back(), "Published: A paper, on A laptop.");
 }
 
