@@ -21,15 +21,15 @@ json LinkToJson(const DetectionDecision& decision) {
   const bool is_link =
       decision.decision == LinkDecision::kLinked || decision.decision == LinkDecision::kRevisited;
   if (!is_link) return {};
-  return {
-      {"overlap", decision.overlap},
-      {"distance_sigmas", decision.distance},
-      {"cut_edge",
-       decision.cut_edge ? json(kEdgeNames.at(static_cast<size_t>(*decision.cut_edge))) : json()},
-      {"frames_since_seen", decision.frames_since_seen}};
+  const BoxMatch& match = decision.match;
+  return {{"overlap", match.overlap},
+          {"distance_sigmas", match.distance},
+          {"cut_edge",
+           match.cut_edge ? json(kEdgeNames.at(static_cast<size_t>(*match.cut_edge))) : json()},
+          {"frames_since_seen", decision.frames_since_seen}};
 }
 
-json DetectionToJson(const Sequence& sequence, const Association& association, int index) {
+json DecisionToJson(const Sequence& sequence, const Association& association, int index) {
   const DetectionDecision& decision = association.detections[index];
   json row = NameOf(sequence, index);
   row["decision"] = kLinkDecisionNames.at(static_cast<size_t>(decision.decision));
@@ -45,10 +45,10 @@ json DetectionToJson(const Sequence& sequence, const Association& association, i
 json TrackToJson(const Track& track, int index) {
   json merge;
   if (track.fate == TrackFate::kMerged) {
-    merge = {{"into_track", track.merged_into},
-             {"explained_boxes", track.explained},
-             {"tried_boxes", track.tried},
-             {"shared_frames", track.shared_frames}};
+    merge = {{"into_track", track.merge.into},
+             {"explained_boxes", track.merge.explained},
+             {"tried_boxes", track.merge.tried},
+             {"shared_frames", track.merge.shared_frames}};
   }
   return {{"track", index},
           {"fate", kTrackFateNames.at(static_cast<size_t>(track.fate))},
@@ -58,8 +58,8 @@ json TrackToJson(const Track& track, int index) {
           {"frames_in_sight", track.frames_in_sight}};
 }
 
-json ObjectToJson(const Sequence& sequence, const Association& association,
-                  const Agreement& agreement, size_t index) {
+json AssociatedObjectToJson(const Sequence& sequence, const Association& association,
+                            const Agreement& agreement, size_t index) {
   const int track_index = association.objects[index];
   const Track& track = association.tracks[track_index];
   const auto given = agreement.given_of_object[index];
@@ -90,13 +90,13 @@ void WriteAssociations(const std::filesystem::path& path, const Sequence& sequen
                {"objects", json::array()},
                {"agreement", AgreementToJson(agreement)}};
   for (size_t i = 0; i < association.detections.size(); ++i) {
-    body["detections"].push_back(DetectionToJson(sequence, association, static_cast<int>(i)));
+    body["detections"].push_back(DecisionToJson(sequence, association, static_cast<int>(i)));
   }
   for (size_t i = 0; i < association.tracks.size(); ++i) {
     body["tracks"].push_back(TrackToJson(association.tracks[i], static_cast<int>(i)));
   }
   for (size_t i = 0; i < association.objects.size(); ++i) {
-    body["objects"].push_back(ObjectToJson(sequence, association, agreement, i));
+    body["objects"].push_back(AssociatedObjectToJson(sequence, association, agreement, i));
   }
   WriteArtefact(path, "associations", info, std::move(body));
 }

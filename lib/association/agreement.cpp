@@ -39,7 +39,7 @@ const char* ReasonNotUsed(const Association& association, const DetectionDecisio
   }
   int track = decision.track;
   while (association.tracks[track].fate == TrackFate::kMerged) {
-    track = association.tracks[track].merged_into;
+    track = association.tracks[track].merge.into;
   }
   return kTrackFateNames[static_cast<size_t>(association.tracks[static_cast<size_t>(track)].fate)];
 }

@@ -147,9 +147,7 @@ class FrameLinker {
     DetectionDecision& decision = DecisionOn(detection);
     decision.decision = state.was_out_of_image ? LinkDecision::kRevisited : LinkDecision::kLinked;
     decision.track = track_index;
-    decision.overlap = match.overlap;
-    decision.distance = match.distance;
-    decision.cut_edge = match.cut_edge;
+    decision.match = match;
     decision.frames_since_seen =
         At(detection).frame_index - At(track.detections.back()).frame_index;
     Add(track_index, detection);

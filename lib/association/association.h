@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "association/box_likelihood.h"
 #include "association/fit_object.h"
 #include "association/labels.h"
 #include "association/options.h"
@@ -28,11 +29,9 @@ inline constexpr std::array kLinkDecisionNames = {"new_track", "linked", "revisi
 struct DetectionDecision {
   LinkDecision decision = LinkDecision::kNewTrack;
   int track = -1;  // index in Association::tracks; -1: none
-  // Fit of the track to the box and time since its last detection; for links only.
-  double overlap = 0.0;   // intersection over union of the box and the landmark's outline box
-  double distance = 0.0;  // Mahalanobis distance to the expected box
-  // Edge (left, top, right, bottom) that is treated as cut off by an unknown occluder.
-  std::optional<int> cut_edge;
+  // Fit of the track to the box and time since its last detection; for links only. A cut edge is
+  // treated as cut off by an unknown occluder.
+  BoxMatch match;
   int frames_since_seen = 0;
   int duplicate_of = -1;    // index in Sequence::detections
   int object = -1;          // index in Association::objects; -1: not used
@@ -55,6 +54,15 @@ inline constexpr std::array kTrackFateNames = {
     "object",     "merged", "too_few_detections", "rarely_detected", "no_landmark",
     "no_support", "moves",  "low_scores",         "never_whole"};
 
+// Merge of a smaller track into a larger one.
+struct Merge {
+  int into = -1;          // index of the larger track
+  int explained = 0;      // number of the smaller one's boxes that the larger one fits
+  int tried = 0;          // number of boxes that were tested
+  int shared_frames = 0;  // number of frames in which both have a detection
+  double cost = 0.0;      // sum over the explained boxes
+};
+
 // Detections of one object, linked frame by frame.
 struct Track {
   // Indices in Sequence::detections, ascending by frame; includes those of merged tracks.
@@ -66,13 +74,7 @@ struct Track {
   std::optional<FittedObject> fit;
   bool has_support = true;  // false: see TrackFate::kNoSupport
   TrackFate fate = TrackFate::kObject;
-  // Set by merging: the track that this one was merged into, the number of boxes that track fits
-  // (`explained`) of those tested (`tried`), and the number of frames in which both have a
-  // detection.
-  int merged_into = -1;
-  int explained = 0;
-  int tried = 0;
-  int shared_frames = 0;
+  Merge merge;  // for TrackFate::kMerged
   // Number of frames that should show the object; none when it was not needed to decide the fate.
   std::optional<int> frames_in_sight;
 };

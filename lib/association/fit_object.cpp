@@ -50,11 +50,9 @@ double LogNormalisation(const ShapePrior& prior) {
 FittedObject FittedAt(const MultiViewObservation& observation, const Landmark& landmark,
                       const Eigen::Matrix3d& up_covariance) {
   const ParameterJacobian d_parameters = LandmarkByParameters(observation, landmark);
-  LandmarkModel model;
-  for (const auto& term :
-       observation.height_is_free ? OutlineTerms(observation) : ViewTerms(observation, landmark)) {
-    term->AddTo(landmark, &model);
-  }
+  const LandmarkModel model = ModelOf(
+      observation.height_is_free ? OutlineTerms(observation) : ViewTerms(observation, landmark),
+      landmark);
   const Information information = PriorInformation(d_parameters.cols()) +
                                   d_parameters.transpose() * model.information * d_parameters;
   const Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kMaxParameters, 3> mixed =

@@ -86,19 +86,10 @@ TrackFate FateOf(const AssociationModel& model, const Track& track, const Shown&
              : TrackFate::kObject;
 }
 
-// Candidate merge of a smaller track into a larger one.
-struct Merge {
-  int into = -1;
-  int explained = 0;
-  int tried = 0;
-  int shared_frames = 0;
-  double cost = 0.0;  // sum over the explained boxes
-
-  bool IsBetterThan(const Merge& other) const {
-    return std::tuple(-explained, cost, into) <
-           std::tuple(-other.explained, other.cost, other.into);
-  }
-};
+bool IsBetter(const Merge& one, const Merge& other) {
+  return std::tuple(-one.explained, one.cost, one.into) <
+         std::tuple(-other.explained, other.cost, other.into);
+}
 
 class TrackMerger {
  public:
@@ -142,7 +133,7 @@ class TrackMerger {
     for (size_t larger = position + 1; larger < order.size(); ++larger) {
       if (is_known && !HasChanged(order[larger])) continue;
       const auto merge = TryMerge(order[larger], smaller);
-      if (merge && (!best || merge->IsBetterThan(*best))) best = merge;
+      if (merge && (!best || IsBetter(*merge, *best))) best = merge;
     }
     return best;
   }
@@ -238,10 +229,7 @@ class TrackMerger {
     Track& large = TrackAt(merge.into);
     Track& small = TrackAt(smaller);
     small.fate = TrackFate::kMerged;
-    small.merged_into = merge.into;
-    small.explained = merge.explained;
-    small.tried = merge.tried;
-    small.shared_frames = merge.shared_frames;
+    small.merge = merge;
     for (const auto& [label, votes] : small.votes) large.votes[label] += votes;
     std::vector<int> all;
     const auto by_frame = [this](int detection) {

@@ -67,4 +67,14 @@ auto MinimiseSquares(const Linearise& linearise, const Plus& plus,
   return at;
 }
 
+// The same where a state and a step are vectors that are added.
+template <typename Vector, typename Linearise>
+auto MinimiseSquares(const Linearise& linearise, const LevenbergMarquardtOptions& options,
+                     Vector* state) {
+  const auto plus = [](const Vector& at, const Vector& step) {
+    return std::optional<Vector>(at + step);
+  };
+  return MinimiseSquares(linearise, plus, options, state);
+}
+
 }  // namespace soslam

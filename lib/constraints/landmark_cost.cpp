@@ -20,6 +20,12 @@ double TotalCost(const LandmarkCosts& costs, const Landmark& landmark) {
   return sum;
 }
 
+LandmarkModel ModelOf(const LandmarkCosts& costs, const Landmark& landmark) {
+  LandmarkModel sum;
+  for (const auto& cost : costs) cost->AddTo(landmark, &sum);
+  return sum;
+}
+
 double NegligibleDecrease(const LandmarkCosts& costs) {
   // Where convergence is slow, the last steps would take most of the time. A step that is left out
   // changes the likelihood by about a thousandth at a cost of 100, by less at a lower one.

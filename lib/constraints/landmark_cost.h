@@ -35,6 +35,8 @@ using LandmarkCosts = std::vector<std::unique_ptr<const LandmarkCost>>;
 double ConstantCost(const LandmarkCosts& costs);
 // Sum of all values and constant costs.
 double TotalCost(const LandmarkCosts& costs, const Landmark& landmark);
+// Sum of all costs, without their constant parts, to second order.
+LandmarkModel ModelOf(const LandmarkCosts& costs, const Landmark& landmark);
 // Convergence tolerance of MinimiseSquares for these costs, relative to 1 + cost.
 double NegligibleDecrease(const LandmarkCosts& costs);
 

@@ -131,9 +131,9 @@ void YawTerm::Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> res
 
 void LeaningTerm::Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
                            Jacobian* jacobian) const {
-  const LeaningOnPlane leaning(landmark, plane_, sigmas_);
-  residuals = leaning.residuals;
-  if (jacobian != nullptr) *jacobian = leaning.d_landmark;
+  const StandingOnPlane standing(landmark, plane_, sigmas_, true);
+  residuals = standing.residuals;
+  if (jacobian != nullptr) *jacobian = standing.d_landmark;
 }
 
 bool LandmarkTermResidual::Evaluate(double const* const* blocks, double* residuals,

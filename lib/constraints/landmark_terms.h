@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "constraints/landmark_cost.h"
-#include "constraints/leaning_on_plane.h"
+#include "constraints/standing_on_plane.h"
 #include "constraints/tangency.h"
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
@@ -156,10 +156,10 @@ class YawTerm final : public LandmarkTerm {
   YawPrior prior_;
 };
 
-// The residuals of LeaningOnPlane on a constant plane.
+// The residuals of StandingOnPlane of a body that may lean, on a constant plane.
 class LeaningTerm final : public LandmarkTerm {
  public:
-  explicit LeaningTerm(const Plane& plane, const LeaningSigmas& sigmas = LeaningSigmas())
+  explicit LeaningTerm(const Plane& plane, const StandingSigmas& sigmas = StandingSigmas())
       : plane_(plane), sigmas_(sigmas) {}
   int NumResiduals() const override { return 3; }
   void Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
@@ -167,7 +167,7 @@ class LeaningTerm final : public LandmarkTerm {
 
  private:
   Plane plane_;
-  LeaningSigmas sigmas_;
+  StandingSigmas sigmas_;
 };
 
 // A LandmarkTerm as a Ceres cost function. Residuals: those of the term. Block: landmark in the

@@ -1,26 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "constraints/plane_prior.h"
 
+#include <ceres/normal_prior.h>
+
 #include <Eigen/Eigenvalues>
 
 namespace soslam {
 
-PlaneNormalResidual::PlaneNormalResidual(const Eigen::Matrix3d& information) {
+std::unique_ptr<ceres::CostFunction> PlaneNormalPrior(const Eigen::Matrix3d& information) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(information);
-  root_ =
-      eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose();
-}
-
-bool PlaneNormalResidual::Evaluate(double const* const* blocks, double* residuals,
-                                   double** jacobians) const {
-  Eigen::Map<Eigen::Vector3d> values(residuals);
-  values = root_ * Eigen::Map<const Eigen::Vector3d>(blocks[0]);
-  if (jacobians != nullptr && jacobians[0] != nullptr) {
-    using RowMajor = Eigen::Matrix<double, 3, kNormalSize, Eigen::RowMajor>;
-    Eigen::Map<RowMajor> d_normal(jacobians[0]);
-    d_normal = root_;
-  }
-  return true;
+  return std::make_unique<ceres::NormalPrior>(
+      eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * eigen.eigenvectors().transpose(),
+      Eigen::Vector3d::Zero());
 }
 
 bool PlaneHeightResidual::Evaluate(double const* const* blocks, double* residuals,

@@ -84,12 +84,8 @@ std::optional<TriangulatedPoint> Triangulate(const std::vector<PointView>& views
   auto point = NearestPoint(views);
   if (!point) return std::nullopt;
   const ceres::HuberLoss loss(huber_px);
-  const ReprojectionModel at =
-      MinimiseSquares([&](const Eigen::Vector3d& state) { return Linearise(views, state, loss); },
-                      [](const Eigen::Vector3d& state, const Eigen::Vector3d& step) {
-                        return std::optional<Eigen::Vector3d>(state + step);
-                      },
-                      {}, &*point);
+  const ReprojectionModel at = MinimiseSquares(
+      [&](const Eigen::Vector3d& state) { return Linearise(views, state, loss); }, {}, &*point);
   if (!std::isfinite(at.cost)) return std::nullopt;
   const TriangulatedPoint result = {*point, at.information_without_loss.inverse(),
                                     at.sum_px / static_cast<double>(views.size())};

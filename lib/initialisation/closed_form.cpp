@@ -54,7 +54,7 @@ ClosedForm::HalfHeightCoefficients ClosedForm::CoefficientsAt(double yaw) const 
   return coefficients;
 }
 
-std::optional<ClosedFormSolution> ClosedForm::At(double yaw) const {
+std::optional<UprightVector> ClosedForm::At(double yaw) const {
   if (!HasEnoughEdges()) return std::nullopt;
   const HalfHeightCoefficients coefficients = CoefficientsAt(yaw);
   const Eigen::Vector2d projected = without_foot_.transpose() * coefficients.residuals.matrix();
@@ -82,8 +82,8 @@ std::optional<ClosedFormSolution> ClosedForm::At(double yaw) const {
     depths_m = foot_depth_m + half_height * coefficients.tangent_depths;
     const bool is_settled = ((depths_m - before).abs() < kDepthTolerance * depths_m).all();
     if (!is_settled && round + 1 < kMaxDepthRounds) continue;
-    ClosedFormSolution solution{UprightVector(), depths_m};
-    solution.parameters << yaw, foot, (half_height * proportions_).array().log();
+    UprightVector solution;
+    solution << yaw, foot, (half_height * proportions_).array().log();
     return solution;
   }
 }

@@ -9,12 +9,6 @@
 
 namespace soslam {
 
-// An upright object and the depths (m) of its tangent points at the four edges.
-struct ClosedFormSolution {
-  UprightVector parameters;
-  Eigen::Array4d depths_m;
-};
-
 // Closed-form solution at a given yaw for an object with the prior's ratio: least squares over the
 // measured edges, and over a one-sided edge that the object would not reach otherwise. The depths
 // of the tangent points are those on the solution itself, found by fixed-point iteration.
@@ -32,7 +26,7 @@ class ClosedForm {
   // The object at this yaw (rad) on the ground of the observation's plane. None if fewer than three
   // edges are measured, which leaves the size undetermined, or if the object of any iteration is
   // not wholly in front of the camera.
-  std::optional<ClosedFormSolution> At(double yaw) const;
+  std::optional<UprightVector> At(double yaw) const;
 
   // True if at least three edges are measured.
   bool HasEnoughEdges() const { return (is_one_sided_ == 0.0).count() >= 3; }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "initialisation/cuboid_score.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
@@ -67,18 +67,6 @@ double AngleFrom(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
   return YawDifferenceModuloPi(std::atan2(to.y(), to.x()), std::atan2(from.y(), from.x()));
 }
 
-// The smallest and largest angles of lines.
-struct OutmostAngles {
-  double min = std::numeric_limits<double>::infinity();
-  double max = -std::numeric_limits<double>::infinity();
-
-  bool IsEmpty() const { return !(min <= max); }
-  void Add(double angle) {
-    min = std::min(min, angle);
-    max = std::max(max, angle);
-  }
-};
-
 // The axis to whose vanishing point a segment runs best; none beyond the largest angle.
 std::optional<int> AxisOf(const LineSegment& segment,
                           const std::array<Eigen::Vector3d, 3>& vanishing_points,
@@ -105,10 +93,12 @@ double AngleError(const CuboidView& view, const Landmark& cuboid,
       view.camera.Intrinsics() * cuboid.frame_from_object.rotation.toRotationMatrix();
   const std::array<Eigen::Vector3d, 3> vanishing_points = {to_image.col(0), to_image.col(1),
                                                            to_image.col(2)};
-  std::array<OutmostAngles, 3> of_segments, of_edges;
-  const auto add = [&](int axis, const LineSegment& segment, std::array<OutmostAngles, 3>* angles) {
+  using OutmostAngles = std::array<Eigen::AlignedBox1d, 3>;  // the smallest and largest, by axis
+  OutmostAngles of_segments, of_edges;
+  const auto add = [&](int axis, const LineSegment& segment, OutmostAngles* angles) {
     const Eigen::Vector2d reference = DirectionTo(vanishing_points[axis], view.box.Centre());
-    (*angles)[axis].Add(AngleFrom(reference, segment.end - segment.begin));
+    (*angles)[axis].extend(
+        Eigen::AlignedBox1d::VectorType(AngleFrom(reference, segment.end - segment.begin)));
   };
   for (const LineSegment& segment : segments) {
     if (const auto axis = AxisOf(segment, vanishing_points, largest_angle)) {
@@ -118,10 +108,10 @@ double AngleError(const CuboidView& view, const Landmark& cuboid,
   for (const ImageEdge& edge : edges) add(edge.axis, edge.segment, &of_edges);
   double sum = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
-    const OutmostAngles &one = of_segments[axis], &other = of_edges[axis];
-    sum += one.IsEmpty() || other.IsEmpty()
-               ? 2.0 * largest_angle
-               : std::abs(one.min - other.min) + std::abs(one.max - other.max);
+    const Eigen::AlignedBox1d &one = of_segments[axis], &other = of_edges[axis];
+    sum += one.isEmpty() || other.isEmpty() ? 2.0 * largest_angle
+                                            : std::abs(one.min().x() - other.min().x()) +
+                                                  std::abs(one.max().x() - other.max().x());
   }
   return sum;
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/levenberg_marquardt.h"
-#include "constraints/leaning_on_plane.h"
+#include "constraints/standing_on_plane.h"
 
 namespace soslam {
 namespace {
@@ -62,13 +62,6 @@ Eigen::Matrix<double, kLandmarkDof, 7> UprightGround::ParameterJacobianWithHeigh
   return jacobian;
 }
 
-QuadraticModel<6> UprightModel(const LandmarkCosts& costs, const UprightGround& ground,
-                               const Landmark& landmark) {
-  LandmarkModel sum;
-  for (const auto& cost : costs) cost->AddTo(landmark, &sum);
-  return sum.Chained(ground.ParameterJacobian(landmark));
-}
-
 std::optional<UprightSolution> FitUpright(const Plane& plane, const Landmark& start,
                                           const LandmarkCosts& costs, bool yaw_is_free) {
   const UprightGround ground(plane);
@@ -76,17 +69,14 @@ std::optional<UprightSolution> FitUpright(const Plane& plane, const Landmark& st
     return ground.LandmarkAt(at, start.shape_exponents, start.rests_on);
   };
   const auto evaluate = [&](const UprightVector& at) {
-    QuadraticModel<6> sum = UprightModel(costs, ground, landmark_at(at));
+    const Landmark landmark = landmark_at(at);
+    QuadraticModel<6> sum = ModelOf(costs, landmark).Chained(ground.ParameterJacobian(landmark));
     if (!yaw_is_free) sum.Hold(0);
     return sum;
   };
-  const auto plus = [](const UprightVector& at, const UprightVector& step) {
-    return std::optional<UprightVector>(at + step);
-  };
   UprightVector parameters = ground.ParametersOf(start);
   const double cost =
-      MinimiseSquares(evaluate, plus, {kMaxIterations, NegligibleDecrease(costs)}, &parameters)
-          .cost;
+      MinimiseSquares(evaluate, {kMaxIterations, NegligibleDecrease(costs)}, &parameters).cost;
   if (!std::isfinite(cost) || !parameters.allFinite()) return std::nullopt;
   return UprightSolution{landmark_at(parameters), cost + ConstantCost(costs)};
 }
@@ -107,15 +97,11 @@ Landmark Tilted(const Landmark& upright, const Plane& plane, const Eigen::Vector
 
 std::optional<UprightSolution> FitLeaning(const Plane& plane, const Landmark& upright,
                                           const LandmarkCosts& costs) {
-  const auto linearise = [&](const Landmark& at) {
-    LandmarkModel sum;
-    for (const auto& cost : costs) cost->AddTo(at, &sum);
-    return sum;
-  };
+  const auto linearise = [&](const Landmark& at) { return ModelOf(costs, at); };
   const auto plus = [](const Landmark& at, const LandmarkStep& step) {
     return std::optional(Moved(at, step));
   };
-  const double tilt = LeaningSigmas().angle_rad;
+  const double tilt = StandingSigmas().angle_rad;
   const Eigen::Vector3d x = tilt * (upright.frame_from_object.rotation * Eigen::Vector3d::UnitX());
   const Eigen::Vector3d y = tilt * (upright.frame_from_object.rotation * Eigen::Vector3d::UnitY());
   std::optional<UprightSolution> best;

@@ -36,10 +36,6 @@ struct UprightGround {
   Eigen::Vector3d origin;  // the plane's point nearest to its frame's origin
 };
 
-// Sum of the costs as a function of the upright parameters.
-QuadraticModel<6> UprightModel(const LandmarkCosts& costs, const UprightGround& ground,
-                               const Landmark& landmark);
-
 // Levenberg-Marquardt over the parameters of an upright landmark; yaw fixed or free. Returns the
 // landmark and its total cost; none if the cost is not finite at the start.
 struct UprightSolution {

@@ -79,16 +79,6 @@ class Fitter {
     return fit;
   }
 
-  // Fits with the yaws of all starts fixed; none where there is no start or no landmark.
-  using Starts = std::vector<std::optional<UprightVector>>;
-  std::vector<std::optional<UprightFit>> FitAtYaws(const Starts& starts) const {
-    std::vector<std::optional<UprightFit>> fits(starts.size());
-    for (size_t i = 0; i < starts.size(); ++i) {
-      if (starts[i]) fits[i] = Fit(*starts[i], /*yaw_is_free=*/false);
-    }
-    return fits;
-  }
-
   // The best landmark near a grid point. Without a compared cost the fit optimises the yaw; with
   // one, the neighbours on ever finer grids are compared.
   std::optional<UprightFit> RefineYaw(const UprightFit& grid_point, double step) const {
@@ -199,12 +189,11 @@ YawSweep SweepYaw(const UprightObservation& observation, const YawObjective& obj
   const int steps = std::max(1, static_cast<int>(std::lround(std::numbers::pi / step)));
   for (int i = 0; i < steps; ++i) sweep.yaw.push_back(i * std::numbers::pi / steps);
   const ClosedForm closed_form(observation);
-  std::vector<std::optional<UprightVector>> starts;
+  const Fitter fitter(observation, objective);
   for (const double yaw : sweep.yaw) {
-    const auto solution = closed_form.At(yaw);
-    starts.push_back(solution ? std::optional(solution->parameters) : std::nullopt);
+    const auto start = closed_form.At(yaw);
+    sweep.fits.push_back(start ? fitter.Fit(*start, /*yaw_is_free=*/false) : std::nullopt);
   }
-  sweep.fits = Fitter(observation, objective).FitAtYaws(starts);
   return sweep;
 }
 

@@ -150,8 +150,12 @@ BackEndProblem::ImageBlocks BackEndProblem::EdgeBlocks(
     size_t index, const std::shared_ptr<const EdgeImage>& image) const {
   const Detection& detection = input_.sequence.detections[index];
   const Landmark in_camera = LandmarkInCamera(detection);
-  auto edges = std::make_unique<EdgeTerm>(SupportedEdgeTerm(
-      image, input_.sequence.CameraOf(detection), in_camera, options_.edges, view_weights_[index]));
+  auto edges = std::make_unique<EdgeTerm>(image, input_.sequence.CameraOf(detection), in_camera,
+                                          options_.edges);
+  // Where an object's model edges are not visible in the image, as for the cuboid of a chair, the
+  // edges that happen to be near carry no information.
+  const double support = edges->Support(in_camera);
+  edges->Weigh(view_weights_[index] * support * support);
   ImageBlocks blocks{kEdges, kNoEdgeCounts, 1, {}, true};
   if (edges->NumPoints() > 0) {
     blocks.functions.push_back(

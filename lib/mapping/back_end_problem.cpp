@@ -9,14 +9,13 @@
 #include "base/progress.h"
 #include "constraints/detection.h"
 #include "constraints/landmark_terms.h"
-#include "constraints/leaning_on_plane.h"
 #include "constraints/odometry.h"
 #include "constraints/parameters.h"
 #include "constraints/plane_prior.h"
 #include "constraints/scale_ratio.h"
+#include "constraints/standing_on_plane.h"
 #include "constraints/support.h"
 #include "constraints/tangency.h"
-#include "constraints/upright_on_plane.h"
 #include "geometry/angles.h"
 #include "initialisation/view_weights.h"
 
@@ -120,16 +119,14 @@ void BackEndProblem::AddStanding(size_t object_index) {
   const bool is_new_normal = !problem_.HasParameterBlock(normal);
   const bool is_new_plane = !problem_.HasParameterBlock(offset);
   const double side = variables_.NormalSide(plane_index);
-  ceres::CostFunction* standing = nullptr;
   const auto& prior = input_.priors[object_index];
-  if (prior && prior->attitude == Attitude::kFree) {
-    standing = new LeaningOnPlaneResidual(input_.initial_landmarks[object_index]->shape_exponents,
-                                          {.height_m = options_.standing_height_sigma_m}, side);
-  } else {
-    standing = new UprightOnPlaneResidual(options_.standing_angle_sigma_deg * kRadPerDeg,
-                                          options_.standing_height_sigma_m, side);
-  }
-  problem_.AddResidualBlock(standing, nullptr, variables_.Landmark(object_index), normal, offset);
+  const bool may_lean = prior && prior->attitude == Attitude::kFree;
+  StandingSigmas sigmas{.height_m = options_.standing_height_sigma_m};
+  if (!may_lean) sigmas.angle_rad = options_.standing_angle_sigma_deg * kRadPerDeg;
+  problem_.AddResidualBlock(
+      new StandingOnPlaneResidual(input_.initial_landmarks[object_index]->shape_exponents, sigmas,
+                                  may_lean, side),
+      nullptr, variables_.Landmark(object_index), normal, offset);
   const SupportPlane& plane = input_.sequence.planes[plane_index];
   if (!plane.attitude_information || !options_.refine_planes) {
     problem_.SetParameterBlockConstant(normal);
@@ -137,7 +134,7 @@ void BackEndProblem::AddStanding(size_t object_index) {
     return;
   }
   if (is_new_normal) {
-    problem_.AddResidualBlock(new PlaneNormalResidual(*plane.attitude_information), nullptr,
+    problem_.AddResidualBlock(PlaneNormalPrior(*plane.attitude_information).release(), nullptr,
                               normal);
   }
   if (is_new_plane && plane.height_prior) {

@@ -122,7 +122,7 @@ class ObjectFit {
     LandmarkCosts terms = ViewTerms(boxes_, landmark_in_world);
     if (MayLean()) {
       terms.push_back(std::make_unique<LeaningTerm>(
-          boxes_.plane_in_world, LeaningSigmas{.height_m = options_.standing_height_sigma_m}));
+          boxes_.plane_in_world, StandingSigmas{.height_m = options_.standing_height_sigma_m}));
     }
     for (size_t i = 0; i < detections_.size(); ++i) {
       const BoxView& view = boxes_.views[i];

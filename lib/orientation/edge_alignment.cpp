@@ -175,13 +175,4 @@ void EdgeTerm::AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) con
   sum->Add(points, weight_);
 }
 
-EdgeTerm SupportedEdgeTerm(std::shared_ptr<const EdgeImage> image, const Camera& camera,
-                           const Landmark& start_in_camera, const EdgeOptions& options,
-                           double weight) {
-  EdgeTerm term(std::move(image), camera, start_in_camera, options);
-  const double support = term.Support(start_in_camera);
-  term.Weigh(weight * support * support);
-  return term;
-}
-
 }  // namespace soslam

@@ -89,11 +89,4 @@ class EdgeTerm final : public LandmarkCost {
   double weight_;  // of a squared distance in px^2
 };
 
-// EdgeTerm for the back end, with its cost multiplied by `weight` and by the square of the start's
-// support: if an object's model edges are not visible in the image, as for the cuboid of a chair,
-// the edges that happen to be near carry no information.
-EdgeTerm SupportedEdgeTerm(std::shared_ptr<const EdgeImage> image, const Camera& camera,
-                           const Landmark& start_in_camera, const EdgeOptions& options,
-                           double weight);
-
 }  // namespace soslam

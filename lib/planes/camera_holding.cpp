@@ -2,9 +2,9 @@
 #include "planes/camera_holding.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "geometry/angles.h"
 
@@ -14,21 +14,9 @@ HeldAxes AxesOf(CameraHolding holding) {
   const Eigen::Vector3d x = Eigen::Vector3d::UnitX();
   const Eigen::Vector3d y = Eigen::Vector3d::UnitY();
   const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
-  switch (holding) {
-    case CameraHolding::kLevel:
-      return {x, -y};
-    case CameraHolding::kRolled90:
-      return {y, -x};
-    case CameraHolding::kRolled180:
-      return {x, y};
-    case CameraHolding::kRolled270:
-      return {y, x};
-    case CameraHolding::kLookingDown:
-      return {x, -z};
-    case CameraHolding::kLookingDownRolled90:
-      return {y, -z};
-  }
-  throw std::logic_error("holding without axes");
+  const std::array<HeldAxes, 6> axes = {
+      {{x, -y}, {y, -x}, {x, y}, {y, x}, {x, -z}, {y, -z}}};  // in the order of CameraHolding
+  return axes.at(static_cast<size_t>(holding));
 }
 
 namespace {

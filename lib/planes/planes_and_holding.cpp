@@ -24,42 +24,24 @@ Basis LevelAxes(const Eigen::Vector3d& up) {
 }
 
 // Chain of tilts, each with its own cost 0.5 tilt^T information tilt - tilt^T right_side, and tied
-// to the previous one.
-class Chain {
- public:
-  // `stiffness`: 1 / rad^2.
-  Chain(std::vector<Eigen::Matrix2d> information, std::vector<Eigen::Vector2d> right_side,
-        double stiffness)
-      : information_(std::move(information)),
-        right_side_(std::move(right_side)),
-        stiffness_(stiffness) {
-    // Eliminates from the last: adds the information of all later tilts to each.
-    for (size_t i = information_.size() - 1; i > 0; --i) {
-      const Eigen::Matrix2d share = stiffness_ * Tied(i).inverse();
-      information_[i - 1] += stiffness_ * (Eigen::Matrix2d::Identity() - share);
-      right_side_[i - 1] += share * right_side_[i];
-    }
+// to the previous one by `stiffness` (1 / rad^2). Returns them; `information` becomes that of each
+// with all later ones.
+std::vector<Eigen::Vector2d> SolveChain(double stiffness, std::vector<Eigen::Vector2d> right_side,
+                                        std::vector<Eigen::Matrix2d>* information) {
+  const auto tied = [&](size_t i) -> Eigen::Matrix2d {
+    return (*information)[i] + stiffness * Eigen::Matrix2d::Identity();
+  };
+  for (size_t i = information->size() - 1; i > 0; --i) {
+    const Eigen::Matrix2d share = stiffness * tied(i).inverse();
+    (*information)[i - 1] += stiffness * (Eigen::Matrix2d::Identity() - share);
+    right_side[i - 1] += share * right_side[i];
   }
-
-  const Eigen::Matrix2d& InformationOfFirst() const { return information_.front(); }
-
-  std::vector<Eigen::Vector2d> Solve() const {
-    std::vector<Eigen::Vector2d> tilts = {information_[0].inverse() * right_side_[0]};
-    for (size_t i = 1; i < information_.size(); ++i) {
-      tilts.push_back(Tied(i).inverse() * (right_side_[i] + stiffness_ * tilts.back()));
-    }
-    return tilts;
+  std::vector<Eigen::Vector2d> tilts = {information->front().inverse() * right_side[0]};
+  for (size_t i = 1; i < right_side.size(); ++i) {
+    tilts.push_back(tied(i).inverse() * (right_side[i] + stiffness * tilts.back()));
   }
-
- private:
-  Eigen::Matrix2d Tied(size_t i) const {
-    return information_[i] + stiffness_ * Eigen::Matrix2d::Identity();
-  }
-
-  std::vector<Eigen::Matrix2d> information_;
-  std::vector<Eigen::Vector2d> right_side_;
-  double stiffness_;
-};
+  return tilts;
+}
 
 std::vector<Rigid3d> Joined(const std::vector<Rigid3d>& drifted,
                             const std::vector<Eigen::Vector3d>& ups) {
@@ -105,9 +87,9 @@ LevelTrajectory Level(const std::vector<SegmentView>& views, CameraHolding holdi
       information.push_back(level.transpose() * all * level);
       right_side.push_back(-level.transpose() * all * mean.up_in_world);
     }
-    const Chain chain(std::move(information), std::move(right_side), stiffness);
-    information_of_first = chain.InformationOfFirst();
-    const std::vector<Eigen::Vector2d> tilts = chain.Solve();
+    const std::vector<Eigen::Vector2d> tilts =
+        SolveChain(stiffness, std::move(right_side), &information);
+    information_of_first = information.front();
     double largest = 0.0;
     for (size_t i = 0; i < ups.size(); ++i) {
       const Eigen::Vector3d before = ups[i];

@@ -53,16 +53,11 @@ std::optional<StandingBody> FitWithHeight(StandingBody body) {
   };
   const auto linearise = [&](const Parameters& at) {
     const Landmark landmark = landmark_at(at);
-    LandmarkModel sum;
-    for (const auto& outline : outlines) outline->AddTo(landmark, &sum);
-    return sum.Chained(ground.ParameterJacobianWithHeight(landmark));
-  };
-  const auto plus = [](const Parameters& at, const Parameters& step) {
-    return std::optional<Parameters>(at + step);
+    return ModelOf(outlines, landmark).Chained(ground.ParameterJacobianWithHeight(landmark));
   };
   Parameters parameters;
   parameters << ground.ParametersOf(body.landmark), 0.0;
-  const double cost = MinimiseSquares(linearise, plus, {kMaxHeightIterations}, &parameters).cost;
+  const double cost = MinimiseSquares(linearise, {kMaxHeightIterations}, &parameters).cost;
   if (!std::isfinite(cost) || !parameters.allFinite()) return std::nullopt;
   body.landmark = landmark_at(parameters);
   plane.offset -= parameters[6];
@@ -92,9 +87,8 @@ PlaneEvidence EvidenceOf(const StandingBody& body, const Eigen::Vector3d& pivot)
   const Plane& plane = body.observation.plane_in_world;
   const auto d_motion = MotionJacobian(plane, pivot, body.landmark);
   const UprightJacobian d_upright = UprightGround(plane).ParameterJacobian(body.landmark);
-  LandmarkModel model;
   const LandmarkCosts outlines = OutlineTerms(body.observation);
-  for (const auto& outline : outlines) outline->AddTo(body.landmark, &model);
+  const LandmarkModel model = ModelOf(outlines, body.landmark);
   QuadraticModel<6> of_body = model.Chained(d_upright);
   of_body.information.diagonal().array() += kPriorShare * of_body.information.diagonal().maxCoeff();
   const Eigen::Matrix<double, 6, 3> mixed = d_upright.transpose() * model.information * d_motion;

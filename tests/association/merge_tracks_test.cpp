@@ -65,8 +65,8 @@ TEST_F(TrackTest, PartsOfOneObjectAreMergedIntoTheLargest) {
   EXPECT_EQ(TrackAt(larger).detections, of_objects_[0]);
   for (const int track : {smaller, rest}) {
     EXPECT_EQ(TrackAt(track).fate, TrackFate::kMerged);
-    EXPECT_EQ(TrackAt(track).explained, TrackAt(track).tried);
-    EXPECT_EQ(TrackAt(track).shared_frames, 0);
+    EXPECT_EQ(TrackAt(track).merge.explained, TrackAt(track).merge.tried);
+    EXPECT_EQ(TrackAt(track).merge.shared_frames, 0);
   }
 }
 

@@ -16,19 +16,19 @@ Eigen::Matrix3d RandomInformation() {
   return one * one.transpose() + other * other.transpose();
 }
 
-TEST(PlaneNormalResidual, CostIsTheQuadraticForm) {
+TEST(PlaneNormalPrior, CostIsTheQuadraticForm) {
   for (int i = 0; i < 50; ++i) {
     const Eigen::Matrix3d information = RandomInformation();
     const Eigen::Vector3d normal = RandomPlane().normal;
-    EXPECT_NEAR(ResidualsAt(PlaneNormalResidual(information), {normal.data()}).squaredNorm(),
+    EXPECT_NEAR(ResidualsAt(*PlaneNormalPrior(information), {normal.data()}).squaredNorm(),
                 normal.dot(information * normal), 1e-10);
   }
 }
 
-TEST(PlaneNormalResidual, JacobianAgreesWithNumbers) {
+TEST(PlaneNormalPrior, JacobianAgreesWithNumbers) {
   for (int i = 0; i < 50; ++i) {
     const Eigen::Vector3d normal = RandomPlane().normal;
-    ExpectCorrectJacobians(PlaneNormalResidual(RandomInformation()), {normal.data()});
+    ExpectCorrectJacobians(*PlaneNormalPrior(RandomInformation()), {normal.data()});
   }
 }
 

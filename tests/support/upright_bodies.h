@@ -92,7 +92,7 @@ inline std::optional<Landmark> SolveAtYaw(const UprightObservation& observation,
   const auto solution = ClosedForm(observation).At(yaw);
   if (!solution) return std::nullopt;
   return UprightGround(observation.plane_in_camera)
-      .LandmarkAt(solution->parameters, observation.prior.shape_exponents);
+      .LandmarkAt(*solution, observation.prior.shape_exponents);
 }
 
 // Each edge moved by up to `fraction` of the box's width or height.

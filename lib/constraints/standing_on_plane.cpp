@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "constraints/leaning_on_plane.h"
+#include "constraints/standing_on_plane.h"
 
 #include "geometry/support_function.h"
 
 namespace soslam {
 
-LeaningOnPlane::LeaningOnPlane(const Landmark& landmark, const Plane& plane,
-                               const LeaningSigmas& sigmas) {
+StandingOnPlane::StandingOnPlane(const Landmark& landmark, const Plane& plane,
+                                 const StandingSigmas& sigmas, bool may_lean) {
   const Eigen::Matrix3d frame_from_object = landmark.frame_from_object.rotation.toRotationMatrix();
   const Eigen::Vector3d normal_in_object = frame_from_object.transpose() * plane.normal;
   // The body is symmetric: it reaches as far down as up.
+  const double c = landmark.half_axes.z();
   const SupportValue support =
-      SupportFunction(landmark.half_axes, landmark.shape_exponents, normal_in_object);
+      may_lean ? SupportFunction(landmark.half_axes, landmark.shape_exponents, normal_in_object)
+               : SupportValue{c, Eigen::Vector3d::Zero(), {0.0, 0.0, c}};
   const Eigen::Vector3d support_point = frame_from_object * support.point;
   residuals << normal_in_object.head<2>(), plane.SignedDistance(landmark.Centre()) - support.extent;
   d_landmark.setZero();
@@ -30,25 +32,25 @@ LeaningOnPlane::LeaningOnPlane(const Landmark& landmark, const Plane& plane,
   d_offset = weights.cwiseProduct(d_offset);
 }
 
-bool LeaningOnPlaneResidual::Evaluate(double const* const* blocks, double* residuals,
-                                      double** jacobians) const {
+bool StandingOnPlaneResidual::Evaluate(double const* const* blocks, double* residuals,
+                                       double** jacobians) const {
   Landmark landmark = UnpackLandmark(blocks[0]);
   if (!landmark.half_axes.allFinite())
     return false;  // the step was too large: the solver shortens it
   landmark.shape_exponents = shape_exponents_;
   Plane plane = UnpackPlane(blocks[1], blocks[2]);
   plane.normal *= side_;
-  const LeaningOnPlane leaning(landmark, plane, sigmas_);
-  Eigen::Map<Eigen::Vector3d>(residuals, 3) = leaning.residuals;
+  const StandingOnPlane standing(landmark, plane, sigmas_, may_lean_);
+  Eigen::Map<Eigen::Vector3d>(residuals, 3) = standing.residuals;
   if (jacobians == nullptr) return true;
   if (jacobians[0] != nullptr) {
-    WriteLandmarkJacobian<3>(blocks[0], leaning.d_landmark, jacobians[0]);
+    WriteLandmarkJacobian<3>(blocks[0], standing.d_landmark, jacobians[0]);
   }
   if (jacobians[1] != nullptr) {
     Eigen::Map<Eigen::Matrix<double, 3, kNormalSize, Eigen::RowMajor>> d_normal(jacobians[1]);
-    d_normal = side_ * leaning.d_normal;
+    d_normal = side_ * standing.d_normal;
   }
-  if (jacobians[2] != nullptr) Eigen::Map<Eigen::Vector3d>(jacobians[2], 3) = leaning.d_offset;
+  if (jacobians[2] != nullptr) Eigen::Map<Eigen::Vector3d>(jacobians[2], 3) = standing.d_offset;
   return true;
 }
 
