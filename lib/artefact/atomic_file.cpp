@@ -37,16 +37,15 @@ bool SameBytes(const fs::path& a, const fs::path& b) {
   return stream_a && stream_b && std::equal(Bytes(stream_a), Bytes(), Bytes(stream_b), Bytes());
 }
 
-// Forces a file's content, or a folder's entries, to disk; the errno when that fails, else 0.
-int Sync(const fs::path& path) {
+}  // namespace
+
+int SyncWith(int (*sync)(int), const fs::path& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) return errno;
-  const int error = ::fsync(descriptor) == 0 ? 0 : errno;
+  const int error = sync(descriptor) == 0 ? 0 : errno;
   ::close(descriptor);
   return error;
 }
-
-}  // namespace
 
 AtomicFile::AtomicFile(fs::path path) : path_(std::move(path)) {
   if (IsFolder(path_)) RefuseToWrite(path_, "it is a folder");
@@ -65,14 +64,14 @@ AtomicFile::~AtomicFile() {
 
 void AtomicFile::Commit() {
   CheckInputsUnchanged();
-  if (const int error = Sync(temporary_)) RefuseToWrite(path_, std::strerror(error));
+  if (const int error = SyncWith(::fsync, temporary_)) RefuseToWrite(path_, std::strerror(error));
   if (SameBytes(temporary_, path_)) {
     fs::remove(temporary_);
   } else {
     std::error_code error;
     fs::rename(temporary_, path_, error);
     if (error) RefuseToWrite(path_, error.message());
-    Sync(FolderOf(path_));
+    SyncWith(::fsync, FolderOf(path_));
   }
   temporary_.clear();
   RecordOutput(path_);

@@ -30,6 +30,9 @@ class AtomicFile {
   std::filesystem::path temporary_;
 };
 
+// Forces a file or folder to disk with fsync or syncfs; returns the errno of a failure, else 0.
+int SyncWith(int (*sync)(int), const std::filesystem::path& path);
+
 // Writes a whole file atomically. Errors as AtomicFile; also when the disk is full.
 void WriteTextFile(const std::filesystem::path& path, std::string_view text);
 

@@ -5,13 +5,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <system_error>
 #include <utility>
 
+#include "artefact/atomic_file.h"
 #include "base/error.h"
 #include "base/paths.h"
 #include "base/run_log.h"
@@ -28,15 +28,6 @@ namespace fs = std::filesystem;
 fs::path Sibling(const fs::path& folder, const std::string& purpose) {
   return folder.parent_path() /
          fmt::format(".{}.{}-{}", folder.filename().string(), purpose, getpid());
-}
-
-// Flushes the disk of a folder; returns the errno of a failure, else 0.
-int SyncDiskOf(const fs::path& folder) {
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return errno;
-  const int error = ::syncfs(descriptor) == 0 ? 0 : errno;
-  ::close(descriptor);
-  return error;
 }
 
 // Atomic, so that there is a folder of that name at any moment. Not all file systems support it.
@@ -86,7 +77,7 @@ void DatasetFolder::Write(const std::string& name, std::string_view bytes) const
 void DatasetFolder::Commit() {
   CheckInputsUnchanged();
   CheckReplaceable();
-  if (const int error = SyncDiskOf(temporary_)) {
+  if (const int error = SyncWith(::syncfs, temporary_)) {
     Refuse(folder_, fmt::format("cannot be written: {}", std::strerror(error)));
   }
   if (!Exists(folder_) || !Exchange(temporary_, folder_)) Replace();

@@ -74,11 +74,8 @@ LandmarkEstimates ReadLandmarks(const std::filesystem::path& path, const Sequenc
 
 void WriteLandmarks(const std::filesystem::path& path, const LandmarkEstimates& estimates,
                     const Sequence& sequence, const ArtefactInfo& info) {
-  const auto to_json = [&](const ObservationEstimate& estimate) {
-    return ObservationToJson(estimate, sequence);
-  };
   WriteArtefact(path, "landmarks", info,
-                {{"observations", ListToJson(estimates.observations, to_json)},
+                {{"observations", ListToJson(estimates.observations, &ObservationToJson, sequence)},
                  {"objects", ObjectEstimatesToJson(estimates.objects, sequence)},
                  {"failures", CountFailures(estimates)}});
 }

@@ -28,7 +28,8 @@ namespace {
 
 using nlohmann::json;
 
-json AlignmentToJson(int segment, const Alignment& alignment) {
+json AlignmentToJson(const std::pair<const int, Alignment>& of_segment) {
+  const auto& [segment, alignment] = of_segment;
   return {{"segment", segment},
           {"kind", kAlignmentKindNames[static_cast<size_t>(alignment.kind)]},
           {"camera_path", kCameraPathNames[static_cast<size_t>(alignment.path)]},
@@ -45,7 +46,8 @@ void AddExplanation(const std::optional<Explanation>& explanation, json* row) {
   (*row)["detail"] = explanation ? json(explanation->detail) : json();
 }
 
-json ObjectToJson(const TrueObjectRow& row, const MapQuality& quality, const Sequence& sequence) {
+json TrueObjectRowToJson(const TrueObjectRow& row, const MapQuality& quality,
+                         const Sequence& sequence) {
   const TrueObject& object = sequence.true_objects[row.true_index];
   const auto landmark_id = [&](int landmark) {
     const LandmarkRow& found = quality.landmarks[landmark];
@@ -105,26 +107,16 @@ json CountsToJson(const std::map<MapReason, int>& counts) {
 
 // The field "map_quality" of metrics.json.
 json MapQualityToJson(const MapQuality& quality, const Sequence& sequence) {
-  const auto object_to_json = [&](const TrueObjectRow& row) {
-    return ObjectToJson(row, quality, sequence);
-  };
-  const auto landmark_to_json = [&](const LandmarkRow& row) {
-    return LandmarkRowToJson(row, sequence);
-  };
-  json fields = {{"alignments", json::array()},
-                 {"scores", quality.scores},
-                 {"in_frames", quality.in_frames},
-                 {"objects", ListToJson(quality.objects, object_to_json)},
-                 {"landmarks", ListToJson(quality.landmarks, landmark_to_json)},
-                 {"misses", CountsToJson(quality.misses)},
-                 {"false_landmarks", CountsToJson(quality.false_landmarks)}};
-  for (const auto& [segment, alignment] : quality.alignments.of_segment) {
-    fields["alignments"].push_back(AlignmentToJson(segment, alignment));
-  }
-  return fields;
+  return {{"alignments", ListToJson(quality.alignments.of_segment, &AlignmentToJson)},
+          {"scores", quality.scores},
+          {"in_frames", quality.in_frames},
+          {"objects", ListToJson(quality.objects, &TrueObjectRowToJson, quality, sequence)},
+          {"landmarks", ListToJson(quality.landmarks, &LandmarkRowToJson, sequence)},
+          {"misses", CountsToJson(quality.misses)},
+          {"false_landmarks", CountsToJson(quality.false_landmarks)}};
 }
 
-json ToJson(const ObjectMetrics& metrics, const Sequence& sequence) {
+json ObjectMetricsToJson(const ObjectMetrics& metrics, const Sequence& sequence) {
   const Object& object = sequence.objects[metrics.object_index];
   return {{"object", object.id},
           {"label", object.label},
@@ -137,7 +129,7 @@ json ToJson(const ObjectMetrics& metrics, const Sequence& sequence) {
           {"attitude_error_deg", metrics.attitude_deg}};
 }
 
-json ToJson(const HeldOutMetrics& metrics, const Sequence& sequence) {
+json HeldOutMetricsToJson(const HeldOutMetrics& metrics, const Sequence& sequence) {
   json fields = metrics;
   fields["min_iou"] = kMinHeldOutIou;
   fields["objects"] = metrics.objects;
@@ -152,13 +144,12 @@ json ToJson(const HeldOutMetrics& metrics, const Sequence& sequence) {
 
 void WriteMetrics(const std::filesystem::path& path, const Metrics& metrics,
                   const Sequence& sequence, const ArtefactInfo& info) {
-  const auto to_json = [&](const ObjectMetrics& object) { return ToJson(object, sequence); };
   json body = {{"dataset", sequence.name},
                {"summary", metrics.summary},
                {"first_observation", metrics.first_observation},
-               {"objects", ListToJson(metrics.objects, to_json)},
+               {"objects", ListToJson(metrics.objects, &ObjectMetricsToJson, sequence)},
                {"trajectory", metrics.trajectory}};
-  if (metrics.held_out) body["held_out"] = ToJson(*metrics.held_out, sequence);
+  if (metrics.held_out) body["held_out"] = HeldOutMetricsToJson(*metrics.held_out, sequence);
   if (!sequence.odometry_source.empty()) body["odometry_source"] = sequence.odometry_source;
   ArtefactInfo with_findings = info;
   if (const auto& quality = metrics.map_quality) {

@@ -121,9 +121,7 @@ json EstimateToJson(const ObjectEstimate& estimate, const Sequence& sequence) {
 }  // namespace
 
 json ObjectEstimatesToJson(const std::vector<ObjectEstimate>& estimates, const Sequence& sequence) {
-  return ListToJson(estimates, [&](const ObjectEstimate& estimate) {
-    return EstimateToJson(estimate, sequence);
-  });
+  return ListToJson(estimates, EstimateToJson, sequence);
 }
 
 ObjectEstimate ObjectEstimateFromJson(const json& row) {

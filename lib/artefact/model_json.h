@@ -53,22 +53,23 @@ class IdTable {
   std::vector<int> ids_;
 };
 
-// The list of what `to_json` returns for each item.
-template <typename Items, typename ToJson>
-nlohmann::json ListToJson(const Items& items, const ToJson& to_json) {
+// The list of what `to_json` returns for each item, in its context.
+template <typename Items, typename ToJson, typename... Context>
+nlohmann::json ListToJson(const Items& items, const ToJson& to_json, const Context&... context) {
   nlohmann::json list = nlohmann::json::array();
-  for (const auto& item : items) list.push_back(to_json(item));
+  for (const auto& item : items) list.push_back(to_json(item, context...));
   return list;
 }
 
-// What `from_json` returns for each item of the list of this name, which is empty where it is
-// absent.
-template <typename FromJson>
-auto ListFromJson(const nlohmann::json& object, const char* name, const FromJson& from_json) {
-  std::vector<decltype(from_json(object))> items;
+// What `from_json` returns for each item of the list of this name, in its context. Empty where the
+// list is absent.
+template <typename FromJson, typename... Context>
+auto ListFromJson(const nlohmann::json& object, const char* name, const FromJson& from_json,
+                  const Context&... context) {
+  std::vector<decltype(from_json(object, context...))> items;
   const auto list = object.find(name);
   if (list == object.end()) return items;
-  for (const nlohmann::json& item : *list) items.push_back(from_json(item));
+  for (const nlohmann::json& item : *list) items.push_back(from_json(item, context...));
   return items;
 }
 
@@ -109,6 +110,8 @@ void to_json(nlohmann::json& json, const Box& box);
 void from_json(const nlohmann::json& json, Box& box);
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HeldOutFrame::LabelledBox, label, score, box)
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HeightPrior, point_in_world, sigma_m)
 
 // {"width", "height", "fx", "fy", "cx", "cy"} in pixels.
 void to_json(nlohmann::json& json, const Camera& camera);

@@ -64,26 +64,13 @@ Software ThisSoftware() {
 }
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunSetting, value, origin)
-
-using nlohmann::json;
-
-static void to_json(json& json, const RunFile& file) {
-  json = {{"argument", NullIfEmpty(file.argument)},
-          {"relative_to", file.relative_to},
-          {"path", file.path.string()},
-          {"sha256", file.sha256}};
-}
-
-static void from_json(const json& json, RunFile& file) {
-  const auto& argument = json.at("argument");
-  file = {argument.is_null() ? "" : argument.get<std::string>(), json.at("relative_to"),
-          json.at("path").get<std::string>(), json.at("sha256")};
-}
-
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunFile, argument, relative_to, path, sha256)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunRecord, stage, settings, allow_outside_paths, seed, folders,
                                    inputs, outputs, exit_code, timing)
 
 namespace {
+
+using nlohmann::json;
 
 constexpr const char* kRunKind = "run";
 

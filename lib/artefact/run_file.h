@@ -30,8 +30,8 @@ inline constexpr const char* kRelativeToCall = "call";  // RunRecord::called_in
 // A file that a run read or wrote. The path is relative to the run for files of a results folder,
 // and to the argument for files in a folder given as argument, so that both can be moved.
 struct RunFile {
-  std::string argument;     // argument that names the file or its folder; empty: none does
-  std::string relative_to;  // kRelativeToRun, kRelativeToCall or an argument
+  std::optional<std::string> argument;  // the one that names the file or its folder, if any
+  std::string relative_to;              // kRelativeToRun, kRelativeToCall or an argument
   std::filesystem::path path;
   std::string sha256;
 };

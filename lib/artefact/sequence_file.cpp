@@ -40,20 +40,11 @@ GroundTruth GroundTruthFromJson(const json& json) {
 }
 
 SupportPlane SupportPlaneFromJson(const json& json) {
-  SupportPlane plane{json.at("plane").get<int>(), json.at("plane_in_world").get<Plane>()};
-  const auto has = [&](const char* name) { return json.contains(name) && !json[name].is_null(); };
-  if (has("attitude_information")) {  // since version 1.3
-    plane.attitude_information = json["attitude_information"].get<Eigen::Matrix3d>();
-  }
-  if (has("height_prior")) {  // since version 1.7
-    const auto& prior = json["height_prior"];
-    plane.height_prior = {prior.at("point_in_world").get<Eigen::Vector3d>(),
-                          prior.at("sigma_m").get<double>()};
-  }
-  if (has("scene_axis")) {  // since version 1.7
-    plane.scene_axis_in_world = json["scene_axis"].get<Eigen::Vector3d>();
-  }
-  return plane;
+  return {
+      json.at("plane").get<int>(), json.at("plane_in_world").get<Plane>(),
+      json.value("attitude_information", std::optional<Eigen::Matrix3d>()),  // since version 1.3
+      json.value("height_prior", std::optional<HeightPrior>()),              // since version 1.7
+      json.value("scene_axis", std::optional<Eigen::Vector3d>())};           // since version 1.7
 }
 
 TrueObject TrueObjectFromJson(const json& json) {
@@ -150,9 +141,7 @@ Detection DetectionFromJson(const json& json, const IdTable<Frame>& frames,
   if (json.contains("true_landmark")) {  // since version 1.2
     detection.true_landmark_in_camera = LandmarkFromJson(json["true_landmark"], "camera");
   }
-  if (json.contains("true_object")) {  // since version 1.7
-    detection.true_object_id = json["true_object"].get<int>();
-  }
+  detection.true_object_id = json.value("true_object", std::optional<int>());  // since version 1.7
   return detection;
 }
 
@@ -286,8 +275,7 @@ void TruthFromJson(const json& json, const IdTable<Frame>& frames, Sequence* seq
     throw InputError(fmt::format("/true_objects/{}/object is {}; expected ascending ids",
                                  unordered - objects.begin() + 1, std::next(unordered)->id));
   }
-  sequence->truth_in_frames = ListFromJson(
-      json, "truth_in_frames", [&](const auto& row) { return TruthInFrameFromJson(row, frames); });
+  sequence->truth_in_frames = ListFromJson(json, "truth_in_frames", &TruthInFrameFromJson, frames);
   sequence->ignored = ListFromJson(json, "ignored", &IgnoredFromJson);
   sequence->odometry_world =
       EnumFromName<OdometryWorld>(kOdometryWorldNames, json.value("odometry_world", "of_truth"));
@@ -309,13 +297,10 @@ Sequence SequenceFromJson(const json& json) {
   CheckSegments(sequence.frames);
   sequence.planes = ListFromJson(json, "planes", &SupportPlaneFromJson);
   const IdTable<SupportPlane> planes("plane", sequence.planes);
-  sequence.objects = ListFromJson(
-      json, "objects", [&](const auto& object) { return ObjectFromJson(object, planes); });
+  sequence.objects = ListFromJson(json, "objects", &ObjectFromJson, planes);
   const IdTable<Frame> frames("frame", sequence.frames);
   const IdTable<Object> objects("object", sequence.objects);
-  sequence.detections = ListFromJson(json, "detections", [&](const auto& detection) {
-    return DetectionFromJson(detection, frames, objects);
-  });
+  sequence.detections = ListFromJson(json, "detections", &DetectionFromJson, frames, objects);
   CheckOrder(sequence.detections);
   CheckBoxesInView(sequence);
   // Versions 1.0 and 1.1 had no possible occluders.

@@ -32,13 +32,8 @@ json GroundTruthToJson(const GroundTruth& truth) {
 
 json SupportPlaneToJson(const SupportPlane& plane) {
   json fields = {{"plane", plane.id}, {"plane_in_world", plane.plane_in_world}};
-  if (plane.attitude_information) {
-    fields["attitude_information"] = *plane.attitude_information;
-  }
-  if (plane.height_prior) {
-    fields["height_prior"] = {{"point_in_world", plane.height_prior->point_in_world},
-                              {"sigma_m", plane.height_prior->sigma_m}};
-  }
+  if (plane.attitude_information) fields["attitude_information"] = *plane.attitude_information;
+  if (plane.height_prior) fields["height_prior"] = *plane.height_prior;
   if (plane.scene_axis_in_world) fields["scene_axis"] = *plane.scene_axis_in_world;
   return fields;
 }
@@ -147,13 +142,6 @@ json RejectedToJson(const Sequence& sequence) {
 
 void WriteSequence(const std::filesystem::path& path, const Sequence& sequence,
                    const ArtefactInfo& info) {
-  const auto object_to_json = [&](const Object& object) { return ObjectToJson(object, sequence); };
-  const auto detection_to_json = [&](const Detection& detection) {
-    return DetectionToJson(detection, sequence);
-  };
-  const auto truth_to_json = [&](const TruthInFrame& truth) {
-    return TruthInFrameToJson(truth, sequence);
-  };
   json body = {
       {"name", sequence.name},
       {"camera", sequence.camera},
@@ -161,13 +149,13 @@ void WriteSequence(const std::filesystem::path& path, const Sequence& sequence,
        kImageOrientationNames[static_cast<size_t>(sequence.image_orientation)]},
       {"frames", ListToJson(sequence.frames, &FrameToJson)},
       {"planes", ListToJson(sequence.planes, &SupportPlaneToJson)},
-      {"objects", ListToJson(sequence.objects, object_to_json)},
-      {"detections", ListToJson(sequence.detections, detection_to_json)},
+      {"objects", ListToJson(sequence.objects, &ObjectToJson, sequence)},
+      {"detections", ListToJson(sequence.detections, &DetectionToJson, sequence)},
       {"rejected_detections", sequence.rejected_detections},
       {"true_objects", ListToJson(sequence.true_objects, &TrueObjectToJson)},
       {"odometry_world", kOdometryWorldNames[static_cast<size_t>(sequence.odometry_world)]},
       {"held_out", ListToJson(sequence.held_out, &HeldOutToJson)},
-      {"truth_in_frames", ListToJson(sequence.truth_in_frames, truth_to_json)},
+      {"truth_in_frames", ListToJson(sequence.truth_in_frames, &TruthInFrameToJson, sequence)},
       {"ignored", ListToJson(sequence.ignored, &IgnoredToJson)},
       {"images_without_pose", sequence.images_without_pose}};
   for (const char* name : {"held_out", "truth_in_frames", "ignored", "images_without_pose"}) {

@@ -147,22 +147,22 @@ class Lister : public OptionVisitor {
 
 }  // namespace
 
-nlohmann::json ToJson(void* options, DescribeFunction describe) {
+nlohmann::json ToJson(const DescribeFunction& describe) {
   nlohmann::json values = nlohmann::json::object();
-  for (const OptionRow& row : Rows(options, describe)) values[row.name] = row.default_value;
+  for (const OptionRow& row : Rows(describe)) values[row.name] = row.default_value;
   return values;
 }
 
-void FromJson(void* options, DescribeFunction describe, const nlohmann::json& values,
+void FromJson(const DescribeFunction& describe, const nlohmann::json& values,
               const std::string& where) {
   Reader reader(values, where);
-  describe(options, reader);
+  describe(reader);
   reader.RefuseUnknown();
 }
 
-std::vector<OptionRow> Rows(void* options, DescribeFunction describe) {
+std::vector<OptionRow> Rows(const DescribeFunction& describe) {
   Lister lister;
-  describe(options, lister);
+  describe(lister);
   return lister.rows;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -63,44 +64,39 @@ struct OptionRow {
 };
 
 // The JSON schema (draft 7) of a settings file with these options: it takes what OptionsFromJson
-// OptionsFromJson accepts. Units and groups are stored as keywords "unit" and "group".
+// accepts. Units and groups are stored as keywords "unit" and "group".
 nlohmann::ordered_json SettingsSchema(const std::vector<OptionRow>& rows, const std::string& title);
 
 namespace internal {
 
-// A struct's Describe with its type erased, so that the visitors live in one .cpp.
-using DescribeFunction = void (*)(void* options, OptionVisitor& visitor);
+// Calls the Describe of a struct, so that the visitors live in one .cpp.
+using DescribeFunction = std::function<void(OptionVisitor&)>;
 
-template <typename Options>
-void DescribeErased(void* options, OptionVisitor& visitor) {
-  static_cast<Options*>(options)->Describe(visitor);
-}
-
-nlohmann::json ToJson(void* options, DescribeFunction describe);
-void FromJson(void* options, DescribeFunction describe, const nlohmann::json& values,
+nlohmann::json ToJson(const DescribeFunction& describe);
+void FromJson(const DescribeFunction& describe, const nlohmann::json& values,
               const std::string& where);
-std::vector<OptionRow> Rows(void* options, DescribeFunction describe);
+std::vector<OptionRow> Rows(const DescribeFunction& describe);
 
 }  // namespace internal
 
 // All options with their current values.
 template <typename Options>
 nlohmann::json OptionsToJson(Options options) {
-  return internal::ToJson(&options, &internal::DescribeErased<Options>);
+  return internal::ToJson([&](OptionVisitor& visit) { options.Describe(visit); });
 }
 
 // Overwrites the options named in `values`; the others keep their value. Throws SettingsError,
 // naming `where` and the option, for an unknown name, a wrong type or a value out of range.
 template <typename Options>
 void OptionsFromJson(const nlohmann::json& values, const std::string& where, Options* options) {
-  internal::FromJson(options, &internal::DescribeErased<Options>, values, where);
+  internal::FromJson([&](OptionVisitor& visit) { options->Describe(visit); }, values, where);
 }
 
 // The options in order of declaration.
 template <typename Options>
 std::vector<OptionRow> OptionRows() {
   Options options;
-  return internal::Rows(&options, &internal::DescribeErased<Options>);
+  return internal::Rows([&](OptionVisitor& visit) { options.Describe(visit); });
 }
 
 }  // namespace soslam

@@ -46,6 +46,31 @@ std::string OneLine(const std::string& message) {
   return WithoutMiddle(line);
 }
 
+std::string_view Trimmed(std::string_view text) {
+  const size_t begin = text.find_first_not_of(kBlanks);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
+}
+
+std::vector<std::string_view> SplitWords(std::string_view text) {
+  std::vector<std::string_view> words;
+  for (text = Trimmed(text); !text.empty(); text = Trimmed(text)) {
+    words.push_back(text.substr(0, text.find_first_of(kBlanks)));
+    text.remove_prefix(words.back().size());
+  }
+  return words;
+}
+
+std::vector<std::string_view> SplitFields(std::string_view text, char separator) {
+  std::vector<std::string_view> fields;
+  for (size_t end = text.find(separator); end != text.npos; end = text.find(separator)) {
+    fields.push_back(Trimmed(text.substr(0, end)));
+    text.remove_prefix(end + 1);
+  }
+  fields.push_back(Trimmed(text));
+  return fields;
+}
+
 size_t WidthOf(const std::string& text) {
   // Continuation bytes do not count.
   return static_cast<size_t>(

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/error.h"
@@ -16,6 +17,15 @@ std::string OneLine(const std::string& message);
 
 // The text with capitals of ASCII as small letters.
 std::string LowerCase(std::string text);
+
+inline constexpr std::string_view kBlanks = " \t\r\v\f";
+
+// The text without blanks at both ends.
+std::string_view Trimmed(std::string_view text);
+// Words separated by blanks.
+std::vector<std::string_view> SplitWords(std::string_view text);
+// Trimmed fields between separators; a separator cannot be part of a field.
+std::vector<std::string_view> SplitFields(std::string_view text, char separator = ',');
 
 // Number of characters of a text in UTF-8.
 size_t WidthOf(const std::string& text);

@@ -130,7 +130,8 @@ RunFile RunRecorder::Place(const FileDigest& file) const {
       return {argument, argument, path.lexically_relative(PlainPath(folder)), file.sha256};
     }
   }
-  const std::string argument = named == files_.end() ? "" : ArgumentOf(named->first);
+  const auto argument =
+      named == files_.end() ? std::nullopt : std::optional(ArgumentOf(named->first));
   // Files in the run's folder, or beside it, move together with it.
   const fs::path run = PlainPath(*folder_);
   if (IsWithin(path, run.parent_path())) {

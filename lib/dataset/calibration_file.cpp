@@ -10,6 +10,7 @@
 #include <initializer_list>
 #include <iterator>
 #include <map>
+#include <set>
 #include <vector>
 
 #include "base/error.h"
@@ -25,23 +26,16 @@
 namespace soslam {
 namespace {
 
-// The names of OpenCV's model and the possible numbers of its coefficients.
-const std::map<std::string, std::vector<size_t>> kLensModels = {
-    {"none", {0, 4, 5}},  // all of them 0
-    {"pinhole", {0, 4, 5, 8, 12, 14}},
-    {"perspective", {0, 4, 5, 8, 12, 14}},
-    {"simplepinhole", {0, 4, 5}},
-    {"opencv", {4, 5, 8, 12, 14}},
-    {"plumbbob", {4, 5}},
-    {"radtan", {4, 5}},
-    {"radialtangential", {4, 5}},
-    {"brown", {4, 5}},
-    {"brownconrady", {4, 5}},
-    {"simpleradial", {4, 5}},
-    {"radial", {4, 5}},
-    {"rationalpolynomial", {8, 12, 14}},
-    {"fullopencv", {8}},
-    {"thinprism", {12, 14}}};
+// Possible numbers of coefficients of OpenCV's model, and its names with them.
+const std::map<std::vector<size_t>, std::set<std::string>> kLensModels = {
+    {{0, 4, 5}, {"none", "simplepinhole"}},  // none: all of them 0
+    {{0, 4, 5, 8, 12, 14}, {"pinhole", "perspective"}},
+    {{4, 5, 8, 12, 14}, {"opencv"}},
+    {{4, 5},
+     {"plumbbob", "radtan", "radialtangential", "brown", "brownconrady", "simpleradial", "radial"}},
+    {{8, 12, 14}, {"rationalpolynomial"}},
+    {{8}, {"fullopencv"}},
+    {{12, 14}, {"thinprism"}}};
 
 // Normalised model name: lower case, without word separators.
 std::string PlainName(const std::string& model) {
@@ -79,9 +73,10 @@ bool IsWideAngle(const std::string& plain_name) {
 std::optional<Distortion> ParseLens(const std::string& model, std::span<const double> coefficients,
                                     const std::string& place) {
   const std::string name = PlainName(model);
-  const auto found = kLensModels.find(name);
+  const auto found = std::ranges::find_if(
+      kLensModels, [&](const auto& entry) { return entry.second.contains(name); });
   if (found == kLensModels.end()) RefuseModel(model, place);
-  const std::vector<size_t>& counts = found->second;
+  const std::vector<size_t>& counts = found->first;
   const bool are_zero = std::ranges::all_of(coefficients, [](double k) { return k == 0.0; });
   if (std::ranges::find(counts, coefficients.size()) == counts.end() ||
       (name == "none" && !are_zero)) {

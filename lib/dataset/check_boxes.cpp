@@ -171,7 +171,7 @@ std::vector<Finding> CheckBoxes(const ImportView& view) {
   for (const DetectionRow& row : view.content.rows) {
     boxes.push_back(row.box_in_image_file.value_or(row.box));
   }
-  const Camera& camera = view.content.camera;
+  const Camera& camera = view.sequence.camera;
   std::vector<Finding> findings = CheckFractions(boxes, camera);
   if (findings.empty()) findings = CheckConvention(boxes, camera, view.options);
   if (findings.empty()) findings = CheckUnusedPart(boxes, camera);
@@ -211,7 +211,7 @@ int CountKnown(const ImportView& view, const std::set<std::string>& known, int s
 std::vector<Finding> CheckClassNumbers(const ImportView& view) {
   constexpr int kFewest = 10;
   std::set<std::string> known;
-  for (const Object& object : view.content.objects) {
+  for (const Object& object : view.sequence.objects) {
     if (object.ground_truth) known.insert(object.label);
   }
   const auto all = static_cast<int>(view.content.rows.size());

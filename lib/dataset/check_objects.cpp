@@ -30,7 +30,7 @@ struct BoxAndTruth {
 // Uncut boxes of static objects with the true landmarks of the objects with their id plus `shift`.
 std::vector<BoxAndTruth> BoxesAndTruth(const ImportView& view, int shift) {
   std::map<std::int64_t, const Landmark*> landmarks;
-  for (const Object& object : view.content.objects) {
+  for (const Object& object : view.sequence.objects) {
     if (!object.ground_truth || !object.is_static) continue;
     landmarks[object.id] = &object.ground_truth->landmark_in_world;
   }
@@ -43,7 +43,7 @@ std::vector<BoxAndTruth> BoxesAndTruth(const ImportView& view, int shift) {
     const auto landmark = landmarks.find(std::int64_t{row.object_id} + shift);
     const auto frame = frames.find(row.frame_id);
     if (landmark == landmarks.end() || frame == frames.end()) continue;
-    const Camera camera = frame->second->camera.value_or(view.content.camera);
+    const Camera camera = frame->second->camera.value_or(view.sequence.camera);
     const Box in_image = row.box_in_image_file.value_or(row.box);
     if (DistanceToBorder(in_image, camera.width, camera.height) <= kCutPx) continue;
     const Rigid3d world_from_camera =
@@ -55,11 +55,9 @@ std::vector<BoxAndTruth> BoxesAndTruth(const ImportView& view, int shift) {
 
 // Median angle (deg) between boxes and centres; none when there are too few.
 std::optional<double> MedianAngleDeg(const std::vector<BoxAndTruth>& pairs) {
-  std::vector<double> angles;
-  for (const auto& [box, camera, landmark] : pairs) {
-    angles.push_back(
-        AngleBetweenDeg(camera.Ray(box.Centre()), landmark.frame_from_object.translation));
-  }
+  const auto angles = ValuesOf(pairs, [](const BoxAndTruth& pair) {
+    return AngleBetweenDeg(pair.camera.Ray(pair.box.Centre()), pair.landmark_in_camera.Centre());
+  });
   return angles.size() < kFewestBoxes ? std::nullopt : MedianOf(angles);
 }
 
@@ -125,12 +123,12 @@ std::vector<Finding> CheckObjectAxes(const ImportView& view) {
   constexpr double kSteepestDeg = 30.0;
   constexpr size_t kFewestObjects = 2;
   std::vector<double> angles;
-  for (const Object& object : view.content.objects) {
+  for (const Object& object : view.sequence.objects) {
     if (!object.ground_truth || object.plane_index == kNoPlane) continue;
     const auto plane = static_cast<size_t>(object.plane_index);
     const Eigen::Vector3d z = object.ground_truth->landmark_in_world.frame_from_object.rotation *
                               Eigen::Vector3d::UnitZ();
-    const Eigen::Vector3d& normal = view.content.planes.at(plane).plane_in_world.normal;
+    const Eigen::Vector3d& normal = view.sequence.planes.at(plane).plane_in_world.normal;
     angles.push_back(AngleBetweenDeg(z, normal));
   }
   if (angles.size() < kFewestObjects || *MedianOf(angles) <= kSteepestDeg) return {};
@@ -181,11 +179,9 @@ constexpr const char* kWall =
 
 // Median angle (deg) between the plane's normal and the images' up.
 double AngleToImagesUpDeg(const std::vector<const Detection*>& detections) {
-  std::vector<double> angles;
-  for (const Detection* detection : detections) {
-    angles.push_back(AngleBetweenDeg(detection->plane_in_camera.normal, -Eigen::Vector3d::UnitY()));
-  }
-  return *MedianOf(angles);
+  return *MedianOf(ValuesOf(detections, [](const Detection* detection) {
+    return AngleBetweenDeg(detection->plane_in_camera.normal, -Eigen::Vector3d::UnitY());
+  }));
 }
 
 // True if the plane is about vertical, given the way cameras are held.
@@ -204,7 +200,7 @@ std::vector<Eigen::Vector3d> PointsOnPlane(const ImportView& view, int plane_ind
     return listed.has_pose ? std::optional(listed.frame.world_from_camera) : std::nullopt;
   };
   std::set<int> on_plane;
-  for (const Object& object : view.content.objects) {
+  for (const Object& object : view.sequence.objects) {
     if (object.plane_index == plane_index) on_plane.insert(object.id);
   }
   std::vector<Eigen::Vector3d> points;
@@ -217,9 +213,7 @@ std::vector<Eigen::Vector3d> PointsOnPlane(const ImportView& view, int plane_ind
 }
 
 std::vector<double> HeightsOver(const Plane& plane, const std::vector<Eigen::Vector3d>& points) {
-  std::vector<double> heights;
-  for (const Eigen::Vector3d& point : points) heights.push_back(plane.SignedDistance(point));
-  return heights;
+  return ValuesOf(points, [&](const auto& point) { return plane.SignedDistance(point); });
 }
 
 // The main plane and the objects on it.

@@ -202,7 +202,7 @@ LensCamera ReadCamera(const std::filesystem::path& path, CameraYAxis y_axis) {
   if (!(read.camera.fy < 0.0)) {
     entry.Refuse("fy", "that of a camera with y up, which is negative");
   }
-  read.camera = WithYDown(read.camera);
+  read.camera.fy = -read.camera.fy;
   return read;
 }
 

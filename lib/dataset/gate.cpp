@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <tuple>
 
 #include "base/text.h"
@@ -69,23 +70,16 @@ std::optional<RejectReason> GateRow(const DetectionRow& row, const Camera& camer
 }
 
 std::vector<DetectionRow> WithoutDuplicates(std::vector<DetectionRow> rows, Rejections* rejected) {
-  const auto best_first = [](const DetectionRow& a, const DetectionRow& b) {
-    return std::tuple(a.frame_id, a.object_id, -a.score) <
-           std::tuple(b.frame_id, b.object_id, -b.score);
-  };
-  const auto same = [](const DetectionRow& a, const DetectionRow& b) {
-    return a.frame_id == b.frame_id && a.object_id == b.object_id;
-  };
-  std::ranges::stable_sort(rows, best_first);
-  std::vector<DetectionRow> kept;
-  for (DetectionRow& row : rows) {
-    if (!kept.empty() && same(kept.back(), row)) {
-      rejected->Add(row, RejectReason::kDuplicate);
-    } else {
-      kept.push_back(std::move(row));
-    }
-  }
-  return kept;
+  std::ranges::stable_sort(rows, {}, [](const DetectionRow& row) {
+    return std::tuple(row.frame_id, row.object_id, -row.score);
+  });
+  std::set<std::pair<int, int>> seen;
+  std::erase_if(rows, [&](const DetectionRow& row) {
+    if (seen.emplace(row.frame_id, row.object_id).second) return false;
+    rejected->Add(row, RejectReason::kDuplicate);
+    return true;
+  });
+  return rows;
 }
 
 std::vector<DetectionRow> WithEnoughObservations(std::vector<DetectionRow> rows,

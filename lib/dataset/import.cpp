@@ -70,10 +70,10 @@ class Importer {
         options_(options),
         sequence_(sequence),
         slots_(ChooseFrames(content.frames, options, &sequence->frames)),
-        object_ids_("object", content.objects),
+        object_ids_("object", sequence->objects),
         planes_from_truth_(options.camera_planes == PlanePoses::kGroundTruth &&
                            content.has_true_poses) {
-    for (const TrueObject& object : content.true_objects) true_object_ids_.insert(object.id);
+    for (const TrueObject& object : sequence->true_objects) true_object_ids_.insert(object.id);
   }
 
   void Import() {
@@ -239,20 +239,14 @@ Sequence ImportDataset(const std::filesystem::path& folder, const ImportOptions&
     throw InputError(folder.string() + ": is not a folder; expected a dataset folder");
   }
   const DatasetContent content = ReadContent(folder, options);
-  Sequence sequence;
+  Sequence sequence = content.sequence;
   sequence.name = std::filesystem::canonical(folder).filename().string();
-  sequence.camera = content.camera;
   sequence.odometry_source = options.odometry_source;
-  sequence.image_distortion = content.image_distortion;
   sequence.image_orientation = options.image_orientation;
-  sequence.planes = content.planes;
-  sequence.objects = content.objects;
-  sequence.true_objects = content.true_objects;
   std::ranges::sort(sequence.true_objects, {}, &TrueObject::id);
   for (TrueObject& object : sequence.true_objects) {
     object.is_ignored = !IsListed(object.label, options.labels);
   }
-  sequence.ignored = content.ignored;
   sequence.odometry_world = WorldOfOdometry(options);
   Importer(content, options, &sequence).Import();
   sequence.findings = CheckDataset({folder, options, content, sequence});

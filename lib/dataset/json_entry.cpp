@@ -3,6 +3,7 @@
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -56,19 +57,6 @@ std::string LikelyMeaning(const std::string& key, const KnownKeys& known) {
 }
 
 }  // namespace
-
-std::optional<Eigen::Matrix4d> Matrix4FromJson(const json& rows) {
-  Eigen::Matrix<double, 4, 4, Eigen::RowMajor> matrix;
-  const auto is_row = [](const json& row) {
-    return row.is_array() && row.size() == 4 &&
-           std::ranges::all_of(row, [](const json& x) { return x.is_number(); });
-  };
-  if (!rows.is_array() || rows.size() != 4 || !std::ranges::all_of(rows, is_row)) {
-    return std::nullopt;
-  }
-  for (size_t i = 0; i < 16; ++i) matrix.data()[i] = rows[i / 4][i % 4].get<double>();
-  return matrix;
-}
 
 std::vector<JsonEntry> EntriesOf(const json& list, const std::string& place) {
   std::vector<JsonEntry> entries;

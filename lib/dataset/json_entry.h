@@ -4,11 +4,12 @@
 #include <fmt/format.h>
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "artefact/json_file.h"
 
 namespace soslam {
 
@@ -28,8 +29,16 @@ class JsonEntry;
 // The objects of a list, with places "<place>/<index>". They refer to the list.
 std::vector<JsonEntry> EntriesOf(const nlohmann::json& list, const std::string& place);
 
-// The matrix of 4 rows of 4 numbers; none for anything else.
-std::optional<Eigen::Matrix4d> Matrix4FromJson(const nlohmann::json& rows);
+// The vector or matrix of a list of as many numbers or rows as it has; none for anything else.
+template <typename Matrix>
+std::optional<Matrix> MatrixFromJson(const nlohmann::json& list) {
+  try {
+    const auto matrix = list.get<Matrix>();
+    return nlohmann::json(matrix) == list ? std::optional(matrix) : std::nullopt;
+  } catch (const nlohmann::json::exception&) {
+    return std::nullopt;
+  }
+}
 
 // Checked access to an object of an external JSON file. It refers to the document, which must
 // outlive it. All functions throw InputError, naming place and field, when the field is missing or
@@ -53,12 +62,9 @@ class JsonEntry {
   std::vector<double> Reals(const char* name) const;
   template <int kSize>
   Eigen::Matrix<double, kSize, 1> Vector(const char* name) const {
-    const nlohmann::json& field = Field(name);
-    const auto is_number = [](const nlohmann::json& element) { return element.is_number(); };
-    if (!field.is_array() || field.size() != kSize || !std::ranges::all_of(field, is_number)) {
-      Refuse(name, fmt::format("{} numbers", kSize));
-    }
-    return Eigen::Matrix<double, kSize, 1>(field.get<std::vector<double>>().data());
+    const auto vector = MatrixFromJson<Eigen::Matrix<double, kSize, 1>>(Field(name));
+    if (!vector) Refuse(name, fmt::format("{} numbers", kSize));
+    return *vector;
   }
 
   [[noreturn]] void Refuse(const char* name, const std::string& expected) const;

@@ -143,25 +143,16 @@ KittiCalibration ReadKittiCalibration(const fs::path& path) {
   throw InputError(path.string() + ": has no line P2:; expected the projection of camera 2");
 }
 
-std::vector<KittiLabel> ReadKittiTrackingLabels(const fs::path& path) {
+std::vector<KittiLabel> ReadKittiLabels(const fs::path& path, bool has_tracks) {
+  const size_t leading = has_tracks ? 2 : 0;
   std::vector<KittiLabel> labels;
   for (const TextLine& line : ReadTextLines(path)) {
-    const auto words = SplitColumns(line, 2);
-    KittiLabel label = ParseLabel(std::span(words).subspan(2), line.place);
-    label.frame = ParseInteger(words[0], line.place, "frame");
-    label.track = ParseInteger(words[1], line.place, "track");
+    const auto words = SplitColumns(line, leading);
+    KittiLabel label = ParseLabel(std::span(words).subspan(leading), line.place);
+    label.frame = has_tracks ? ParseInteger(words[0], line.place, "frame") : 0;
+    label.track =
+        has_tracks ? ParseInteger(words[1], line.place, "track") : static_cast<int>(labels.size());
     if (label.type != kUnlabelledType) labels.push_back(std::move(label));
-  }
-  return labels;
-}
-
-std::vector<KittiLabel> ReadKittiObjectLabels(const fs::path& path) {
-  std::vector<KittiLabel> labels;
-  for (const TextLine& line : ReadTextLines(path)) {
-    KittiLabel label = ParseLabel(SplitColumns(line, 0), line.place);
-    if (label.type == kUnlabelledType) continue;
-    label.track = static_cast<int>(labels.size());
-    labels.push_back(std::move(label));
   }
   return labels;
 }
@@ -240,7 +231,7 @@ Camera WithImageSize(Camera camera, const std::optional<fs::path>& image,
                      ImageOrientation orientation, const RecordingValues& image_size,
                      int recording) {
   if (image) {
-    const cv::Mat pixels = ReadGreyImage(*image, orientation);
+    const cv::Mat pixels = ReadImage(*image, cv::IMREAD_GRAYSCALE, orientation);
     camera.width = pixels.cols;
     camera.height = pixels.rows;
     return camera;
@@ -271,12 +262,12 @@ Landmark LandmarkInCamera(const KittiLabel& label, const KittiCalibration& calib
   return landmark;
 }
 
-void AddLabelledObject(Object object, int segment, DatasetContent* content) {
+void AddLabelledObject(Object object, int segment, Sequence* sequence) {
   const GroundTruth& truth = *object.ground_truth;
-  object.plane_index = static_cast<int>(content->planes.size());
-  content->planes.push_back({object.id, SupportPlaneOf(truth.landmark_in_world)});
-  content->true_objects.push_back({object.id, object.label, truth, segment, object.is_static});
-  content->objects.push_back(std::move(object));
+  object.plane_index = static_cast<int>(sequence->planes.size());
+  sequence->planes.push_back({object.id, SupportPlaneOf(truth.landmark_in_world)});
+  sequence->true_objects.push_back({object.id, object.label, truth, segment, object.is_static});
+  sequence->objects.push_back(std::move(object));
 }
 
 DetectionRow RowOfLabel(const KittiLabel& label, const Box& box, double score,

@@ -8,11 +8,11 @@
 #include <string_view>
 #include <vector>
 
-#include "dataset/dataset_content.h"
 #include "dataset/gate.h"
 #include "dataset/labelled_box.h"
 #include "geometry/camera.h"
 #include "geometry/image_size.h"
+#include "model/sequence.h"
 
 namespace soslam {
 
@@ -74,11 +74,10 @@ struct KittiLabel {
   double score = 1.0;       // in results of detectors and trackers
 };
 
-// Readers of labels: 17 values per line, starting with frame and track (tracking), or 15 without
-// these (object: frame 0, track counted from 0), followed by a score in results of detectors and
-// trackers. Unlabelled regions (DontCare) are left out. Throw InputError naming the line.
-std::vector<KittiLabel> ReadKittiTrackingLabels(const std::filesystem::path& path);
-std::vector<KittiLabel> ReadKittiObjectLabels(const std::filesystem::path& path);
+// Reads labels: 17 values per line, starting with frame and track (tracking), or 15 without these
+// (object: frame 0, track counted from 0), followed by a score in results of detectors and
+// trackers. Unlabelled regions (DontCare) are left out. Throws InputError naming the line.
+std::vector<KittiLabel> ReadKittiLabels(const std::filesystem::path& path, bool has_tracks);
 
 // Reads 2D detections of a KITTI sequence as trackers exchange them: <class>/<sequence>.txt, lines
 // "frame,x1,y1,x2,y2,score", frames counted from 0, pixels as in KITTI's labels. The label is the
@@ -115,7 +114,7 @@ Landmark LandmarkInCamera(const KittiLabel& label, const KittiCalibration& calib
 
 // Adds an object with a true landmark, and its support plane with the same id: the bottom face of
 // that landmark.
-void AddLabelledObject(Object object, int segment, DatasetContent* content);
+void AddLabelledObject(Object object, int segment, Sequence* sequence);
 
 // Converts a label to a detection: `box` cut to the image; plane (the label's bottom face) and
 // landmark from the label.

@@ -39,7 +39,7 @@ void AddFrame(const fs::path& folder, const NumberedPath& label_file, ImageOrien
   const fs::path calibration_file = RequiredFile(folder / "calib" / label_file.path.filename());
   content->files.insert(content->files.end(), {label_file.path, calibration_file});
   const KittiCalibration calibration = ReadKittiCalibration(calibration_file);
-  const std::vector<KittiLabel> labels = ReadKittiObjectLabels(label_file.path);
+  const std::vector<KittiLabel> labels = ReadKittiLabels(label_file.path, false);
   if (labels.size() > kIdsPerFrame) {
     throw InputError(fmt::format("{}: has {} labels; expected at most {}", label_file.path.string(),
                                  labels.size(), kIdsPerFrame));
@@ -47,15 +47,15 @@ void AddFrame(const fs::path& folder, const NumberedPath& label_file, ImageOrien
   Frame frame = ReadFrame(folder, label_file);
   const auto image = frame.image.empty() ? std::nullopt : std::optional(folder / frame.image);
   const Camera camera = WithImageSize(calibration.camera, image, orientation, image_size, frame.id);
-  if (content->frames.empty()) content->camera = camera;
-  if (camera != content->camera) frame.camera = camera;
+  if (content->frames.empty()) content->sequence.camera = camera;
+  if (camera != content->sequence.camera) frame.camera = camera;
   for (const KittiLabel& label : labels) {
     DetectionRow row = RowOfLabel(label, label.box, label.score, calibration, camera);
     row.frame_id = frame.id;
     row.object_id = frame.id * kIdsPerFrame + label.track;
     Object object{row.object_id, row.label, kNoPlane, GroundTruth()};
     object.ground_truth->landmark_in_world = *row.true_landmark_in_camera;
-    AddLabelledObject(std::move(object), frame.id, content);
+    AddLabelledObject(std::move(object), frame.id, &content->sequence);
     content->rows.push_back(std::move(row));
   }
   content->frames.push_back({std::move(frame), true});

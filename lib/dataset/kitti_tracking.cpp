@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
 #include <map>
 
@@ -14,6 +15,7 @@
 #include "dataset/image_path.h"
 #include "dataset/kitti_label.h"
 #include "dataset/trajectories.h"
+#include "evaluation/statistics.h"
 #include "geometry/image_size.h"
 
 namespace soslam {
@@ -24,9 +26,8 @@ template <typename Vector>
 Eigen::Vector3d Median(const std::vector<Landmark>& landmarks, const Vector& vector) {
   Eigen::Vector3d median;
   for (int i = 0; i < 3; ++i) {
-    std::vector<double> values;
-    for (const Landmark& landmark : landmarks) values.push_back(vector(landmark)[i]);
-    median[i] = UpperMedian(std::move(values));
+    const auto value = [&](const Landmark& landmark) { return std::invoke(vector, landmark)[i]; };
+    median[i] = UpperMedian(ValuesOf(landmarks, value));
   }
   return median;
 }
@@ -43,10 +44,9 @@ Landmark MedianLandmark(const std::vector<Landmark>& landmarks) {
   Eigen::Matrix3d rotation;
   rotation << front, up.cross(front), up;
   Landmark median = landmarks.front();
-  median.frame_from_object = {
-      Eigen::Quaterniond(rotation).normalized(),
-      Median(landmarks, [](const Landmark& landmark) { return landmark.Centre(); })};
-  median.half_axes = Median(landmarks, [](const Landmark& landmark) { return landmark.half_axes; });
+  median.frame_from_object = {Eigen::Quaterniond(rotation).normalized(),
+                              Median(landmarks, &Landmark::Centre)};
+  median.half_axes = Median(landmarks, &Landmark::half_axes);
   return median;
 }
 
@@ -82,15 +82,13 @@ class Recording {
       : folder_(folder),
         number_(labels.number),
         file_(labels.path.filename()),
-        options_(options.kitti),
-        detections_(options.detections),
-        image_orientation_(options.image_orientation),
+        options_(options),
         content_(content) {
     calibration_ = ReadKittiCalibration(Read(folder / "calib" / file_));
-    labels_ = ReadKittiTrackingLabels(Read(labels.path));
-    poses_ = ReadKittiTrajectory(Read(folder / options_.poses / file_));
+    labels_ = ReadKittiLabels(Read(labels.path), true);
+    poses_ = ReadKittiTrajectory(Read(folder / options_.kitti.poses / file_));
     const double scale =
-        RecordingValues("translation_scale", options_.translation_scale).PositiveOf(number_);
+        RecordingValues("translation_scale", options_.kitti.translation_scale).PositiveOf(number_);
     for (Rigid3d& pose : poses_) pose.translation *= scale;
     CheckIds();
   }
@@ -98,7 +96,7 @@ class Recording {
   void Add() {
     AddFrames();
     AddObjects();
-    if (detections_.empty() || detections_ == "labels") {
+    if (options_.detections.empty() || options_.detections == "labels") {
       for (const KittiLabel& label : labels_) AddRow(label, label.box, label.score);
     } else {
       AddFoundBoxes();
@@ -147,11 +145,11 @@ class Recording {
       frame.image = image.string();
       if (!any_image) any_image = path;
     }
-    camera_ = WithImageSize(calibration_.camera, any_image, image_orientation_,
-                            RecordingValues("image_size", options_.image_size), number_);
-    if (content_->frames.empty()) content_->camera = camera_;
+    camera_ = WithImageSize(calibration_.camera, any_image, options_.image_orientation,
+                            RecordingValues("image_size", options_.kitti.image_size), number_);
+    if (content_->frames.empty()) content_->sequence.camera = camera_;
     for (Frame& frame : frames) {
-      if (camera_ != content_->camera) frame.camera = camera_;
+      if (camera_ != content_->sequence.camera) frame.camera = camera_;
       content_->frames.push_back({std::move(frame), true});
     }
   }
@@ -160,8 +158,7 @@ class Recording {
     std::map<int, std::vector<const KittiLabel*>> tracks;
     for (const KittiLabel& label : labels_) tracks[label.track].push_back(&label);
     for (auto& [track, labels] : tracks) {
-      std::ranges::stable_sort(
-          labels, [](const KittiLabel* a, const KittiLabel* b) { return a->frame < b->frame; });
+      std::ranges::stable_sort(labels, {}, &KittiLabel::frame);
       std::vector<Landmark> in_world;
       for (const KittiLabel* label : labels) {
         if (label->type != labels.front()->type) {
@@ -175,8 +172,8 @@ class Recording {
       Object object;
       object.id = Id(track);
       object.label = LowerCase(labels.front()->type);
-      SetTruth(in_world, options_, &object);
-      AddLabelledObject(std::move(object), number_, content_);
+      SetTruth(in_world, options_.kitti, &object);
+      AddLabelledObject(std::move(object), number_, &content_->sequence);
     }
   }
 
@@ -189,7 +186,7 @@ class Recording {
 
   // Adds the detector's boxes from one folder per object type.
   void AddFoundBoxes() {
-    const fs::path folder = folder_ / detections_;
+    const fs::path folder = folder_ / options_.detections;
     std::vector<fs::path> types;
     if (IsFolder(folder))
       std::ranges::copy_if(FolderEntries(folder), std::back_inserter(types), &IsFolder);
@@ -219,7 +216,7 @@ class Recording {
                   const std::vector<const KittiLabel*>& labels) {
     std::vector<Box> given;
     for (const KittiLabel* label : labels) given.push_back(label->box);
-    const auto matches = MatchBoxes(found, given, options_.match_min_iou);
+    const auto matches = MatchBoxes(found, given, options_.kitti.match_min_iou);
     for (size_t i = 0; i < matches.size(); ++i) {
       if (matches[i]) {
         AddRow(*labels[*matches[i]], found[i].box, found[i].score);
@@ -242,9 +239,7 @@ class Recording {
   fs::path folder_;
   int number_;
   fs::path file_;  // SSSS.txt
-  const KittiOptions& options_;
-  std::string detections_;  // empty: the boxes of the labels
-  ImageOrientation image_orientation_;
+  const ImportOptions& options_;
   DatasetContent* content_;
   KittiCalibration calibration_;
   Camera camera_;

@@ -75,7 +75,7 @@ void RefuseOtherCameras(const JsonEntry& all) {
 }
 
 NamedPose ParsePose(const JsonEntry& frame) {
-  const auto matrix = Matrix4FromJson(frame.Field("transform_matrix"));
+  const auto matrix = MatrixFromJson<Eigen::Matrix4d>(frame.Field("transform_matrix"));
   if (!matrix) frame.Refuse("transform_matrix", "4 rows of 4 numbers");
   const Rigid3d world_from_opengl = RigidMotion(*matrix, frame.place());
   const Eigen::Quaterniond half_turn_about_x(0.0, 1.0, 0.0, 0.0);

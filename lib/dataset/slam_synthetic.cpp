@@ -22,7 +22,7 @@ constexpr int kIdsPerProblem = 10000;
 constexpr const char* kLabel = "ellipsoid";
 
 Rigid3d ParsePose(const json& rows, const std::string& place) {
-  const auto matrix = Matrix4FromJson(rows);
+  const auto matrix = MatrixFromJson<Eigen::Matrix4d>(rows);
   if (!matrix) throw InputError(place + ": is not a pose; expected 4 rows of 4 numbers");
   return {NearestRotation(matrix->topLeftCorner<3, 3>(), place), matrix->topRightCorner<3, 1>()};
 }
@@ -70,7 +70,7 @@ class Problem {
     const JsonEntry fields(entry_.Field("camera"), Place("camera"));
     fields.Positive("fy");
     const Camera camera = ParseCamera(fields);
-    if (content_->frames.empty()) content_->camera = camera;
+    if (content_->frames.empty()) content_->sequence.camera = camera;
     const auto truth = Poses("T_wc");
     const auto odometry = Poses("init_T_wc");
     frames_ = truth.size();
@@ -86,7 +86,7 @@ class Problem {
       frame.world_from_camera = wants_odometry ? odometry[i] : truth[i];
       frame.true_world_from_camera = truth[i];
       frame.segment = number_;
-      if (camera != content_->camera) frame.camera = camera;
+      if (camera != content_->sequence.camera) frame.camera = camera;
       content_->frames.push_back({std::move(frame), true});
     }
   }
@@ -95,8 +95,8 @@ class Problem {
     const Eigen::Vector4d plane = entry_.Vector<4>("support_plane_world");
     const double length = plane.head<3>().norm();
     if (!(length > 0.0)) entry_.Refuse("support_plane_world", "nx, ny, nz, d");
-    const int plane_index = static_cast<int>(content_->planes.size());
-    content_->planes.push_back({number_, {plane.head<3>() / length, plane[3] / length}});
+    const int plane_index = static_cast<int>(content_->sequence.planes.size());
+    content_->sequence.planes.push_back({number_, {plane.head<3>() / length, plane[3] / length}});
     for (const JsonEntry& entry : EntriesOf(ShortList("objects"), Place("objects"))) {
       Landmark landmark;
       landmark.frame_from_object = {
@@ -109,8 +109,9 @@ class Problem {
       object.label = kLabel;
       object.plane_index = plane_index;
       object.ground_truth.emplace().landmark_in_world = landmark;
-      content_->true_objects.push_back({object.id, object.label, *object.ground_truth, number_});
-      content_->objects.push_back(std::move(object));
+      content_->sequence.true_objects.push_back(
+          {object.id, object.label, *object.ground_truth, number_});
+      content_->sequence.objects.push_back(std::move(object));
     }
   }
 

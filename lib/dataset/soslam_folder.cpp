@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <utility>
 
@@ -28,8 +29,7 @@ Camera CameraOfSetting(const ImportOptions& options) {
     RefuseSetting("camera", text,
                   fmt::format("{}, fy {} 0", kExpected, y_is_up ? "below" : "above"));
   }
-  const Camera camera{static_cast<int>(width), static_cast<int>(height), fx, fy, cx, cy};
-  return y_is_up ? WithYDown(camera) : camera;
+  return {static_cast<int>(width), static_cast<int>(height), fx, std::abs(fy), cx, cy};
 }
 
 Distortion DistortionOfSetting(const std::string& text) {
@@ -152,9 +152,9 @@ DatasetContent ReadSoslamFolder(const std::filesystem::path& folder, const Impor
   const auto images = ListImages(folder, files, options, boxes);
   content.class_names = std::move(read.class_names);
   if (!content.class_names.empty()) content.class_names_file = files.class_names;
-  content.camera = camera.camera;
-  content.image_distortion = camera.distortion;
-  if (files.planes) content.planes = ReadPlanes(*files.planes);
+  content.sequence.camera = camera.camera;
+  content.sequence.image_distortion = camera.distortion;
+  if (files.planes) content.sequence.planes = ReadPlanes(*files.planes);
   content.frames = ReadFolderFrames(folder, files, options, images, calibration.body_from_camera,
                                     &content.findings);
   content.rows = RowsOfBoxes(boxes, files, images, FirstFreeId(listed), &content.rejected.counts);
@@ -168,10 +168,10 @@ DatasetContent ReadSoslamFolder(const std::filesystem::path& folder, const Impor
                                &content.rejected.counts);
   }
   RejectBoxesOfNoTrack(of_no_track, images, camera, &content.rejected);
-  content.true_objects = TrueObjects(listed);
-  content.ignored = given.ignored;
-  content.objects =
-      ListObjects(files, listed, content.rows, content.planes, content.has_object_ids);
+  content.sequence.true_objects = TrueObjects(listed);
+  content.sequence.ignored = given.ignored;
+  content.sequence.objects =
+      ListObjects(files, listed, content.rows, content.sequence.planes, content.has_object_ids);
   content.has_true_poses = files.groundtruth.has_value();
   content.may_have_poses_of_body =
       !calibration.body_from_camera && options.folder.trajectory_format == TrajectoryFormat::kEuroc;

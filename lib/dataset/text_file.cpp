@@ -30,8 +30,6 @@ bool IsUtf8(const std::string& text) {
 
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r\v\f";
-
 void CheckEncoding(std::string_view text, const std::string& place) {
   if (text.find('\0') != text.npos) {
     throw InputError(place + ": has a zero byte, as UTF-16 text has; expected UTF-8");
@@ -130,31 +128,6 @@ std::vector<TextLine> RawLines(const std::string& text, const std::string& name)
     if (!IsComment(line)) CheckEncoding(line, lines.back().place);
   });
   return lines;
-}
-
-std::string_view Trimmed(std::string_view text) {
-  const size_t begin = text.find_first_not_of(kBlanks);
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
-}
-
-std::vector<std::string_view> SplitWords(std::string_view text) {
-  std::vector<std::string_view> words;
-  for (text = Trimmed(text); !text.empty(); text = Trimmed(text)) {
-    words.push_back(text.substr(0, text.find_first_of(kBlanks)));
-    text.remove_prefix(words.back().size());
-  }
-  return words;
-}
-
-std::vector<std::string_view> SplitFields(std::string_view text) {
-  std::vector<std::string_view> fields;
-  for (size_t comma = text.find(','); comma != std::string_view::npos; comma = text.find(',')) {
-    fields.push_back(Trimmed(text.substr(0, comma)));
-    text.remove_prefix(comma + 1);
-  }
-  fields.push_back(Trimmed(text));
-  return fields;
 }
 
 double ParseReal(std::string_view text, const std::string& place, const std::string& field) {

@@ -12,6 +12,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "base/text.h"
+
 namespace soslam {
 
 // True for UTF-8, which names and labels have to be: they are written to JSON.
@@ -49,13 +51,6 @@ std::vector<TextLine> ReadTableLines(const std::filesystem::path& path);
 // All lines unchanged, including blank ones and comments; at most 4 million. Comments need not be
 // UTF-8.
 std::vector<TextLine> RawLines(const std::string& text, const std::string& name);
-
-// The text without blanks at both ends.
-std::string_view Trimmed(std::string_view text);
-// Words separated by blanks.
-std::vector<std::string_view> SplitWords(std::string_view text);
-// Trimmed fields separated by commas; a comma cannot be part of a field.
-std::vector<std::string_view> SplitFields(std::string_view text);
 
 // Parses all of `text` as a number, independent of the locale. Throws InputError, naming place and
 // field, for anything else; a real number must be finite.

@@ -43,14 +43,14 @@ std::vector<TrackedObject> TrackedObjects(const ImportView& view) {
   std::map<int, size_t> frame_index;
   for (size_t i = 0; i < content.frames.size(); ++i) frame_index[content.frames[i].frame.id] = i;
   std::set<int> moving;
-  for (const Object& object : content.objects) {
+  for (const Object& object : view.sequence.objects) {
     if (!object.is_static) moving.insert(object.id);
   }
   const std::set<std::string> repeated = RepeatedLabels(content.rows);
   std::map<std::string, TrackedObject> by_name;
   for (const DetectionRow& row : content.rows) {
     const size_t frame = frame_index.at(row.frame_id);
-    const Camera camera = content.frames[frame].frame.camera.value_or(content.camera);
+    const Camera camera = content.frames[frame].frame.camera.value_or(view.sequence.camera);
     if (!IsWhole(row.box_in_image_file.value_or(row.box), camera)) continue;
     if (row.score < view.options.min_score || moving.contains(row.object_id)) continue;
     if (!content.has_object_ids && repeated.contains(row.label)) continue;

@@ -221,11 +221,6 @@ std::vector<Rigid3d> ReadKittiTrajectory(const std::filesystem::path& path) {
   return poses;
 }
 
-Camera WithYDown(Camera camera_with_y_up) {
-  camera_with_y_up.fy = -camera_with_y_up.fy;
-  return camera_with_y_up;
-}
-
 Rigid3d MirroredInY(const Rigid3d& world_from_camera) {
   // With S = diag(1, -1, 1), S R S rotates about the mirrored axis by the opposite angle.
   const Eigen::Quaterniond& q = world_from_camera.rotation;

@@ -9,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "geometry/camera.h"
 #include "geometry/rigid3.h"
 
 namespace soslam {
@@ -97,14 +96,10 @@ std::vector<Rigid3d> ReadKittiTrajectory(const std::filesystem::path& path);
 //   and their first column, like that of associations.txt, is the frame number; the images are
 //   1/30 s apart.
 //
-// Mirroring y in the world and in the camera makes both right-handed, with the same images: y is
-// then down, and up in the world is (0, -1, 0).
+// Mirroring y in the world and in the camera makes both right-handed, with the same images, if fy
+// is negated: y is then down, and up in the world is (0, -1, 0).
 
 inline constexpr double kIclNuimFramesPerSecond = 30.0;
-
-// The camera with x right, y down, z forward that gives the same images as one whose published fy
-// is negative.
-Camera WithYDown(Camera camera_with_y_up);
 
 // Converts a pose between left-handed frames to one between the mirrored, right-handed ones.
 Rigid3d MirroredInY(const Rigid3d& world_from_camera);

@@ -94,18 +94,9 @@ bool HaveOtherScale(const Alignment& rigid, const Alignment& similarity) {
          2.0 * *similarity.rmse_m < *rigid.rmse_m;
 }
 
-AlignmentKind ChosenKind(AlignmentChoice choice, const Sequence& sequence,
+AlignmentKind ChosenKind(AlignmentKind choice, const Sequence& sequence,
                          const std::vector<PosePair>& odometry) {
-  switch (choice) {
-    case AlignmentChoice::kNone:
-      return AlignmentKind::kNone;
-    case AlignmentChoice::kRigid:
-      return AlignmentKind::kRigid;
-    case AlignmentChoice::kSimilarity:
-      return AlignmentKind::kSimilarity;
-    case AlignmentChoice::kAuto:
-      break;
-  }
+  if (choice != AlignmentKind::kAuto) return choice;
   if (sequence.odometry_world == OdometryWorld::kOwnWithScale) return AlignmentKind::kSimilarity;
   if (sequence.odometry_world == OdometryWorld::kOwn) return AlignmentKind::kRigid;
   if (odometry.empty() || AreInOneWorld(odometry)) return AlignmentKind::kNone;
@@ -189,7 +180,7 @@ Alignment Align(const std::vector<PosePair>& pairs, AlignmentKind kind) {
 }
 
 Alignments AlignSegments(const Sequence& sequence, const std::vector<Rigid3d>& world_from_camera,
-                         AlignmentChoice choice) {
+                         AlignmentKind choice) {
   struct Segment {
     std::vector<PosePair> odometry, estimated;
   };

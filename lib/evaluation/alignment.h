@@ -16,26 +16,24 @@
 
 namespace soslam {
 
-enum class AlignmentChoice { kAuto, kNone, kRigid, kSimilarity };
-inline constexpr const char* kAlignmentChoiceNames[] = {"auto", "none", "rigid", "similarity"};
+// kAuto is a choice of the user; no alignment is of this kind.
+enum class AlignmentKind { kAuto, kNone, kRigid, kSimilarity };
+inline constexpr const char* kAlignmentKindNames[] = {"auto", "none", "rigid", "similarity"};
 
 // The paper's protocol has no settings: numbers from different runs stay comparable.
 struct EvaluateOptions {
-  AlignmentChoice alignment = AlignmentChoice::kAuto;
+  AlignmentKind alignment = AlignmentKind::kAuto;
 
   void Describe(OptionVisitor& visit) {
     visit.Group("Comparison of maps");
     visit.Choice(
-        "alignment", &alignment, kAlignmentChoiceNames,
+        "alignment", &alignment, kAlignmentKindNames,
         "how a map is moved, for map_quality only, so that its camera centres fit the true "
         "ones best: as a whole (rigid), also scaled (similarity), not at all (none); auto: "
         "none where odometry and truth are in one world, rigid where the odometry has a "
         "world of its own, similarity where it has a scale of its own");
   }
 };
-
-enum class AlignmentKind { kNone, kRigid, kSimilarity };
-inline constexpr const char* kAlignmentKindNames[] = {"none", "rigid", "similarity"};
 
 // The part of an alignment that the camera centres of two trajectories determine.
 enum class CameraPath {
@@ -68,7 +66,7 @@ struct Alignment {
 
 // The alignment with the smallest root mean square distance of camera centres (Umeyama). If these
 // do not determine the rotation, it is the mean over the cameras' relative rotations. A similarity
-// whose scale they do not determine is refused: it becomes rigid.
+// whose scale they do not determine is refused: it becomes rigid. `kind` is not kAuto.
 Alignment Align(const std::vector<PosePair>& pairs, AlignmentKind kind);
 
 // One for each segment, as each has a world of its own. `world_from_camera`: the estimates, one per
@@ -79,7 +77,7 @@ struct Alignments {
   std::vector<Finding> findings = {};
 };
 Alignments AlignSegments(const Sequence& sequence, const std::vector<Rigid3d>& world_from_camera,
-                         AlignmentChoice choice);
+                         AlignmentKind choice);
 
 // A landmark of a map, aligned with the true world.
 struct AlignedLandmark {

@@ -229,7 +229,7 @@ std::optional<MapQuality> EvaluateMapQuality(const Sequence& sequence,
                                              const std::vector<ObjectEstimate>& estimates,
                                              const std::vector<Rigid3d>& world_from_camera,
                                              const std::vector<Plane>& planes_in_world,
-                                             AlignmentChoice alignment) {
+                                             AlignmentKind alignment) {
   const bool has_truth = std::ranges::any_of(sequence.true_objects, &TrueObject::IsWanted);
   if (!has_truth) return std::nullopt;
   MapQuality quality;

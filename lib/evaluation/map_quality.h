@@ -101,6 +101,6 @@ std::optional<MapQuality> EvaluateMapQuality(const Sequence& sequence,
                                              const std::vector<ObjectEstimate>& estimates,
                                              const std::vector<Rigid3d>& world_from_camera,
                                              const std::vector<Plane>& planes_in_world,
-                                             AlignmentChoice alignment);
+                                             AlignmentKind alignment);
 
 }  // namespace soslam

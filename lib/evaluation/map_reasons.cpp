@@ -69,20 +69,18 @@ bool IsIgnored(const Sequence& sequence, const std::string& label,
 
 namespace {
 
-// Counts by kind; ordered, so that the first of equal counts is well defined.
-template <typename Kind>
-using Counts = std::map<Kind, int>;
+// Counts by kind.
+using Counts = std::map<int, int>;
 
-// The kind with the largest count, the first of equals; none if there are no counts.
-template <typename Kind>
-std::optional<std::pair<Kind, int>> Most(const Counts<Kind>& counts) {
-  const auto most = std::ranges::max_element(
-      counts, {}, [](const auto& kind_and_count) { return kind_and_count.second; });
-  return most == counts.end() ? std::nullopt : std::optional<std::pair<Kind, int>>(*most);
+// The kind with more than half of the total.
+std::optional<int> MajorityOf(const Counts& counts, int total) {
+  for (const auto& [kind, count] : counts) {
+    if (2 * count > total) return kind;
+  }
+  return std::nullopt;
 }
 
-template <typename Kind>
-int Sum(const Counts<Kind>& counts) {
+int Sum(const Counts& counts) {
   int sum = 0;
   for (const auto& [kind, count] : counts) sum += count;
   return sum;
@@ -97,13 +95,10 @@ std::optional<int> LandmarkOfObject(const AlignedMap& map, int object_index) {
 // Counts of an object's boxes by true object (Sequence::true_objects).
 struct Owners {
   int boxes = 0;
-  Counts<int> of_truth;
+  Counts of_truth;
 
   // The true object of more than half of the boxes.
-  std::optional<int> Majority() const {
-    const auto most = Most(of_truth);
-    return most && 2 * most->second > boxes ? std::optional(most->first) : std::nullopt;
-  }
+  std::optional<int> Majority() const { return MajorityOf(of_truth, boxes); }
   bool AreMixed() const { return !Majority() && 2 * Sum(of_truth) > boxes; }
 };
 
@@ -117,7 +112,7 @@ Owners OwnersOf(const ReasonInput& input, int object_index) {
   return owners;
 }
 
-std::string InWords(const Sequence& sequence, const Counts<int>& of_truth) {
+std::string InWords(const Sequence& sequence, const Counts& of_truth) {
   std::vector<std::string> words;
   for (const auto& [index, count] : of_truth) {
     const TrueObject& object = sequence.true_objects[index];
@@ -175,8 +170,8 @@ Explanation ExplainWrong(const ReasonInput& input, int landmark, int true_index)
 struct Fates {
   std::set<int> frames, frames_in_use;
   std::set<int> frames_before_association;  // in use, or left out by association
-  Counts<int> by_object;
-  Counts<std::string> by_reason;
+  Counts by_object;
+  std::map<std::string, int> by_reason;
 };
 
 Fates FatesOf(const ReasonInput& input, int true_index) {
@@ -235,9 +230,7 @@ std::optional<WrongPart> DominantError(const Sequence& sequence, const AlignedMa
 Explanation ExplainMiss(const ReasonInput& input, int true_index) {
   const Fates fates = FatesOf(input, true_index);
   const int in_use = Sum(fates.by_object);
-  const auto most = Most(fates.by_object);
-  const std::optional<int> object =
-      most && 2 * most->second > in_use ? std::optional(most->first) : std::nullopt;
+  const auto object = MajorityOf(fates.by_object, in_use);
   const Owners owners = object ? OwnersOf(input, *object) : Owners();
   const bool is_own = owners.Majority() == true_index;
   const auto landmark = object ? LandmarkOfObject(input.map, *object) : std::nullopt;

@@ -86,7 +86,7 @@ std::vector<ObjectMetrics> EvaluateObjects(const Sequence& sequence,
 }  // namespace
 
 Metrics EvaluateLandmarks(const Sequence& sequence, const LandmarkEstimates& estimates,
-                          AlignmentChoice alignment) {
+                          AlignmentKind alignment) {
   Metrics metrics;
   if (estimates.observations.empty()) {
     metrics.objects = EvaluateObjects(sequence, estimates.objects);
@@ -116,7 +116,7 @@ Metrics EvaluateLandmarks(const Sequence& sequence, const LandmarkEstimates& est
   return metrics;
 }
 
-Metrics EvaluateMap(const Sequence& sequence, const MapEstimate& map, AlignmentChoice alignment) {
+Metrics EvaluateMap(const Sequence& sequence, const MapEstimate& map, AlignmentKind alignment) {
   Metrics metrics;
   metrics.objects = EvaluateObjects(sequence, map.objects);
   metrics.summary = Summarise(metrics.objects);

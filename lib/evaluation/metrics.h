@@ -54,8 +54,8 @@ struct Metrics {
 // trajectory error is computed for sequences of one segment only. `alignment` is that of
 // map_quality.
 Metrics EvaluateLandmarks(const Sequence& sequence, const LandmarkEstimates& estimates,
-                          AlignmentChoice alignment = AlignmentChoice::kAuto);
+                          AlignmentKind alignment = AlignmentKind::kAuto);
 Metrics EvaluateMap(const Sequence& sequence, const MapEstimate& map,
-                    AlignmentChoice alignment = AlignmentChoice::kAuto);
+                    AlignmentKind alignment = AlignmentKind::kAuto);
 
 }  // namespace soslam

@@ -33,10 +33,6 @@ void AppendLittleEndian(std::uint32_t value, std::string* bytes) {
   for (int shift = 0; shift < 32; shift += 8) *bytes += static_cast<char>(value >> shift & 0xFF);
 }
 
-json RotationToJson(const Eigen::Quaterniond& rotation) {
-  return {rotation.x(), rotation.y(), rotation.z(), rotation.w()};
-}
-
 json ExtrasOf(const WorldObject& object) {
   const Landmark& landmark = *object.estimate.landmark_in_world;
   json extras = {{"id", object.id},
@@ -68,7 +64,7 @@ class GltfBuilder {
     document_ = {{"asset", {{"version", "2.0"}, {"generator", "soslam " SOSLAM_VERSION}}},
                  {"scene", 0},
                  {"scenes", json::array({{{"nodes", json::array({0})}}})}};
-    Add("nodes", {{"name", "world"}, {"rotation", RotationToJson(root_rotation)}});
+    Add("nodes", {{"name", "world"}, {"rotation", root_rotation.coeffs()}});
     for (const WorldObject& object : world.objects) {
       if (object.estimate.landmark_in_world) AddLandmark(object);
     }
@@ -155,7 +151,7 @@ class GltfBuilder {
                             {"material", MaterialOf(object.label)}};
     AddNode({{"name", fmt::format("{} {}", object.label, object.id)},
              {"translation", landmark.Centre()},
-             {"rotation", RotationToJson(landmark.frame_from_object.rotation)},
+             {"rotation", landmark.frame_from_object.rotation.coeffs()},
              {"extras", ExtrasOf(object)}},
             primitive);
   }

@@ -6,6 +6,7 @@
 
 #include "artefact/model_json.h"
 #include "evaluation/alignment.h"
+#include "evaluation/statistics.h"
 #include "model/segments.h"
 
 namespace soslam {
@@ -27,28 +28,21 @@ std::vector<World> WorldsOfFrames(const Sequence& sequence,
   return worlds;
 }
 
-double MeanScore(const Sequence& sequence, const std::vector<int>& detections) {
-  if (detections.empty()) return 1.0;
-  double sum = 0.0;
-  for (const int i : detections) sum += sequence.detections[i].score;
-  return sum / static_cast<double>(detections.size());
-}
-
 void AddObjects(const Sequence& sequence, const std::vector<ObjectEstimate>& estimates,
                 const std::vector<Plane>& planes_in_world, std::vector<World>* worlds) {
   if (worlds->empty()) return;
   const std::vector<std::vector<int>> detections_by_object = DetectionsByObject(sequence);
   const std::vector<std::optional<int>> segments = SegmentsOfObjects(sequence);
+  const auto score = [&](int detection) { return sequence.detections[detection].score; };
   for (const ObjectEstimate& estimate : estimates) {
     const auto index = static_cast<size_t>(estimate.object_index);
     const Object& object = sequence.objects[index];
-    const std::vector<int>& detections = detections_by_object[index];
     const std::optional<int>& segment = segments[index];
     World& world =
         segment ? *std::ranges::find(*worlds, *segment, &World::segment) : worlds->front();
-    world.objects.push_back({object.id, object.label, segment,
-                             planes_in_world[object.plane_index].normal,
-                             MeanScore(sequence, detections), estimate});
+    world.objects.push_back(
+        {object.id, object.label, segment, planes_in_world[object.plane_index].normal,
+         MeanOf(ValuesOf(detections_by_object[index], score)).value_or(1.0), estimate});
     if (!segment && estimate.landmark_in_world) {
       world.objects.back().estimate.landmark_in_world.reset();
       world.objects.back().estimate.failure = "unknown_segment";

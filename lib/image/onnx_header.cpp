@@ -102,34 +102,28 @@ void ForEachField(std::string_view message, const Visit& visit) {
   while (const auto field = reader.Next()) visit(*field);
 }
 
-// The last of the fields with this number, as protobuf has it; empty without one.
-std::string_view BytesOf(std::string_view message, std::uint64_t number) {
-  std::string_view bytes;
+// The last of the fields with this number, as protobuf has it; 0 and empty without one.
+ProtobufField Last(std::string_view message, std::uint64_t number) {
+  ProtobufField last{};
   ForEachField(message, [&](const ProtobufField& field) {
-    if (field.number == number) bytes = field.bytes;
+    if (field.number == number) last = field;
   });
-  return bytes;
-}
-std::uint64_t IntegerOf(std::string_view message, std::uint64_t number) {
-  std::uint64_t integer = 0;
-  ForEachField(message, [&](const ProtobufField& field) {
-    if (field.number == number) integer = field.integer;
-  });
-  return integer;
+  return last;
 }
 
 // A side of TensorShapeProto: a number, or the name of a size that is not fixed.
 std::int64_t Side(std::string_view dimension) {
   constexpr std::uint64_t kLargest = 1U << 31;
-  const std::uint64_t side = IntegerOf(dimension, 1);
+  const std::uint64_t side = Last(dimension, 1).integer;
   return side < kLargest ? static_cast<std::int64_t>(side) : 0;
 }
 
 // ValueInfoProto: name, then type.tensor_type with elem_type and shape.dim.
 OnnxValue ReadValue(std::string_view message) {
-  const std::string_view tensor = BytesOf(BytesOf(message, 2), 1);
-  OnnxValue value{std::string(BytesOf(message, 1)), static_cast<int>(IntegerOf(tensor, 1)), {}};
-  ForEachField(BytesOf(tensor, 2), [&](const ProtobufField& field) {
+  const std::string_view tensor = Last(Last(message, 2).bytes, 1).bytes;
+  OnnxValue value{
+      std::string(Last(message, 1).bytes), static_cast<int>(Last(tensor, 1).integer), {}};
+  ForEachField(Last(tensor, 2).bytes, [&](const ProtobufField& field) {
     if (field.number != 1) return;
     if (value.shape.size() >= kMostSides) throw InputError("a shape has too many sides");
     value.shape.push_back(Side(field.bytes));
@@ -146,7 +140,7 @@ void AddValue(std::string_view message, std::vector<OnnxValue>* values) {
 bool HasHalfConstant(std::string_view node) {
   bool found = false;
   ForEachField(node, [&](const ProtobufField& field) {
-    if (field.number == 5) found |= IntegerOf(BytesOf(field.bytes, 5), 2) == kHalfType;
+    if (field.number == 5) found |= Last(Last(field.bytes, 5).bytes, 2).integer == kHalfType;
   });
   return found;
 }
@@ -157,12 +151,12 @@ void ReadGraph(std::string_view graph, OnnxHeader* header) {
   ForEachField(graph, [&](const ProtobufField& field) {
     switch (field.number) {
       case 1:
-        header->operators.emplace(BytesOf(field.bytes, 4));
+        header->operators.emplace(Last(field.bytes, 4).bytes);
         header->has_half_weights |= HasHalfConstant(field.bytes);
         break;
       case 5:
-        weights.emplace(BytesOf(field.bytes, 8));
-        header->has_half_weights |= IntegerOf(field.bytes, 2) == kHalfType;
+        weights.emplace(Last(field.bytes, 8).bytes);
+        header->has_half_weights |= Last(field.bytes, 2).integer == kHalfType;
         break;
       case 12:
         AddValue(field.bytes, &header->outputs);
@@ -172,7 +166,7 @@ void ReadGraph(std::string_view graph, OnnxHeader* header) {
     }
   });
   ForEachField(graph, [&](const ProtobufField& field) {
-    if (field.number == 11 && !weights.contains(BytesOf(field.bytes, 1))) {
+    if (field.number == 11 && !weights.contains(Last(field.bytes, 1).bytes)) {
       AddValue(field.bytes, &header->inputs);
     }
   });
@@ -339,10 +333,11 @@ OnnxHeader ReadOnnxHeader(std::string_view bytes, const std::string& name) {
       if (field.number == 7) {
         has_graph = true;
         ReadGraph(field.bytes, &header);
-      } else if (field.number == 8 && BytesOf(field.bytes, 1).empty()) {
-        header.opset = static_cast<int>(std::min<std::uint64_t>(IntegerOf(field.bytes, 2), 1000));
+      } else if (field.number == 8 && Last(field.bytes, 1).bytes.empty()) {
+        header.opset =
+            static_cast<int>(std::min<std::uint64_t>(Last(field.bytes, 2).integer, 1000));
       } else if (field.number == 14) {
-        header.metadata[std::string(BytesOf(field.bytes, 1))] = BytesOf(field.bytes, 2);
+        header.metadata[std::string(Last(field.bytes, 1).bytes)] = Last(field.bytes, 2).bytes;
       }
     });
     if (!has_graph) throw InputError("has no graph");

@@ -9,7 +9,6 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 #include <opencv2/core/eigen.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string_view>
 #include <vector>
@@ -95,7 +94,8 @@ CheckedFile Check(const std::filesystem::path& path, std::vector<char>* bytes) {
   return {format, *header};
 }
 
-// `mode` is OpenCV's IMREAD_GRAYSCALE or IMREAD_COLOR.
+}  // namespace
+
 cv::Mat ReadImage(const std::filesystem::path& path, int mode, ImageOrientation orientation,
                   const std::optional<cv::Size>& size) {
   std::vector<char> bytes = ReadBytes(path);
@@ -127,18 +127,6 @@ cv::Mat ReadImage(const std::filesystem::path& path, int mode, ImageOrientation 
   throw InputError(fmt::format("{}: is {} x {} pixels; expected the camera's {} x {}{}",
                                path.string(), image.cols, image.rows, size->width, size->height,
                                hint));
-}
-
-}  // namespace
-
-cv::Mat ReadGreyImage(const std::filesystem::path& path, ImageOrientation orientation,
-                      const std::optional<cv::Size>& size) {
-  return ReadImage(path, cv::IMREAD_GRAYSCALE, orientation, size);
-}
-
-cv::Mat ReadColourImage(const std::filesystem::path& path, ImageOrientation orientation,
-                        const std::optional<cv::Size>& size) {
-  return ReadImage(path, cv::IMREAD_COLOR, orientation, size);
 }
 
 ImageUndistorter::ImageUndistorter(const Camera& camera, const Distortion& distortion) {

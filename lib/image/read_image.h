@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <opencv2/core/mat.hpp>
+#include <opencv2/imgcodecs.hpp>
 #include <optional>
 
 #include "geometry/camera.h"
@@ -17,17 +18,13 @@ namespace soslam {
 //   5 left, top    6 right, top    7 right, bottom    8 left, bottom
 cv::Mat TurnUpright(const cv::Mat& stored, int exif_orientation);
 
-// Reads an image as grey values, CV_8UC1. JPEG, PNG, WebP, BMP or TIFF, of the latter the first
-// page; bytes after the image are ignored. Throws InputError when the file is missing, empty,
-// truncated, not such an image, larger than can be processed, or not of the given size.
-cv::Mat ReadGreyImage(const std::filesystem::path& path,
-                      ImageOrientation orientation = ImageOrientation::kUpright,
-                      const std::optional<cv::Size>& size = std::nullopt);
-
-// Reads an image in colour, CV_8UC3: blue, green, red. Otherwise like ReadGreyImage.
-cv::Mat ReadColourImage(const std::filesystem::path& path,
-                        ImageOrientation orientation = ImageOrientation::kUpright,
-                        const std::optional<cv::Size>& size = std::nullopt);
+// Reads an image by the mode cv::IMREAD_GRAYSCALE as grey values, CV_8UC1, by cv::IMREAD_COLOR as
+// blue, green and red, CV_8UC3. JPEG, PNG, WebP, BMP or TIFF, of the latter the first page; bytes
+// after the image are ignored. Throws InputError when the file is missing, empty, truncated, not
+// such an image, larger than can be processed, or not of the given size.
+cv::Mat ReadImage(const std::filesystem::path& path, int mode,
+                  ImageOrientation orientation = ImageOrientation::kUpright,
+                  const std::optional<cv::Size>& size = std::nullopt);
 
 // Undistorts images: the result is that of a pinhole camera of the same size and intrinsics.
 class ImageUndistorter {

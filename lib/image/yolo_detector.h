@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <opencv2/core/mat.hpp>
 #include <opencv2/dnn/dnn.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,11 +47,6 @@ class YoloNetwork {
   cv::dnn::Net network_;
   bool has_repeated_ = false;  // RepeatStrides was tried
 };
-
-// Runs a network on a uniform image of this size in a child process, as OpenCV trusts what network
-// files state about their layers. Returns how it crashed; none if it ended by itself. Must not be
-// called while other threads are running.
-std::optional<std::string> CrashOfNetwork(const NetworkFile& file, const cv::Size& input);
 
 // Fits an image into the fixed input of a network without changing its proportions: scaled to the
 // largest size that fits, centred, and padded with grey.

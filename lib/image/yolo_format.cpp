@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/process.h"
 #include "image/yolo_detector.h"
 
 namespace soslam {
@@ -123,8 +124,13 @@ struct Probe {
 
 // Tries the sizes in turn; throws InputError when OpenCV does not run the last one either.
 Probe RunProbe(const NetworkFile& file, std::vector<cv::Size> sizes) {
+  const auto output_for = [&](const cv::Size& size) {
+    const cv::Mat blank(size, CV_8UC3, cv::Scalar::all(0));
+    return YoloNetwork(file).Forward(blank, PixelValues::kRgbUnit);
+  };
+  // OpenCV trusts what network files state about their layers.
   std::erase_if(sizes, [&, last = sizes.back()](const cv::Size& size) {
-    const auto crash = CrashOfNetwork(file, size);
+    const auto crash = CrashInOwnProcess([&] { output_for(size); });
     if (!crash || size != last) return crash.has_value();
     throw InputError(fmt::format(
         "{}: OpenCV {} ends with {} when it loads or runs this network on an input of {} x {} "
@@ -134,8 +140,7 @@ Probe RunProbe(const NetworkFile& file, std::vector<cv::Size> sizes) {
   for (const cv::Size& size : sizes) {
     const bool is_last = size == sizes.back();
     try {
-      const cv::Mat blank(size, CV_8UC3, cv::Scalar::all(0));
-      const cv::Mat output = YoloNetwork(file).Forward(blank, PixelValues::kRgbUnit);
+      const cv::Mat output = output_for(size);
       if (is_last || output.size[1] == YoloCells(size)) return {size, output};
     } catch (const InputError&) {
       if (is_last) throw;

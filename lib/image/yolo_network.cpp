@@ -12,7 +12,6 @@
 
 #include "base/error.h"
 #include "base/paths.h"
-#include "base/process.h"
 #include "base/run_log.h"
 #include "image/onnx_header.h"
 #include "image/yolo_detector.h"
@@ -227,12 +226,6 @@ bool YoloNetwork::RepeatStrides() {
     return true;
   }
   return false;
-}
-
-std::optional<std::string> CrashOfNetwork(const NetworkFile& file, const cv::Size& input) {
-  return CrashInOwnProcess([&] {
-    YoloNetwork(file).Forward(cv::Mat(input, CV_8UC3, cv::Scalar::all(0)), PixelValues::kRgbUnit);
-  });
 }
 
 }  // namespace soslam

@@ -7,32 +7,17 @@
 #include <cctype>
 
 #include "base/error.h"
+#include "base/text.h"
 
 namespace soslam {
-namespace {
-
-// Parts between separators, trimmed of spaces.
-std::vector<std::string> SplitAt(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  for (size_t begin = 0; begin <= text.size();) {
-    const size_t end = std::min(text.find(separator, begin), text.size());
-    const std::string part = text.substr(begin, end - begin);
-    const size_t first = part.find_first_not_of(' ');
-    parts.push_back(
-        first == part.npos ? "" : part.substr(first, part.find_last_not_of(' ') - first + 1));
-    begin = end + 1;
-  }
-  return parts;
-}
-
-}  // namespace
 
 std::vector<std::vector<std::string>> ParseLabelGroups(const char* option,
                                                        const std::string& text) {
   std::vector<std::vector<std::string>> groups;
   if (text.empty()) return groups;
-  for (const std::string& group : SplitAt(text, ';')) {
-    groups.push_back(SplitAt(group, ','));
+  for (const std::string_view group : SplitFields(text, ';')) {
+    const auto labels = SplitFields(group);
+    groups.emplace_back(labels.begin(), labels.end());
     if (std::ranges::find(groups.back(), "") == groups.back().end()) continue;
     throw SettingsError(fmt::format(
         "{} '{}' has '' as a label; expected groups of labels, 'a, b; c, d'", option, text));

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "evaluation/statistics.h"
 #include "model/label_groups.h"
 
 namespace soslam {
@@ -98,53 +99,36 @@ class Learner {
   Learner(const Pooled& pooled, const LearnPriorsOptions& options)
       : pooled_(pooled), options_(options) {}
 
-  // Updates a row of the base table.
-  SemanticRow Improved(const SemanticRow& base, const RowData& data) const {
-    const bool update = options_.base_rows == BaseRows::kUpdate;
+  // Updates a row of the base table, or learns a new one that has no more than a label and a shape.
+  SemanticRow Improved(const SemanticRow& base, const RowData& data, bool is_new) const {
+    const bool update = is_new || options_.base_rows == BaseRows::kUpdate;
+    const auto known = [&](double median, double log_sigma) {
+      const double objects = std::max(1, base.samples);
+      return NormalBelief{std::log(median), objects, log_sigma, options_.spread_weight};
+    };
     SemanticRow row = base;
-    const double objects = std::max(1, base.samples);
     if (update) {
       for (int k = 0; k < 2; ++k) {
         Learn(data.logs[k],
-              {std::log(base.prior.ratio[k]), objects, base.prior.log_sigma[k],
-               options_.spread_weight},
+              is_new ? Unknown(k) : known(base.prior.ratio[k], base.prior.log_sigma[k]),
               &row.prior.ratio[k], &row.prior.log_sigma[k]);
       }
       row.samples += static_cast<int>(data.Count());
       LearnShape(data, &row.prior);
     }
-    if (!base.prior.height_m) {
+    const auto& height = base.prior.height_m;
+    if (!height) {
       LearnHeight(data, Unknown(kHeight), &row.prior);
     } else if (update) {
-      const LogNormal& height = *base.prior.height_m;
-      LearnHeight(data,
-                  {std::log(height.median), objects, height.log_sigma, options_.spread_weight},
-                  &row.prior);
+      LearnHeight(data, known(height->median, height->log_sigma), &row.prior);
     }
     LearnCorrelation(data, &row.prior);
-    const bool is_kept = !update && base.prior.height_m && base.prior.log_correlation != 0.0;
+    const bool is_kept = !update && height && base.prior.log_correlation != 0.0;
     if (data.Count() > 0 && !is_kept) {
-      row.source += fmt::format("; {}: {}", update ? "updated by" : "size, correlation",
-                                fmt::join(data.cited, ", "));
+      const char* how = update ? "; updated by: " : "; size, correlation: ";
+      row.source +=
+          (is_new ? "learned from " : how) + fmt::format("{}", fmt::join(data.cited, ", "));
     }
-    return row;
-  }
-
-  // Creates a row for a label that the base table lacks.
-  SemanticRow New(const std::string& label, const ShapeExponents& shape_exponents,
-                  const RowData& data) const {
-    SemanticRow row;
-    row.label = label;
-    row.prior.shape_exponents = shape_exponents;
-    for (size_t k = 0; k < 2; ++k) {
-      const auto axis = static_cast<Eigen::Index>(k);
-      Learn(data.logs[k], Unknown(k), &row.prior.ratio[axis], &row.prior.log_sigma[axis]);
-    }
-    LearnHeight(data, Unknown(kHeight), &row.prior);
-    LearnShape(data, &row.prior);
-    LearnCorrelation(data, &row.prior);
-    row.samples = static_cast<int>(data.Count());
-    row.source = fmt::format("learned from {}", fmt::join(data.cited, ", "));
     return row;
   }
 
@@ -182,9 +166,7 @@ class Learner {
 
   static void LearnShape(const RowData& data, ShapePrior* prior) {
     const auto mean = [&](double ShapeExponents::*exponent) {
-      double sum = 0.0;
-      for (const ShapeExponents& exponents : data.shape_exponents) sum += exponents.*exponent;
-      return Rounded(sum / static_cast<double>(data.shape_exponents.size()));
+      return Rounded(*MeanOf(ValuesOf(data.shape_exponents, exponent)));
     };
     if (data.shape_exponents.empty()) return;
     prior->shape_exponents = {mean(&ShapeExponents::horizontal), mean(&ShapeExponents::vertical)};
@@ -252,13 +234,14 @@ SemanticRows LearnPriors(const SemanticRows& base, const std::vector<PriorSource
   SemanticRows learned{base.description, base.default_row, {}};
   if (learned.default_row) learner.LearnCorrelation({}, &learned.default_row->prior);
   for (const SemanticRow& row : base.rows) {
-    learned.rows.push_back(learner.Improved(row, data[row.label]));
+    learned.rows.push_back(learner.Improved(row, data[row.label], false));
     data.erase(row.label);
   }
-  const ShapeExponents shape_exponents =
-      (base.default_row ? base.default_row->prior : ShapePrior()).shape_exponents;
+  SemanticRow new_row;
+  if (base.default_row) new_row.prior.shape_exponents = base.default_row->prior.shape_exponents;
   for (const auto& [label, of_label] : data) {
-    learned.rows.push_back(learner.New(label, shape_exponents, of_label));
+    new_row.label = label;
+    learned.rows.push_back(learner.Improved(new_row, of_label, true));
   }
   std::ranges::sort(learned.rows, {}, &SemanticRow::label);
   LookUpTable(learned);  // throws if names are not unique

@@ -15,21 +15,17 @@ constexpr double kSigmaByMad = 1.4826;
 constexpr double kFarthest = 2.5;
 
 std::vector<double> Standardised(const std::vector<double>& values, double sigma) {
-  const double median = MedianOf(values).value();
-  std::vector<double> standardised;
-  for (const double value : values) {
-    standardised.push_back(std::clamp((value - median) / sigma, -kFarthest, kFarthest));
-  }
-  return standardised;
+  return ValuesOf(values, [sigma, median = MedianOf(values).value()](double value) {
+    return std::clamp((value - median) / sigma, -kFarthest, kFarthest);
+  });
 }
 
 }  // namespace
 
 double RobustSigma(const std::vector<double>& values) {
   const double median = MedianOf(values).value();
-  std::vector<double> deviations;
-  for (const double value : values) deviations.push_back(std::abs(value - median));
-  return kSigmaByMad * MedianOf(deviations).value();
+  const auto deviation = [&](double value) { return std::abs(value - median); };
+  return kSigmaByMad * MedianOf(ValuesOf(values, deviation)).value();
 }
 
 NormalBelief Update(const NormalBelief& prior, const std::vector<double>& values,

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <optional>
 #include <set>
 
 #include "evaluation/map_reasons.h"
+#include "inspection/inspection.h"
 #include "report/page_html.h"
 #include "report/tables.h"
 
@@ -127,50 +127,36 @@ std::string AlignmentInWords(const std::vector<VariantResult>& maps) {
   return text;
 }
 
-std::vector<VariantResult> MapsAmong(const std::vector<VariantResult>& variants) {
-  std::vector<VariantResult> maps;
-  std::ranges::copy_if(variants, std::back_inserter(maps), [](const VariantResult& variant) {
-    return variant.metrics.contains("map_quality");
-  });
-  return maps;
-}
-
 std::vector<Cell> QualityRow(const std::string& name, const json& quality) {
   const json& first = quality.at("scores").front();
-  const auto count = [&](const char* key) { return first.at(key).get<int>(); };
-  std::vector<Cell> row = {name, fmt::format("{} ({})", count("true_objects"), count("detectable")),
-                           fmt::format("{} ({})", count("landmarks"), count("ignored")),
-                           NumberText(first.at("recall_of_detectable"), 2)};
+  std::vector<Cell> row = {name, FillIn("{true_objects} ({detectable})", first),
+                           FillIn("{landmarks} ({ignored})", first),
+                           FillIn("{recall_of_detectable:.2f}", first)};
   for (const json& score : quality.at("scores")) {
-    row.emplace_back(std::to_string(score.at("found").get<int>()));
-    for (const char* share : {"precision", "recall", "f1"}) {
-      row.emplace_back(NumberText(score.at(share), 2));
+    for (const char* text :
+         {"{found}", "{precision:.2f}", "{recall:.2f}", "{f1:.2f}", "{of_found/iou_mean:.3f}"}) {
+      row.emplace_back(FillIn(text, score));
     }
-    row.emplace_back(NumberText(score.at("of_found").at("iou_mean"), 3));
   }
   return row;
 }
 
 std::vector<Cell> ErrorsRow(const std::string& name, const json& quality) {
-  const json& score = quality.at("scores").front();
-  const json& found = score.at("of_found");
-  const json& in_frames = quality.at("in_frames");
-  const auto count = [&](const char* key) { return found.at(key).get<int>(); };
-  const json& log_size = found.at("log_size_abs_mean");
-  return {name,
-          NumberText(found.at("centre_m_mean"), 3),
-          NumberText(found.at("centre_relative_mean"), 2),
-          fmt::format("{}, {}, {}", NumberText(log_size.at(0), 2), NumberText(log_size.at(1), 2),
-                      NumberText(log_size.at(2), 2)),
-          NumberText(found.at("log_scale_abs_mean"), 3),
-          NumberText(found.at("yaw_error_deg_mean"), 1),
-          NumberText(found.at("up_error_deg_mean"), 1),
-          NumberText(found.at("plane_offset_m_abs_mean"), 3),
-          NumberText(found.at("plane_tilt_deg_mean"), 1),
-          fmt::format("{} of {}", count("labels_agree"), score.at("found").get<int>()),
-          fmt::format("{} of {}", count("ids_agree"), count("ids_known")),
-          NumberText(in_frames.at("iou_mean"), 3),
-          NumberText(in_frames.at("iou_mean_in_world"), 3)};
+  std::vector<Cell> row = {name};
+  for (const char* text :
+       {"{scores/0/of_found/centre_m_mean:.3f}", "{scores/0/of_found/centre_relative_mean:.2f}",
+        "{scores/0/of_found/log_size_abs_mean/0:.2f}, {scores/0/of_found/log_size_abs_mean/1:.2f}, "
+        "{scores/0/of_found/log_size_abs_mean/2:.2f}",
+        "{scores/0/of_found/log_scale_abs_mean:.3f}", "{scores/0/of_found/yaw_error_deg_mean:.1f}",
+        "{scores/0/of_found/up_error_deg_mean:.1f}",
+        "{scores/0/of_found/plane_offset_m_abs_mean:.3f}",
+        "{scores/0/of_found/plane_tilt_deg_mean:.1f}",
+        "{scores/0/of_found/labels_agree} of {scores/0/found}",
+        "{scores/0/of_found/ids_agree} of {scores/0/of_found/ids_known}",
+        "{in_frames/iou_mean:.3f}", "{in_frames/iou_mean_in_world:.3f}"}) {
+    row.emplace_back(FillIn(text, quality));
+  }
+  return row;
 }
 
 // Whose the pose estimates are.
@@ -198,7 +184,8 @@ void AddMistakes(const char* kind, const json& rows, const char* id, Table* tabl
 }  // namespace
 
 std::vector<Table> QualityTables(const DatasetResult& dataset) {
-  const std::vector<VariantResult> maps = MapsAmong(dataset.variants);
+  std::vector<VariantResult> maps = dataset.variants;
+  std::erase_if(maps, [](const auto& map) { return !map.metrics.contains("map_quality"); });
   if (maps.empty()) return {};
   Table quality;
   quality.name = "map_quality_" + dataset.name;

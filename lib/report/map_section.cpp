@@ -8,6 +8,7 @@
 
 #include "artefact/files.h"
 #include "artefact/json_file.h"
+#include "base/parallel.h"
 #include "base/paths.h"
 #include "base/text.h"
 #include "inspection/doubts.h"
@@ -113,10 +114,10 @@ std::string EntriesHtml(const std::vector<Entry>& entries, const Sequence& seque
 }
 
 void AddPictures(const ImageSource& images, int threads, std::vector<Entry>* entries) {
-  std::vector<Crop> crops;
-  for (const Entry& entry : *entries) crops.push_back(entry.picture.crop);
-  std::vector<std::string> jpegs = EncodeCrops(crops, images, threads);
-  for (size_t i = 0; i < jpegs.size(); ++i) (*entries)[i].picture.jpeg = std::move(jpegs[i]);
+  ParallelFor(static_cast<int>(entries->size()), threads, [&](int i) {
+    Picture& picture = (*entries)[i].picture;
+    picture.jpeg = EncodeCrop(picture.crop, images);
+  });
 }
 
 std::string AndMore(size_t more) {

@@ -98,21 +98,16 @@ EncodedImages EncodeImages(const std::vector<int>& frames, const ImageSource& so
   return encoded;
 }
 
-std::vector<std::string> EncodeCrops(const std::vector<Crop>& crops, const ImageSource& source,
-                                     int threads) {
-  std::vector<std::string> encoded(crops.size());
-  ParallelFor(static_cast<int>(crops.size()), threads, [&](int i) {
-    const auto& [frame_index, part] = crops[i];
-    if (part.empty() || !source.has(frame_index)) return;
-    try {
-      const cv::Mat image = source.read(frame_index);
-      const cv::Mat crop = image(part & cv::Rect(0, 0, image.cols, image.rows));
-      if (crop.empty()) return;
-      encoded[i] = EncodeJpeg(Scaled(crop, std::max(crop.cols, crop.rows), kMaxCropPx));
-    } catch (const InputError&) {  // EncodeImages says which images cannot be read
-    }
-  });
-  return encoded;
+std::string EncodeCrop(const Crop& crop, const ImageSource& source) {
+  if (crop.part.empty() || !source.has(crop.frame_index)) return "";
+  try {
+    const cv::Mat image = source.read(crop.frame_index);
+    const cv::Mat part = image(crop.part & cv::Rect(0, 0, image.cols, image.rows));
+    if (part.empty()) return "";
+    return EncodeJpeg(Scaled(part, std::max(part.cols, part.rows), kMaxCropPx));
+  } catch (const InputError&) {  // EncodeImages says which images cannot be read
+    return "";
+  }
 }
 
 }  // namespace soslam

@@ -51,11 +51,10 @@ struct Crop {
   cv::Rect part = {};
 };
 
-// JPEG files in base 64 of parts of images, in their order, at most kMaxCropPx wide and high; empty
-// where the part is empty, or the frame has no image that can be read.
+// The JPEG file in base 64 of a part of an image, at most kMaxCropPx wide and high; empty where the
+// part is empty, or the frame has no image that can be read.
 inline constexpr int kMaxCropPx = 160;
-std::vector<std::string> EncodeCrops(const std::vector<Crop>& crops, const ImageSource& source,
-                                     int threads);
+std::string EncodeCrop(const Crop& crop, const ImageSource& source);
 
 // What a map says of an object, in words.
 

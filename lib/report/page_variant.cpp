@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -21,24 +20,14 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-json SigmasOf(const std::vector<double>& variances) {
-  std::vector<double> sigmas;
-  for (const double variance : variances) sigmas.push_back(std::sqrt(variance));
-  return PageNumbers(sigmas);
-}
-
 // Adds the covariance, in the order of Covariance9.
 void AddCovariance(const Covariance9& covariance, const Landmark& landmark, json* object) {
   const Eigen::Vector3d up = landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ();
   const Eigen::Matrix3d of_centre = covariance.block<3, 3>(3, 3);
-  json rows = json::array();
-  for (int i = 0; i < 3; ++i) {
-    rows.push_back(PageNumbers({of_centre(i, 0), of_centre(i, 1), of_centre(i, 2)}));
-  }
-  (*object)["centre_covariance"] = rows;
-  (*object)["sigma_centre"] = SigmasOf({of_centre(0, 0), of_centre(1, 1), of_centre(2, 2)});
-  (*object)["sigma_log_half_axes"] =
-      SigmasOf({covariance(6, 6), covariance(7, 7), covariance(8, 8)});
+  const auto numbers = [](const Eigen::Vector3d& v) { return PageNumbers({v[0], v[1], v[2]}); };
+  for (int i = 0; i < 3; ++i) (*object)["centre_covariance"].push_back(numbers(of_centre.row(i)));
+  (*object)["sigma_centre"] = numbers(of_centre.diagonal().cwiseSqrt());
+  (*object)["sigma_log_half_axes"] = numbers(covariance.diagonal().tail<3>().cwiseSqrt());
   (*object)["sigma_yaw_deg"] =
       PageNumber(kDegPerRad * std::sqrt(up.dot(covariance.topLeftCorner<3, 3>() * up)));
 }
@@ -175,17 +164,6 @@ void AddFrames(const LandmarkEstimates& estimates, const Sequence& sequence,
   (*variant)["outlines"] = outlines;
 }
 
-// Positions in PageSelection::detections, by frame and object.
-std::map<std::pair<int, int>, size_t> PlacesOfDetections(const Sequence& sequence,
-                                                         const PageSelection& selection) {
-  std::map<std::pair<int, int>, size_t> places;
-  for (size_t i = 0; i < selection.detections.size(); ++i) {
-    const Detection& detection = sequence.detections[selection.detections[i]];
-    places[{detection.frame_index, detection.object_index}] = i;
-  }
-  return places;
-}
-
 const MapPoint& PointAt(int index, const std::vector<MapPoint>& points) {
   if (static_cast<size_t>(index) < points.size()) return points[static_cast<size_t>(index)];
   throw InputError(fmt::format(
@@ -200,17 +178,22 @@ const MapPoint& PointAt(int index, const std::vector<MapPoint>& points) {
 // among them.
 json PagePoints(const MapEstimate& map, const std::vector<MapPoint>& points,
                 const Sequence& sequence, const PageSelection& selection) {
-  const auto places = PlacesOfDetections(sequence, selection);
+  const auto frame_and_object = [&](int detection_index) {  // ascending
+    const Detection& detection = sequence.detections[detection_index];
+    return std::pair(detection.frame_index, detection.object_index);
+  };
   std::vector<json> page(selection.detections.size());
   for (const ObjectEstimate& estimate : map.objects) {
     for (const PointPosterior& posterior : estimate.points) {
       for (const PointObservation& observation : PointAt(posterior.index, points).observations) {
         const auto frame = FrameIndexOf(sequence, observation);
         if (!frame) continue;
-        const auto place = places.find({static_cast<int>(*frame), estimate.object_index});
+        const auto found = std::ranges::equal_range(
+            selection.detections, std::pair(static_cast<int>(*frame), estimate.object_index), {},
+            frame_and_object);
         const auto pixel = UndistortedPixel(sequence, observation);
-        if (place == places.end() || !pixel) continue;
-        json& of_detection = page[place->second];
+        if (found.empty() || !pixel) continue;
+        json& of_detection = page[found.begin() - selection.detections.begin()];
         for (const json& coordinate : PagePixels({*pixel})) of_detection.push_back(coordinate);
         of_detection.push_back(std::lround(100.0 * posterior.responsibility));
       }

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "base/error.h"
-#include "dataset/text_file.h"
+#include "base/text.h"
 #include "evaluation/statistics.h"
 #include "report/page_parts.h"
 #include "report/tables.h"

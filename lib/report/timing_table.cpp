@@ -19,18 +19,6 @@ using nlohmann::json;
 constexpr std::array kLandmarkStages = {"edges", "track", "initialise", "refine"};
 constexpr const char* kMapStage = "optimise";
 
-// The runs that are counted in the time per landmark.
-std::vector<StageRun> LandmarkRuns(const VariantResult& variant, bool is_map) {
-  std::vector<StageRun> runs;
-  for (const StageRun& run : variant.stages) {
-    const bool counts =
-        is_map ? run.stage == kMapStage
-               : std::ranges::find(kLandmarkStages, run.stage) != kLandmarkStages.end();
-    if (counts) runs.push_back(run);
-  }
-  return runs;
-}
-
 std::string MachineText(const StageTiming& timing) {
   if (!timing.machine) return "not recorded";
   return fmt::format("{}, {} cores, {} threads", timing.machine->cpu, timing.machine->cores,
@@ -122,7 +110,11 @@ std::optional<LandmarkTime> TimePerLandmark(const VariantResult& variant,
   if (variant.metrics.is_null()) return std::nullopt;
   const bool is_map =
       std::ranges::find(variant.stages, kMapStage, &StageRun::stage) != variant.stages.end();
-  const std::vector<StageRun> runs = LandmarkRuns(variant, is_map);
+  std::vector<StageRun> runs = variant.stages;
+  std::erase_if(runs, [&](const StageRun& run) {
+    return is_map ? run.stage != kMapStage
+                  : std::ranges::find(kLandmarkStages, run.stage) == kLandmarkStages.end();
+  });
   double wall_s = 0.0, cpu_s = 0.0;
   for (const StageRun& run : runs) {
     if (!run.timing) return std::nullopt;

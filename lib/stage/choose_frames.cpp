@@ -71,7 +71,7 @@ void SetSize(int max_image_px, ChosenFrames* chosen) {
 
 void MeasurePhoto(const Photo& photo, SourceFrame* frame, FrameView* view) {
   try {
-    *view = ViewOf(ReadGreyImage(photo.path));
+    *view = ViewOf(ReadImage(photo.path, cv::IMREAD_GRAYSCALE));
     frame->sharpness = view->sharpness;
   } catch (const InputError& error) {
     const std::string message = error.what(), place = photo.path.string() + ": ";

@@ -75,9 +75,7 @@ LandmarkEstimates Initialise(const Sequence& sequence, const SemanticTable& tabl
                              int threads) {
   if (options.method == InitialisationMethod::kSvd) return InitialiseSvd(sequence);
   if (options.method == InitialisationMethod::kCuboidProposals) {
-    const EdgesOfSequence edges(sequence, files);
-    const auto edges_of = [&](const Frame& frame) { return edges.Read(frame); };
-    return InitialiseCuboids(sequence, edges_of, options.cuboids, threads);
+    return InitialiseCuboids(sequence, EdgesOfSequence(sequence, files), options.cuboids, threads);
   }
   if (options.ratio_prior == RatioPrior::kTable) {
     WarnOfMissingLabels(sequence, table, files.at("table"));
@@ -140,9 +138,9 @@ namespace {
 class FrameInUse {
  public:
   void Expect() { ++to_come_; }
-  std::shared_ptr<const FrameEdges> Take(const EdgesOfSequence& edges, const Frame& frame) {
+  std::shared_ptr<const FrameEdges> Take(const EdgeSource& edges_of, const Frame& frame) {
     const std::lock_guard lock(mutex_);
-    if (!edges_) edges_ = std::make_shared<const FrameEdges>(edges.Read(frame));
+    if (!edges_) edges_ = std::make_shared<const FrameEdges>(edges_of(frame));
     return --to_come_ > 0 ? edges_ : std::move(edges_);
   }
 
@@ -158,7 +156,7 @@ std::vector<RefinedObservation> RefineAll(const Sequence& sequence,
                                           const std::vector<std::optional<ShapePrior>>& priors,
                                           const std::optional<PointsInFrames>& points,
                                           const OrientationOptions& options,
-                                          const EdgesOfSequence& all_edges, int threads) {
+                                          const EdgeSource& edges_of, int threads) {
   const auto detection_of = [&](size_t i) -> const Detection& {
     return sequence.detections[initial[i]->detection_index];
   };
@@ -168,8 +166,7 @@ std::vector<RefinedObservation> RefineAll(const Sequence& sequence,
   ParallelFor("landmarks", static_cast<int>(initial.size()), threads, [&](int index) {
     const auto i = static_cast<size_t>(index);
     const Detection& detection = detection_of(i);
-    const auto edges =
-        frames.at(detection.frame_index).Take(all_edges, sequence.FrameOf(detection));
+    const auto edges = frames.at(detection.frame_index).Take(edges_of, sequence.FrameOf(detection));
     const auto& prior = priors[detection.object_index];
     if (options.method == RefinementMethod::kProfile) {
       const int detection_index = initial[i]->detection_index;

@@ -82,12 +82,12 @@ void ReadImages(const OptimiseOptions& options, const StageFiles& files, int thr
   for (const auto* indices : {&for_symmetry, &for_edges}) {
     for (const int index : *indices) frame_indices.insert(frame_of(index));
   }
-  const EdgesOfSequence edges(sequence, files);
+  const auto edges_of = EdgesOfSequence(sequence, files);
   const std::vector<size_t> to_read(frame_indices.begin(), frame_indices.end());
   std::vector<std::shared_ptr<const FrameEdges>> frames(sequence.frames.size());
   ParallelFor("edge maps", static_cast<int>(to_read.size()), threads, [&](int i) {
     const size_t frame = to_read[i];
-    frames[frame] = std::make_shared<const FrameEdges>(edges.Read(sequence.frames[frame]));
+    frames[frame] = std::make_shared<const FrameEdges>(edges_of(sequence.frames[frame]));
   });
   for (const int index : for_symmetry) {
     const Detection& detection = sequence.detections[index];

@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <set>
 
 #include "artefact/files.h"
+#include "artefact/hdf5_artefact.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/paths.h"
@@ -16,20 +18,18 @@
 
 namespace soslam {
 
-EdgesOfSequence::EdgesOfSequence(const Sequence& sequence, const StageFiles& files)
-    : sequence_(sequence), files_(files), reader_(files.at("edges")) {}
-
-EdgeMaps EdgesOfSequence::Read(const Frame& frame) const {
-  EdgeMaps maps = reader_.Read(frame.id);
-  const Camera& camera = sequence_.CameraOf(frame);
-  if (maps.grey.cols != camera.width || maps.grey.rows != camera.height) {
+EdgeSource EdgesOfSequence(const Sequence& sequence, const StageFiles& files) {
+  const auto reader = std::make_shared<const EdgesReader>(files.at("edges"));
+  return [&sequence, &files, reader](const Frame& frame) {
+    EdgeMaps maps = reader->Read(frame.id);
+    const Camera& camera = sequence.CameraOf(frame);
+    if (maps.grey.cols == camera.width && maps.grey.rows == camera.height) return maps;
     throw InputError(fmt::format(
         "{}: frame {} has {} x {} pixels; expected {} x {}, as its camera in {}: were the edges "
         "made from another sequence?",
-        files_.at("edges").string(), frame.id, maps.grey.cols, maps.grey.rows, camera.width,
-        camera.height, files_.at("sequence").string()));
-  }
-  return maps;
+        files.at("edges").string(), frame.id, maps.grey.cols, maps.grey.rows, camera.width,
+        camera.height, files.at("sequence").string()));
+  };
 }
 
 void CheckHasPoints(const PointOptions& options, const StageFiles& files) {
@@ -80,18 +80,11 @@ FrameImageReader::FrameImageReader(const Sequence& sequence) : sequence_(sequenc
   if (sequence.image_distortion) undistorter_.emplace(sequence.camera, *sequence.image_distortion);
 }
 
-cv::Mat FrameImageReader::ReadGrey(const FrameImage& image) const {
+cv::Mat FrameImageReader::Read(const FrameImage& image, int mode) const {
   const Camera& camera = sequence_.CameraOf(*image.frame);
-  const cv::Mat grey =
-      ReadGreyImage(image.path, sequence_.image_orientation, cv::Size(camera.width, camera.height));
-  return undistorter_ ? undistorter_->Undistort(grey) : grey;
-}
-
-cv::Mat FrameImageReader::ReadColour(const FrameImage& image) const {
-  const Camera& camera = sequence_.CameraOf(*image.frame);
-  const cv::Mat colour = ReadColourImage(image.path, sequence_.image_orientation,
-                                         cv::Size(camera.width, camera.height));
-  return undistorter_ ? undistorter_->Undistort(colour) : colour;
+  const cv::Mat pixels = ReadImage(image.path, mode, sequence_.image_orientation,
+                                   cv::Size(camera.width, camera.height));
+  return undistorter_ ? undistorter_->Undistort(pixels) : pixels;
 }
 
 namespace {
@@ -99,7 +92,8 @@ namespace {
 // Straight edges of at least `min_length_px` in an image of a sequence, with its frame's pose.
 SegmentView ReadSegmentView(const Sequence& sequence, const FrameImageReader& reader,
                             const FrameImage& image, double min_length_px) {
-  return {sequence.CameraOf(*image.frame), FindLineSegments(reader.ReadGrey(image), min_length_px),
+  return {sequence.CameraOf(*image.frame),
+          FindLineSegments(reader.Read(image, cv::IMREAD_GRAYSCALE), min_length_px),
           image.frame->world_from_camera};
 }
 

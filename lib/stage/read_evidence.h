@@ -2,11 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <opencv2/core/mat.hpp>
 #include <optional>
 #include <vector>
 
-#include "artefact/hdf5_artefact.h"
 #include "cli/command_line.h"
 #include "constraints/point_term.h"
 #include "image/edge_maps.h"
@@ -17,19 +17,11 @@
 
 namespace soslam {
 
-// The edge maps of a sequence in file "edges". Both arguments must outlive it.
-class EdgesOfSequence {
- public:
-  EdgesOfSequence(const Sequence& sequence, const StageFiles& files);
-  // Thread-safe. Throws InputError when the frame is missing, or its maps are not of its camera's
-  // size, as those of other images.
-  EdgeMaps Read(const Frame& frame) const;
-
- private:
-  const Sequence& sequence_;
-  const StageFiles& files_;
-  EdgesReader reader_;
-};
+// Edge maps of a sequence's frames in file "edges"; both arguments must outlive it. Thread-safe.
+// It throws InputError when the frame is missing, or its maps are not of its camera's size, as
+// those of other images.
+using EdgeSource = std::function<EdgeMaps(const Frame&)>;
+EdgeSource EdgesOfSequence(const Sequence& sequence, const StageFiles& files);
 
 // Throws SettingsError if points are to be used and no file "points" is given.
 void CheckHasPoints(const PointOptions& options, const StageFiles& files);
@@ -55,11 +47,9 @@ std::vector<FrameImage> FrameImages(const Sequence& sequence, const std::filesys
 class FrameImageReader {
  public:
   explicit FrameImageReader(const Sequence& sequence);
-  // Grey image, CV_8UC1, of the camera's size. Thread-safe. Throws InputError, also when the file
-  // has another size.
-  cv::Mat ReadGrey(const FrameImage& image) const;
-  // Colour image, CV_8UC3; otherwise like ReadGrey.
-  cv::Mat ReadColour(const FrameImage& image) const;
+  // The image in a mode of ReadImage, of the camera's size. Thread-safe. Throws InputError, also
+  // when the file has another size.
+  cv::Mat Read(const FrameImage& image, int mode) const;
 
  private:
   const Sequence& sequence_;

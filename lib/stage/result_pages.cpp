@@ -119,7 +119,7 @@ ImageSource ImagesIn(const fs::path& dataset, const Sequence& sequence) {
           [=](int frame_index) {
             const Frame& frame = frame_at(frame_index);
             const std::string place = fmt::format("frame {}", frame.id);
-            return reader->ReadColour({&frame, ImagePath(dataset, frame.image, place)});
+            return reader->Read({&frame, ImagePath(dataset, frame.image, place)}, cv::IMREAD_COLOR);
           }};
 }
 

@@ -13,10 +13,10 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "base/text.h"
 #include "dataset/class_names.h"
 #include "dataset/image_path.h"
 #include "dataset/labelled_box.h"
-#include "dataset/text_file.h"
 #include "dataset/trajectories.h"
 #include "image/detector_options.h"
 #include "image/read_image.h"
@@ -109,7 +109,7 @@ AllDetections DetectAll(const std::vector<fs::path>& images, const NetworkFile& 
     for (int i = worker; i < count; i += workers) {
       const auto frame = static_cast<size_t>(i);
       all.of_image[frame] =
-          detector.Detect(ReadColourImage(images[frame], options.image_orientation));
+          detector.Detect(ReadImage(images[frame], cv::IMREAD_COLOR, options.image_orientation));
       progress.Step();
     }
     tallies[worker] = detector.tally();
@@ -180,7 +180,7 @@ void RunDetect(const DetectorOptions& options, const StageFiles& files, int thre
   const std::vector<fs::path> images = ImagePaths(dataset);
   const YoloFormat format =
       FindFormat(network, static_cast<int>(labels.names.size()), options,
-                 ReadColourImage(images.front(), options.image_orientation).size());
+                 ReadImage(images.front(), cv::IMREAD_COLOR, options.image_orientation).size());
   const AllDetections all = DetectAll(images, network, format, labels, options, threads);
   CheckBoxesArePossible(all.tally, format, network.name);
   const auto boxes = KeptBoxes(all.of_image, labels);

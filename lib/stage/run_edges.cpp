@@ -51,7 +51,7 @@ void RunEdges(const EdgesOptions& options, const StageFiles& files, int threads)
   for (int begin = 0; begin < frames; begin += batch) {
     std::vector<EdgeMaps> maps(static_cast<size_t>(std::min(batch, frames - begin)));
     ParallelFor(static_cast<int>(maps.size()), threads, [&](int i) {
-      const cv::Mat grey = reader.ReadGrey(images[begin + i]);
+      const cv::Mat grey = reader.Read(images[begin + i], cv::IMREAD_GRAYSCALE);
       maps[i] = ComputeEdgeMaps(grey, options);
       progress.Step();
     });

@@ -149,8 +149,8 @@ void CheckEnough(const FramesRecord& record, const fs::path& images) {
 void WritePhoto(const Photo& photo, int max_image_px, const std::string& name,
                 const DatasetFolder& output) {
   if (!IsCopied(photo, max_image_px)) {
-    return WriteJpeg(ReadColourImage(photo.path), max_image_px, photo.header.focal_over_diagonal,
-                     name, output);
+    return WriteJpeg(ReadImage(photo.path, cv::IMREAD_COLOR), max_image_px,
+                     photo.header.focal_over_diagonal, name, output);
   }
   output.Write(name, ReadWholeFile(photo.path, "photo"));
 }

@@ -46,7 +46,7 @@ cv::Mat GreyImage(const InspectRequest& request, const Sequence& sequence, int f
   }
   const std::string place = fmt::format("{}: frame {}", sequence.name, frame.id);
   const fs::path path = ImagePath(*request.dataset, frame.image, place);
-  return FrameImageReader(sequence).ReadGrey({&frame, path});
+  return FrameImageReader(sequence).Read({&frame, path}, cv::IMREAD_GRAYSCALE);
 }
 
 // Sequence and frame of a picture.

@@ -10,8 +10,8 @@
 #include "artefact/atomic_file.h"
 #include "base/error.h"
 #include "base/paths.h"
+#include "base/text.h"
 #include "dataset/photo_folder.h"
-#include "dataset/text_file.h"
 #include "stage/stages.h"
 #include "workflow/pipeline_settings.h"
 #include "workflow/plan.h"
@@ -130,7 +130,7 @@ std::vector<std::string> PossibleVariants(const fs::path& pipelines, const std::
   std::vector<std::string> variants = VariantNames(pipelines);
   if (std::ranges::any_of(FindFiles(dataset).others, HasNameOfImage)) return variants;
   std::erase_if(variants, [&](const std::string& variant) {
-    return ReadVariant(pipelines, name, variant).stages.contains("edges");
+    return ReadVariant(pipelines, name, variant).options.contains("edges");
   });
   return variants;
 }

@@ -39,6 +39,7 @@ class Status {
          const StagesUnderWay& under_way)
       : name_(std::move(name)), folders_(ReadPlanFolders(files.at("results") / name_ / "plan.mk")) {
     folders_.results = files.at("results") / name_;
+    folders_.executables = files.at("executables");
     // Plans again, so that changed settings and files count; without the dataset the last plan is
     // used.
     const std::vector<std::string> planned = PlannedVariants(folders_.pipelines, folders_.results);
@@ -50,7 +51,7 @@ class Status {
               1);
     }
     plan_ = MakePlan(folders_.pipelines, name_, Variants(options));
-    states_ = StatesOf(plan_, folders_, files.at("executables"), under_way);
+    states_ = StatesOf(plan_, folders_, under_way);
   }
 
   void PrintTable() const {

@@ -47,8 +47,9 @@ std::vector<FeatureTrack> TracksOf(const Sequence& sequence, const std::vector<F
   const size_t batch = 4 * static_cast<size_t>(threads);  // limits the images in memory
   for (size_t begin = 0; begin < images.size(); begin += batch) {
     std::vector<cv::Mat> grey(std::min(batch, images.size() - begin));
-    ParallelFor(static_cast<int>(grey.size()), threads,
-                [&](int i) { grey[i] = reader.ReadGrey(images[begin + static_cast<size_t>(i)]); });
+    ParallelFor(static_cast<int>(grey.size()), threads, [&](int i) {
+      grey[i] = reader.Read(images[begin + static_cast<size_t>(i)], cv::IMREAD_GRAYSCALE);
+    });
     for (size_t i = 0; i < grey.size(); ++i) {
       const size_t index = begin + i;
       const Frame& frame = *images[index].frame;

@@ -10,12 +10,6 @@
 namespace soslam {
 namespace {
 
-Landmark SuperquadricOf(const Body& body) {
-  Landmark landmark = body.landmark;
-  landmark.shape_exponents = ExponentsOf(body.shape);
-  return landmark;
-}
-
 Box Union(const Box& first, const Box& second) {
   return {std::min(first.x_min, second.x_min), std::min(first.y_min, second.y_min),
           std::max(first.x_max, second.x_max), std::max(first.y_max, second.y_max)};
@@ -44,6 +38,7 @@ std::optional<Box> CylinderOutline(const Camera& camera, const Landmark& landmar
     rim.frame_from_object.translation =
         landmark_in_camera.frame_from_object * Eigen::Vector3d(0.0, 0.0, height);
     rim.half_axes.z() = 0.0;
+    rim.shape_exponents = kEllipsoidExponent;
     rims[end] = OutlineBox(camera, rim);
   }
   if (!rims[0] || !rims[1]) return std::nullopt;
@@ -57,40 +52,24 @@ ShapeExponents ExponentsOf(Shape shape) {
   return shape == Shape::kBox ? kCuboidExponent : kEllipsoidExponent;
 }
 
-Body Transform(const Rigid3d& target_from_source, const Body& body_in_source) {
-  return {body_in_source.shape, Transform(target_from_source, body_in_source.landmark)};
+double Gauge(const ShapeExponents& exponents, const Eigen::Vector3d& point) {
+  return SuperquadricNorm(point, DualExponents(exponents)).value;
 }
 
-std::optional<double> NearestIntersection(const Body& body, const Eigen::Vector3d& origin,
-                                          const Eigen::Vector3d& direction) {
-  return NearestIntersection(SuperquadricOf(body), origin, direction);
+bool Contains(const Landmark& body, const Eigen::Vector3d& point) {
+  const Eigen::Vector3d point_in_object = body.frame_from_object.Inverse() * point;
+  return Gauge(body.shape_exponents, point_in_object.cwiseQuotient(body.half_axes)) <= 1.0;
 }
 
-double Gauge(Shape shape, const Eigen::Vector3d& point) {
-  return SuperquadricNorm(point, DualExponents(ExponentsOf(shape))).value;
+Eigen::Vector3d OutwardNormal(const Landmark& body, const Eigen::Vector3d& point_in_object) {
+  return BodySurface(body.half_axes, body.shape_exponents).Gradient(point_in_object).normalized();
 }
 
-bool Contains(const Body& body, const Eigen::Vector3d& point) {
-  const Eigen::Vector3d point_in_object = body.landmark.frame_from_object.Inverse() * point;
-  return Gauge(body.shape, point_in_object.cwiseQuotient(body.landmark.half_axes)) <= 1.0;
-}
-
-Eigen::Vector3d OutwardNormal(const Body& body, const Eigen::Vector3d& point_in_object) {
-  return BodySurface(body.landmark.half_axes, ExponentsOf(body.shape))
-      .Gradient(point_in_object)
-      .normalized();
-}
-
-std::optional<Box> OutlineBox(const Camera& camera, const Body& body_in_camera) {
-  switch (body_in_camera.shape) {
-    case Shape::kBox:
-      return CuboidOutline(camera, body_in_camera.landmark);
-    case Shape::kEllipsoid:
-      return OutlineBox(camera, body_in_camera.landmark);
-    case Shape::kCylinder:
-      return CylinderOutline(camera, body_in_camera.landmark);
-  }
-  return std::nullopt;
+std::optional<Box> ExactOutline(const Camera& camera, const Landmark& body_in_camera) {
+  const ShapeExponents& exponents = body_in_camera.shape_exponents;
+  if (exponents.HasAxis()) return CylinderOutline(camera, body_in_camera);
+  return exponents == kCuboidExponent ? CuboidOutline(camera, body_in_camera)
+                                      : OutlineBox(camera, body_in_camera);
 }
 
 }  // namespace soslam

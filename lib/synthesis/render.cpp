@@ -29,7 +29,7 @@ const std::array<Eigen::Vector3d, 7> kPatchColours = {
 // The point where the ray from the object's centre in that direction leaves it, in the object
 // frame.
 Eigen::Vector3d SurfacePoint(const SceneObject& object, const Eigen::Vector3d& direction) {
-  return (direction / Gauge(object.shape, direction)).cwiseProduct(object.half_axes);
+  return (direction / Gauge(ExponentsOf(object.shape), direction)).cwiseProduct(object.half_axes);
 }
 
 // The approximate radius of a disc with the mean area of a patch.
@@ -232,7 +232,7 @@ class Surroundings {
 constexpr int kSamplesPerSide = 3;
 
 struct Solid {
-  Body body_in_camera;
+  Landmark body_in_camera;
   Rigid3d object_from_camera;
   std::optional<SurfaceTexture> texture;  // none for a table
   std::optional<Box> outline;             // none if it may be anywhere in the image
@@ -254,7 +254,7 @@ class FrameRenderer {
     for (const SceneObject& object : scene.objects) {
       AddSolid(ObjectBody(scene, object), SurfaceTexture(object));
     }
-    for (const Body& body : Furniture(scene)) AddSolid(body, std::nullopt);
+    for (const Landmark& body : Furniture(scene)) AddSolid(body, std::nullopt);
   }
 
   void RenderRow(int v, cv::Vec3b* row) const {
@@ -276,10 +276,10 @@ class FrameRenderer {
   }
 
  private:
-  void AddSolid(const Body& body_in_world, std::optional<SurfaceTexture> texture) {
-    const Body body_in_camera = Transform(world_from_camera_.Inverse(), body_in_world);
-    solids_.push_back({body_in_camera, body_in_camera.landmark.frame_from_object.Inverse(),
-                       std::move(texture), OutlineBox(camera_, body_in_camera)});
+  void AddSolid(const Landmark& body_in_world, std::optional<SurfaceTexture> texture) {
+    const Landmark body_in_camera = Transform(world_from_camera_.Inverse(), body_in_world);
+    solids_.push_back({body_in_camera, body_in_camera.frame_from_object.Inverse(),
+                       std::move(texture), ExactOutline(camera_, body_in_camera)});
   }
 
   Colour PixelColour(int u, int v, const Solids& solids) const {
@@ -311,9 +311,8 @@ class FrameRenderer {
 
   Colour SolidColour(const Solid& solid, const Eigen::Vector3d& point_in_camera) const {
     const Eigen::Vector3d point_in_object = solid.object_from_camera * point_in_camera;
-    const Eigen::Vector3d normal_in_camera =
-        solid.body_in_camera.landmark.frame_from_object.rotation *
-        OutwardNormal(solid.body_in_camera, point_in_object);
+    const Eigen::Vector3d normal_in_camera = solid.body_in_camera.frame_from_object.rotation *
+                                             OutwardNormal(solid.body_in_camera, point_in_object);
     const Eigen::Vector3d normal_in_world = world_from_camera_.rotation * normal_in_camera;
     if (!solid.texture) {
       return surroundings_.TableColour(world_from_camera_ * point_in_camera, normal_in_world);

@@ -102,12 +102,14 @@ Landmark ObjectLandmark(const Scene& scene, const SceneObject& object) {
   return landmark;
 }
 
-Body ObjectBody(const Scene& scene, const SceneObject& object) {
-  return {object.shape, InOwnAxes(ObjectLandmark(scene, object))};
+Landmark ObjectBody(const Scene& scene, const SceneObject& object) {
+  Landmark body = InOwnAxes(ObjectLandmark(scene, object));
+  body.shape_exponents = ExponentsOf(object.shape);
+  return body;
 }
 
-std::vector<Body> Furniture(const Scene& scene) {
-  std::vector<Body> bodies;
+std::vector<Landmark> Furniture(const Scene& scene) {
+  std::vector<Landmark> bodies;
   for (const ScenePlane& plane : scene.planes) {
     if (!plane.table) continue;
     const TableTop& table = *plane.table;
@@ -117,7 +119,7 @@ std::vector<Body> Furniture(const Scene& scene) {
     const Rigid3d world_from_table = WorldFromPlane(plane.plane_in_world) * plane_from_table;
     const auto add_box = [&](const Eigen::Vector3d& centre, const Eigen::Vector3d& half_axes) {
       bodies.push_back(
-          {Shape::kBox, {{world_from_table.rotation, world_from_table * centre}, half_axes}});
+          {{world_from_table.rotation, world_from_table * centre}, half_axes, kCuboidExponent});
     };
     add_box({0.0, 0.0, -0.5 * table.thickness},
             {table.half_size.x(), table.half_size.y(), 0.5 * table.thickness});
@@ -248,7 +250,7 @@ Trajectory ParseTrajectory(const json& document) {
 
 // Throws unless the camera at one pose has a free view.
 void CheckCameraPose(const Scene& scene, const Rigid3d& world_from_camera,
-                     const std::vector<Body>& bodies, const std::string& where) {
+                     const std::vector<Landmark>& bodies, const std::string& where) {
   const Eigen::Vector3d& position = world_from_camera.translation;
   for (const ScenePlane& plane : scene.planes) {
     if (!plane.table && !(plane.plane_in_world.SignedDistance(position) > 0.0)) {
@@ -269,9 +271,9 @@ void CheckCameraPose(const Scene& scene, const Rigid3d& world_from_camera,
 }
 
 void CheckTrajectory(const Scene& scene, const std::string& where) {
-  std::vector<Body> bodies;
+  std::vector<Landmark> bodies;
   for (const SceneObject& object : scene.objects) bodies.push_back(ObjectBody(scene, object));
-  const std::vector<Body> furniture = Furniture(scene);
+  const std::vector<Landmark> furniture = Furniture(scene);
   bodies.insert(bodies.end(), furniture.begin(), furniture.end());
   const std::vector<Rigid3d> poses = TruePoses(scene);
   for (size_t i = 0; i < poses.size(); ++i) {

@@ -95,10 +95,10 @@ Rigid3d WorldFromPlane(const Plane& plane_in_world);
 Landmark ObjectLandmark(const Scene& scene, const SceneObject& object);
 
 // The object's solid in the world, in its own axes.
-Body ObjectBody(const Scene& scene, const SceneObject& object);
+Landmark ObjectBody(const Scene& scene, const SceneObject& object);
 
 // Solids that are not objects, in the world: slabs and legs of the tables.
-std::vector<Body> Furniture(const Scene& scene);
+std::vector<Landmark> Furniture(const Scene& scene);
 
 // The true pose of each frame. Throws InputError when the camera looks straight up or down, or at
 // its own position, which leaves its roll undefined.

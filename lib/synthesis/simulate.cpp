@@ -62,21 +62,21 @@ std::vector<Rigid3d> NoisyOdometry(const Scene& scene, const std::vector<Rigid3d
 
 }  // namespace
 
-bool CentreIsVisible(const std::vector<Body>& bodies_in_world, int body_index,
+bool CentreIsVisible(const std::vector<Landmark>& bodies_in_world, int body_index,
                      const Eigen::Vector3d& camera_in_world) {
-  const Body& body = bodies_in_world[body_index];
-  const Eigen::Vector3d direction = body.landmark.Centre() - camera_in_world;
+  const Landmark& body = bodies_in_world[body_index];
+  const Eigen::Vector3d direction = body.Centre() - camera_in_world;
   const auto own_depth = NearestIntersection(body, camera_in_world, direction);
   if (!own_depth) return false;
-  return std::ranges::none_of(bodies_in_world, [&](const Body& other) {
+  return std::ranges::none_of(bodies_in_world, [&](const Landmark& other) {
     const auto depth = NearestIntersection(other, camera_in_world, direction);
     return depth && *depth < *own_depth;
   });
 }
 
 std::optional<Box> BoxInImage(const Camera& camera, const Rigid3d& world_from_camera,
-                              const Body& body_in_world) {
-  const auto box = OutlineBox(camera, Transform(world_from_camera.Inverse(), body_in_world));
+                              const Landmark& body_in_world) {
+  const auto box = ExactOutline(camera, Transform(world_from_camera.Inverse(), body_in_world));
   if (!box || !(DistanceToBorder(*box, camera.width, camera.height) >= 0.0)) return std::nullopt;
   return box;
 }
@@ -88,11 +88,11 @@ Simulation Simulate(const Scene& scene, bool noise) {
       noise ? NoisyOdometry(scene, simulation.true_world_from_camera)
             : simulation.true_world_from_camera;
 
-  std::vector<Body> bodies_in_world;
+  std::vector<Landmark> bodies_in_world;
   for (const SceneObject& object : scene.objects) {
     bodies_in_world.push_back(ObjectBody(scene, object));
   }
-  for (const Body& body : Furniture(scene)) bodies_in_world.push_back(body);
+  for (const Landmark& body : Furniture(scene)) bodies_in_world.push_back(body);
   for (int frame = 0; frame < scene.trajectory.frames; ++frame) {
     const Rigid3d& world_from_camera = simulation.true_world_from_camera[frame];
     for (int object = 0; object < static_cast<int>(scene.objects.size()); ++object) {

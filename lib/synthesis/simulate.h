@@ -45,12 +45,12 @@ struct Simulation {
 Simulation Simulate(const Scene& scene, bool noise);
 
 // True if nothing in the scene occludes the object's centre.
-bool CentreIsVisible(const std::vector<Body>& bodies_in_world, int body_index,
+bool CentreIsVisible(const std::vector<Landmark>& bodies_in_world, int body_index,
                      const Eigen::Vector3d& camera_in_world);
 
 // The box of a body in the world as a camera sees it; none unless it is wholly inside the image.
 std::optional<Box> BoxInImage(const Camera& camera, const Rigid3d& world_from_camera,
-                              const Body& body_in_world);
+                              const Landmark& body_in_world);
 
 // The exact landmark and symmetries of an object. Shape and texture are symmetric about the xz
 // plane of its own axes; the texture has no other mirror plane. Rotational symmetry about the

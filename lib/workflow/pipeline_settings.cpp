@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 
 #include "artefact/json_file.h"
 #include "association/options.h"
@@ -186,27 +187,25 @@ std::vector<json> ReadVariantLayers(fs::path file) {
 }
 
 void CheckNeeds(const VariantSettings& settings, const std::string& file) {
-  for (const std::string& name : settings.stages) {
+  const auto need = [&](const std::string& who, const std::string& stage) {
+    if (settings.options.contains(stage)) return;
+    throw SettingsError(fmt::format("{}: {} stage '{}' in 'stages'", file, who, stage));
+  };
+  for (const auto& [name, options] : settings.options) {
     for (const std::string& needed : FindStage(name)->needs) {
-      if (!settings.stages.contains(needed)) {
-        throw SettingsError(
-            fmt::format("{}: stage '{}' needs stage '{}' in 'stages'", file, name, needed));
-      }
+      need(fmt::format("stage '{}' needs", name), needed);
     }
   }
   const std::pair<const char*, const char*> users_of_images[] = {
       {"initialise", "setting 'method' = cuboid_proposals of initialise needs"},
       {"optimise", "settings 'symmetry' and 'edge_alignment' of optimise need"}};
   for (const auto& [stage, who] : users_of_images) {
-    if (settings.stages.contains(stage) && UsesImages(stage, settings.options.at(stage)) &&
-        !settings.stages.contains("edges")) {
-      throw SettingsError(fmt::format("{}: {} stage 'edges' in 'stages'", file, who));
-    }
+    const auto used = settings.options.find(stage);
+    if (used != settings.options.end() && UsesImages(stage, used->second)) need(who, "edges");
   }
-  for (const std::string& stage : settings.stages) {
-    if (UsesPoints(settings.options.at(stage)) && !settings.stages.contains("track")) {
-      throw SettingsError(fmt::format(
-          "{}: setting 'point_evidence' of {} needs stage 'track' in 'stages'", file, stage));
+  for (const auto& [stage, options] : settings.options) {
+    if (UsesPoints(options)) {
+      need(fmt::format("setting 'point_evidence' of {} needs", stage), "track");
     }
   }
 }
@@ -267,15 +266,14 @@ VariantSettings ReadVariant(const fs::path& pipelines, const std::string& datase
   const std::string file = variant_file.string();
   VariantSettings settings;
   CheckStageList(merged.value("stages", json()), file);
-  settings.stages = merged.at("stages").get<std::set<std::string>>();
+  const auto listed = merged.at("stages").get<std::set<std::string>>();
   settings.semantic_table = merged.value("semantic_table", "priors/semantic_table.json");
   for (const PipelineStage& stage : Stages()) {
-    const bool is_listed = settings.stages.contains(stage.name);
+    const bool is_listed = listed.contains(stage.name);
     if (!is_listed && stage.asked_by == nullptr) continue;
     const json resolved = stage.resolve(merged.value(stage.name, json::object()),
                                         fmt::format("{}: {}", file, stage.name));
     if (!is_listed && resolved.at(stage.asked_by) == "given") continue;
-    settings.stages.insert(stage.name);
     settings.options[stage.name] = resolved;
   }
   CheckNeeds(settings, file);

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -12,8 +11,7 @@ namespace soslam {
 
 // Stages and settings of a variant on a dataset.
 struct VariantSettings {
-  std::set<std::string> stages;  // including stages that a setting asks for
-  // Every option, resolved, keyed by stage of `stages`.
+  // Every option, resolved, keyed by stage; also of stages that a setting asks for.
   std::map<std::string, nlohmann::json> options;
   std::string semantic_table;  // path relative to the pipelines folder
 };

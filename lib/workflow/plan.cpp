@@ -23,7 +23,7 @@ class ChainBuilder {
   // The instances of all stages that the variant runs, in order.
   std::vector<StageInstance> Build() {
     for (const std::string& stage : PipelineStages()) {
-      if (settings_.stages.contains(stage)) Append(stage);
+      if (settings_.options.contains(stage)) Append(stage);
     }
     return std::move(chain_);
   }
@@ -93,7 +93,7 @@ const StageInstance& Plan::Instance(const std::string& id) const {
 }
 
 std::vector<std::filesystem::path> PrerequisitesOf(const StageInstance& instance,
-                                                   const PrerequisiteFolders& folders) {
+                                                   const PlanFolders& folders) {
   std::vector<std::filesystem::path> files = {
       folders.executables / ("soslam-" + instance.stage),
       folders.results / InstancePath(instance.Id(), "settings.json")};

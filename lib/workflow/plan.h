@@ -42,14 +42,18 @@ struct Plan {
   const StageInstance& Instance(const std::string& id) const;
 };
 
-struct PrerequisiteFolders {
-  std::filesystem::path executables, pipelines;
-  std::filesystem::path results;  // of this dataset
+// Folders of a plan; relative paths are relative to where make runs.
+struct PlanFolders {
+  std::filesystem::path dataset;
+  std::filesystem::path pipelines;
+  std::filesystem::path results;           // results of this dataset: <results>/<name>
+  std::filesystem::path executables = {};  // programs of the stages; no part of a makefile
 };
+
 // The files that a stage instance depends on: executable, settings, input artefacts, listings,
 // semantic table.
 std::vector<std::filesystem::path> PrerequisitesOf(const StageInstance& instance,
-                                                   const PrerequisiteFolders& folders);
+                                                   const PlanFolders& folders);
 
 // Path of an artefact or the record of a stage instance, relative to the results of the dataset:
 // "shared/refine-c664bee12d/done".
@@ -78,13 +82,6 @@ inline constexpr const char* kTrunk = "trunk";
 // beginning, so branches do not share instances and can run in parallel. Everything else is the
 // trunk: stages that take less time than a job costs, and the edges, which many branches read.
 std::vector<WorkUnit> WorkUnitsOf(const Plan& plan);
-
-// Folders of a plan; relative paths are relative to where make runs.
-struct PlanFolders {
-  std::filesystem::path dataset;
-  std::filesystem::path pipelines;
-  std::filesystem::path results;  // results of this dataset: <results>/<name>
-};
 
 // Text of the makefile that executes a plan: one goal per variant, "all" first, and one rule per
 // stage instance. It needs GNU make >= 4.3; $(BIN) is the folder of the executables, $(LAUNCH) the

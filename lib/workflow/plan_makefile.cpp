@@ -137,7 +137,8 @@ std::string VariantRules(const Plan& plan, const VariantChain& variant) {
 
 std::vector<std::string> Prerequisites(const StageInstance& instance) {
   std::vector<std::string> files;
-  for (const auto& file : PrerequisitesOf(instance, {"$(BIN)", "$(pipelines)", "$(results)"})) {
+  const PlanFolders folders = {"$(dataset)", "$(pipelines)", "$(results)", "$(BIN)"};
+  for (const auto& file : PrerequisitesOf(instance, folders)) {
     files.push_back(file.string());
   }
   std::set<std::string> stamps;

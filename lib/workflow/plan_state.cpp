@@ -35,9 +35,8 @@ std::vector<std::string> LinesOf(const fs::path& file) {
 
 class StateFinder {
  public:
-  StateFinder(const Plan& plan, const PlanFolders& folders, const fs::path& executables,
-              const StagesUnderWay& under_way)
-      : plan_(plan), folders_(folders), executables_(executables), under_way_(under_way) {}
+  StateFinder(const Plan& plan, const PlanFolders& folders, const StagesUnderWay& under_way)
+      : plan_(plan), folders_(folders), under_way_(under_way) {}
 
   std::map<std::string, InstanceState> Find() {
     for (const StageInstance& instance : plan_.instances) states_[instance.Id()] = Find(instance);
@@ -88,8 +87,7 @@ class StateFinder {
   std::vector<std::string> NewerFiles(const StageInstance& instance,
                                       fs::file_time_type done) const {
     std::vector<std::string> reasons;
-    const PrerequisiteFolders folders = {executables_, folders_.pipelines, folders_.results};
-    for (const fs::path& path : PrerequisitesOf(instance, folders)) {
+    for (const fs::path& path : PrerequisitesOf(instance, folders_)) {
       const auto time = TimeOf(path);
       if (!time) reasons.push_back(path.string() + " does not exist");
       if (!time || *time <= done) continue;
@@ -131,7 +129,6 @@ class StateFinder {
 
   const Plan& plan_;
   const PlanFolders& folders_;
-  const fs::path& executables_;
   const StagesUnderWay& under_way_;
   std::map<std::string, InstanceState> states_;
 };
@@ -175,9 +172,8 @@ std::map<std::string, StagesUnderWay> ReadStagesUnderWay(const fs::path& file) {
 }
 
 std::map<std::string, InstanceState> StatesOf(const Plan& plan, const PlanFolders& folders,
-                                              const fs::path& executables,
                                               const StagesUnderWay& under_way) {
-  return StateFinder(plan, folders, executables, under_way).Find();
+  return StateFinder(plan, folders, under_way).Find();
 }
 
 std::vector<std::string> ChangesSinceLastRun(const Plan& plan, const VariantChain& variant,

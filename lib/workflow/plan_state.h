@@ -39,11 +39,9 @@ using StagesUnderWay = std::map<std::string, StageState>;
 // wins where there are several lines. Throws InputError for any other line.
 std::map<std::string, StagesUnderWay> ReadStagesUnderWay(const std::filesystem::path& file);
 
-// States of all instances of a plan, keyed by id. `executables` is the folder of the stages'
-// programs. Nothing is written. The listings of the dataset (see RunPlan) are assumed to be
-// correct.
+// States of all instances of a plan, keyed by id. Nothing is written. The listings of the dataset
+// (see RunPlan) are assumed to be correct.
 std::map<std::string, InstanceState> StatesOf(const Plan& plan, const PlanFolders& folders,
-                                              const std::filesystem::path& executables,
                                               const StagesUnderWay& under_way = {});
 
 // Differences of settings and inputs between a variant's instance and the last complete run of the

@@ -123,7 +123,8 @@ class Reproduction {
     }
     if (written.empty()) return record.stage + " is no stage of the pipeline";
     for (const RunFile& input : record.inputs) {
-      if (written.contains(input.argument)) return "--" + input.argument + " is among its inputs";
+      if (written.contains(input.argument.value_or("")))
+        return "--" + *input.argument + " is among its inputs";
     }
     for (const auto& [argument, folder] : record.folders) {
       if (written.contains(argument)) return "--" + argument + " is a folder";
@@ -185,9 +186,10 @@ class Reproduction {
     for (const std::vector<RunFile>* files : {&record.inputs, &record.outputs}) {
       for (const RunFile& file : *files) {
         const bool is_in_a_folder = file.argument == file.relative_to;
-        if (is_in_a_folder || file.argument.empty() || file.argument == "settings") continue;
+        if (is_in_a_folder || file.argument.value_or("").empty() || file.argument == "settings")
+          continue;
         const fs::path path = PathOf(file, record, run, dataset_);
-        add(file.argument, IsResult(path) ? Again(path) : path);
+        add(*file.argument, IsResult(path) ? Again(path) : path);
       }
     }
     return words;

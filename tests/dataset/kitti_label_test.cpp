@@ -47,7 +47,7 @@ TEST(RecordingValues, RefusesWhatIsNoValue) {
 class KittiLabelTest : public FolderTest {
  protected:
   KittiLabel Read(const std::string& columns) {
-    return ReadKittiObjectLabels(Write("000000.txt", columns)).at(0);
+    return ReadKittiLabels(Write("000000.txt", columns), false).at(0);
   }
   KittiCalibration ReadCalibration(const std::string& text = KittiCalibrationText()) {
     return ReadKittiCalibration(Write("calib.txt", text));
@@ -83,7 +83,7 @@ TEST_F(KittiLabelTest, ResultsHaveAScore) {
   ExpectRefused(columns + " high", {"000000.txt:1", "score is 'high'"});
   ExpectRefused(columns + " 0.25 1", {"17 values", "[score]"});
   Write("0001.txt", "4 7 " + columns + " 0.5\n");
-  EXPECT_EQ(ReadKittiTrackingLabels(folder_ / "0001.txt").at(0).score, 0.5);
+  EXPECT_EQ(ReadKittiLabels(folder_ / "0001.txt", true).at(0).score, 0.5);
 }
 
 // The corners of the landmark, projected with the camera, are those of KITTI's own formulas with

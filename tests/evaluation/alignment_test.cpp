@@ -126,11 +126,11 @@ class AlignSegmentsTest : public testing::Test {
     }
     return sequence;
   }
-  static Alignments Of(const Sequence& sequence, AlignmentChoice choice) {
+  static Alignments Of(const Sequence& sequence, AlignmentKind choice) {
     return AlignSegments(sequence, Fields(sequence.frames, &Frame::world_from_camera), choice);
   }
   static AlignmentKind AutoKind(const Sequence& sequence) {
-    return Of(sequence, AlignmentChoice::kAuto).of_segment.at(0).kind;
+    return Of(sequence, AlignmentKind::kAuto).of_segment.at(0).kind;
   }
   const Rigid3d elsewhere_{ExpRotation({0, 0, 1.5}), {9, 0, 0}};
   const Rigid3d drift_{ExpRotation({0.02, -0.01, 0.03}), {0.1, 0.0, -0.1}};
@@ -170,11 +170,11 @@ TEST_F(AlignSegmentsTest, TwoPosesTellAnotherWorldAndNoScale) {
 }
 
 TEST_F(AlignSegmentsTest, AnotherScaleThatIsNotTakenIsSaid) {
-  const Alignments alignments = Of(Make({}, 1.25), AlignmentChoice::kAuto);
+  const Alignments alignments = Of(Make({}, 1.25), AlignmentKind::kAuto);
   EXPECT_EQ(alignments.of_segment.at(0).kind, AlignmentKind::kNone);
   EXPECT_EQ(Only(alignments.findings).check, "alignment_scale");
-  EXPECT_TRUE(Of(Make({}, 1.25), AlignmentChoice::kSimilarity).findings.empty());
-  EXPECT_TRUE(Of(Make(drift_, 1.0), AlignmentChoice::kAuto).findings.empty());
+  EXPECT_TRUE(Of(Make({}, 1.25), AlignmentKind::kSimilarity).findings.empty());
+  EXPECT_TRUE(Of(Make(drift_, 1.0), AlignmentKind::kAuto).findings.empty());
 }
 
 TEST_F(AlignSegmentsTest, SettingsOfTheDatasetGoFirst) {
@@ -188,12 +188,12 @@ TEST_F(AlignSegmentsTest, SettingsOfTheDatasetGoFirst) {
 TEST_F(AlignSegmentsTest, WithoutTruthNothingIsAlignedAndWhoAskedIsTold) {
   Sequence sequence = Make(drift_, 1.0);
   for (Frame& frame : sequence.frames) frame.true_world_from_camera.reset();
-  const Alignments automatic = Of(sequence, AlignmentChoice::kAuto);
+  const Alignments automatic = Of(sequence, AlignmentKind::kAuto);
   EXPECT_EQ(automatic.of_segment.at(0).kind, AlignmentKind::kNone);
   EXPECT_TRUE(automatic.findings.empty());
   sequence.odometry_world = OdometryWorld::kOwn;
-  EXPECT_EQ(Of(sequence, AlignmentChoice::kAuto).findings.size(), 1u);
-  const Alignments asked = Of(sequence, AlignmentChoice::kSimilarity);
+  EXPECT_EQ(Of(sequence, AlignmentKind::kAuto).findings.size(), 1u);
+  const Alignments asked = Of(sequence, AlignmentKind::kSimilarity);
   EXPECT_EQ(asked.of_segment.at(0).kind, AlignmentKind::kNone);
   EXPECT_EQ(Only(asked.findings).check, "alignment");
 }
@@ -205,7 +205,7 @@ TEST_F(AlignSegmentsTest, EachSegmentHasItsOwn) {
     frame.segment = 3;
     sequence.frames.push_back(frame);
   }
-  const auto of_segment = Of(sequence, AlignmentChoice::kRigid).of_segment;
+  const auto of_segment = Of(sequence, AlignmentKind::kRigid).of_segment;
   ASSERT_EQ(of_segment.size(), 2u);
   EXPECT_NEAR(of_segment.at(0).rmse_m.value(), 0.0, 1e-9);
   EXPECT_NEAR(of_segment.at(3).rmse_m.value(), 0.0, 1e-9);

@@ -133,8 +133,8 @@ void ExpectSameFigures(const MapQuality& one, const MapQuality& other) {
 
 TEST_F(WallOfMistakesTest, MotionAndScaleOfAWholeMapChangeNothing) {
   MakeAWallOfMistakes();
-  const MapQuality at_home = Evaluate(AlignmentChoice::kNone);
-  ExpectSameFigures(at_home, Evaluate(AlignmentChoice::kRigid));
+  const MapQuality at_home = Evaluate(AlignmentKind::kNone);
+  ExpectSameFigures(at_home, Evaluate(AlignmentKind::kRigid));
   for (const double scale : {1.0, 0.2, 7.0}) {
     const Alignment away{AlignmentKind::kSimilarity, CameraPath::kGeneral, scale, RandomRigid(),
                          kFrames};
@@ -149,10 +149,10 @@ TEST_F(WallOfMistakesTest, MotionAndScaleOfAWholeMapChangeNothing) {
       }
     }
     sequence_.planes[0].plane_in_world = away.Apply(sequence_.planes[0].plane_in_world);
-    const MapQuality similar = Evaluate(AlignmentChoice::kSimilarity);
+    const MapQuality similar = Evaluate(AlignmentKind::kSimilarity);
     ExpectSameFigures(at_home, similar);
     EXPECT_NEAR(similar.alignments.of_segment.at(0).scale, 1.0 / scale, 1e-9);
-    if (scale == 1.0) ExpectSameFigures(at_home, Evaluate(AlignmentChoice::kRigid));
+    if (scale == 1.0) ExpectSameFigures(at_home, Evaluate(AlignmentKind::kRigid));
     sequence_ = sequence;
     estimates_ = estimates;
   }

@@ -42,20 +42,22 @@ void ExpectTurned(const cv::Mat& upright, const cv::Mat& stored, int orientation
   }
 }
 
+constexpr int kGrey = cv::IMREAD_GRAYSCALE, kColour = cv::IMREAD_COLOR;
+
 class ReadImageTest : public FolderTest {
  protected:
   // Expects that the file is refused by its path and these words, in grey as in colour.
   static void ExpectRefused(const std::filesystem::path& path,
                             std::vector<std::string> words = {}) {
     words.push_back(path.string());
-    ExpectError<InputError>([&] { ReadGreyImage(path); }, words);
-    ExpectError<InputError>([&] { ReadColourImage(path); }, words);
+    ExpectError<InputError>([&] { ReadImage(path, kGrey); }, words);
+    ExpectError<InputError>([&] { ReadImage(path, kColour); }, words);
   }
 };
 
 TEST_F(ReadImageTest, ColourBecomesGrey) {
   const cv::Mat colour(8, 9, CV_8UC3, cv::Scalar(10, 20, 200));
-  const cv::Mat read = ReadGreyImage(Write("a.png", EncodedImage(".png", colour)));
+  const cv::Mat read = ReadImage(Write("a.png", EncodedImage(".png", colour)), kGrey);
   ASSERT_EQ(read.type(), CV_8UC1);
   // 0.299 red + 0.587 green + 0.114 blue = 72.7; 1 for the rounding of integer weights.
   EXPECT_NEAR(read.at<uchar>(4, 4), 72.7, 1.0);
@@ -78,11 +80,11 @@ TEST_F(ReadImageTest, EveryOrientationIsTurnedUpright) {
       const auto files = WithOrientation(TestImage(), orientation, order);
       for (size_t i = 0; i < files.size(); ++i) {
         SCOPED_TRACE(testing::Message() << "orientation " << orientation << ", file " << i);
-        const cv::Mat stored = ReadGreyImage(Write("plain", plain[i]));
+        const cv::Mat stored = ReadImage(Write("plain", plain[i]), kGrey);
         const auto path = Write("turned", files[i]);
-        ExpectTurned(ReadGreyImage(path), stored, orientation);
-        ExpectTurned(ReadGreyImage(path, ImageOrientation::kStored), stored, 1);
-        EXPECT_EQ(ReadColourImage(path).size(), ReadGreyImage(path).size());
+        ExpectTurned(ReadImage(path, kGrey), stored, orientation);
+        ExpectTurned(ReadImage(path, kGrey, ImageOrientation::kStored), stored, 1);
+        EXPECT_EQ(ReadImage(path, kColour).size(), ReadImage(path, kGrey).size());
       }
     }
   }
@@ -90,13 +92,14 @@ TEST_F(ReadImageTest, EveryOrientationIsTurnedUpright) {
 
 TEST_F(ReadImageTest, SizesThatExifSwapsAreExplained) {
   const auto path = Write("a.jpg", JpegWithExif(EncodedImage(".jpg", TestImage()), ExifOf(6)));
-  EXPECT_EQ(ReadGreyImage(path, ImageOrientation::kUpright, cv::Size(40, 60)).cols, 40);
-  EXPECT_EQ(ReadColourImage(path, ImageOrientation::kStored, cv::Size(60, 40)).cols, 60);
+  EXPECT_EQ(ReadImage(path, kGrey, ImageOrientation::kUpright, cv::Size(40, 60)).cols, 40);
+  EXPECT_EQ(ReadImage(path, kColour, ImageOrientation::kStored, cv::Size(60, 40)).cols, 60);
   ExpectError<InputError>(
-      [&] { ReadGreyImage(path, ImageOrientation::kUpright, cv::Size(60, 40)); },
+      [&] { ReadImage(path, kGrey, ImageOrientation::kUpright, cv::Size(60, 40)); },
       {"a.jpg", "40 x 60", "60 x 40", "orientation 6", "image_orientation"});
-  ExpectError<InputError>([&] { ReadGreyImage(path, ImageOrientation::kStored, cv::Size(40, 60)); },
-                          {"60 x 40", "upright image", "is stored"});
+  ExpectError<InputError>(
+      [&] { ReadImage(path, kGrey, ImageOrientation::kStored, cv::Size(40, 60)); },
+      {"60 x 40", "upright image", "is stored"});
 }
 
 constexpr const char* kExtensions[] = {".jpg", ".png", ".webp", ".bmp", ".tiff"};
@@ -105,13 +108,13 @@ TEST_F(ReadImageTest, BytesAfterTheEndAreNotRead) {
   const std::string other = EncodedImage(".jpg", cv::Mat(8, 8, CV_8UC1, cv::Scalar(3)));
   for (const char* extension : kExtensions) {
     const std::string image = EncodedImage(extension, TestImage());
-    const cv::Mat expected = ReadGreyImage(Write("plain", image));
+    const cv::Mat expected = ReadImage(Write("plain", image), kGrey);
     for (const std::string& tail :
          {std::string(100, '\0'), std::string("\n"), std::string("\xff"), other,
           std::string("\0\0\x01\x0bMotionPhoto_Data\0\0\0\x18"
                       "ftypmp42SEFT",
                       36)}) {
-      const cv::Mat read = ReadGreyImage(Write("tail", image + tail));
+      const cv::Mat read = ReadImage(Write("tail", image + tail), kGrey);
       EXPECT_EQ(cv::norm(read, expected, cv::NORM_INF), 0.0) << extension;
     }
   }
@@ -124,7 +127,7 @@ TEST_F(ReadImageTest, OtherKindsOfJpegAreRead) {
         std::vector<int>{cv::IMWRITE_JPEG_PROGRESSIVE, 1, cv::IMWRITE_JPEG_RST_INTERVAL, 1}}) {
     const std::string jpeg = EncodedImage(".jpg", TestImage(), parameters);
     const cv::Mat expected = cv::imdecode(std::vector<char>(jpeg.begin(), jpeg.end()), 0);
-    EXPECT_EQ(cv::norm(ReadGreyImage(Write("a.jpg", jpeg + "\n")), expected, cv::NORM_INF), 0.0);
+    EXPECT_EQ(cv::norm(ReadImage(Write("a.jpg", jpeg + "\n"), kGrey), expected, cv::NORM_INF), 0.0);
     for (size_t size = 0; size < jpeg.size(); size += 7) {
       ExpectRefused(Write("cut.jpg", jpeg.substr(0, size)));
     }
@@ -136,7 +139,7 @@ TEST_F(ReadImageTest, CutShortBeforeAnotherImageIsRefused) {
   const std::string thumbnail = EncodedImage(".jpg", cv::Mat(8, 8, CV_8UC1, cv::Scalar(3)));
   const std::string jpeg =
       JpegWithExif(EncodedImage(".jpg", TestImage()), ExifOf(1, ByteOrder::kBigEndian, thumbnail));
-  EXPECT_NO_THROW(ReadGreyImage(Write("whole.jpg", jpeg)));
+  EXPECT_NO_THROW(ReadImage(Write("whole.jpg", jpeg), kGrey));
   for (const size_t missing : {2u, 10u, 100u}) {
     const std::string cut = jpeg.substr(0, jpeg.size() - missing);
     for (const std::string& tail : {std::string(), thumbnail, std::string("\xff\xc0\xff\xd9")}) {
@@ -204,7 +207,7 @@ TEST_F(ReadImageTest, FormatsWithoutLossComeBackExactly) {
   }
   for (const char* extension : {".png", ".webp", ".bmp", ".tiff"}) {
     const auto path = Write("a", EncodedImage(extension, colour));
-    EXPECT_EQ(cv::norm(ReadColourImage(path), colour, cv::NORM_INF), 0.0) << extension;
+    EXPECT_EQ(cv::norm(ReadImage(path, kColour), colour, cv::NORM_INF), 0.0) << extension;
   }
 }
 

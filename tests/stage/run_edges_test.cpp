@@ -55,7 +55,7 @@ TEST_F(RunEdgesTest, UndistortsTheImages) {
   sequence_.image_distortion = Distortion{-0.3};
   RunEdges({}, Files(), 2);
   const cv::Mat grey = EdgesReader(folder_ / "edges.h5").Read(15).grey;
-  const cv::Mat stored = ReadGreyImage(folder_ / "rgb/3.png");
+  const cv::Mat stored = ReadImage(folder_ / "rgb/3.png", cv::IMREAD_GRAYSCALE);
   const ImageUndistorter undistorter(sequence_.camera, *sequence_.image_distortion);
   const cv::Mat undistorted = ComputeEdgeMaps(undistorter.Undistort(stored), {}).grey;
   EXPECT_EQ(cv::norm(grey, undistorted, cv::NORM_INF), 0.0);
@@ -81,7 +81,8 @@ TEST_F(RunEdgesTest, WritesTheMapsOfEveryFrame) {
   RunEdges({}, Files(), 2);
   const EdgesReader reader(folder_ / "edges.h5");
   for (const Frame& frame : sequence_.frames) {
-    const EdgeMaps expected = ComputeEdgeMaps(ReadGreyImage(folder_ / frame.image), {});
+    const EdgeMaps expected =
+        ComputeEdgeMaps(ReadImage(folder_ / frame.image, cv::IMREAD_GRAYSCALE), {});
     const EdgeMaps maps = reader.Read(frame.id);
     EXPECT_EQ(cv::norm(maps.grey, expected.grey, cv::NORM_INF), 0.0);
     EXPECT_EQ(cv::norm(maps.edges, expected.edges, cv::NORM_INF), 0.0);
@@ -99,7 +100,8 @@ TEST_F(RunEdgesTest, FramesWithoutAnImageAreLeftOutAndCounted) {
   EXPECT_FALSE(reader.Has(0));
   EXPECT_TRUE(reader.Has(5));
   EXPECT_FALSE(reader.Has(20));
-  const EdgeMaps expected = ComputeEdgeMaps(ReadGreyImage(folder_ / "rgb/6.png"), {});
+  const EdgeMaps expected =
+      ComputeEdgeMaps(ReadImage(folder_ / "rgb/6.png", cv::IMREAD_GRAYSCALE), {});
   EXPECT_EQ(cv::norm(reader.Read(30).grey, expected.grey, cv::NORM_INF), 0.0);
   for (Frame& frame : sequence_.frames) frame.image.clear();
   ExpectError<NothingUsableError>([&] { RunEdges({}, Files("none.h5"), 2); },

@@ -115,7 +115,7 @@ TEST_F(RunExportTest, MetricsBringAMapIntoTheWorldOfTheTruth) {
   const StageFiles evaluated = {{"sequence", File("sequence.json")},
                                 {"landmarks", File("map.json")},
                                 {"output", File("metrics.json")}};
-  PrintedBy([&] { RunEvaluate({.alignment = AlignmentChoice::kRigid}, evaluated, 1); });
+  PrintedBy([&] { RunEvaluate({.alignment = AlignmentKind::kRigid}, evaluated, 1); });
   Run({"map", "metrics"}, {{"trajectory", "t.txt"}, {"csv", "l.csv"}});
   EXPECT_EQ(ReadTrajectory(File("t.txt"))[3].world_from_camera.translation,
             map_.world_from_camera[3].translation);

@@ -68,7 +68,8 @@ TEST_F(RunFramesTest, LargePhotosAreTurnedUprightAndScaledDown) {
   EXPECT_EQ(frames.at("focal_hint").at("images"), 2);
   EXPECT_NEAR(frames.at("focal_hint").at("focal_px").get<double>(),
               26.0 / 43.267 * std::hypot(50.0, 100.0), 1e-9);
-  const cv::Mat image = ReadGreyImage(output_ / "rgb/0.jpg", ImageOrientation::kStored);
+  const cv::Mat image =
+      ReadImage(output_ / "rgb/0.jpg", cv::IMREAD_GRAYSCALE, ImageOrientation::kStored);
   EXPECT_EQ(image.size(), cv::Size(50, 100));
   EXPECT_GT(cv::mean(image(cv::Rect(42, 2, 6, 6)))[0], 240.0) << "the corner is at the top right";
   const auto header = ReadImageHeader(output_ / "rgb/0.jpg");
@@ -119,7 +120,8 @@ TEST_F(RunFramesTest, FramesOfAVideoHaveTheirTimes) {
     const int number = frame.at("frame_number");
     EXPECT_EQ(number / 3, i);
     EXPECT_NEAR(frame.at("time_s").get<double>(), 0.1 * number, 1e-6);
-    const cv::Mat image = ReadColourImage(output_ / frame.at("image").get<std::string>());
+    const cv::Mat image =
+        ReadImage(output_ / frame.at("image").get<std::string>(), cv::IMREAD_COLOR);
     EXPECT_LT(cv::norm(image, DrawnView(10 * i), cv::NORM_L1) / (3 * 320 * 240), 12.0);
   }
 }

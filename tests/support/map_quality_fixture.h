@@ -120,7 +120,7 @@ class MapQualityTest : public testing::Test {
     }
   }
 
-  MapQuality Evaluate(AlignmentChoice alignment = AlignmentChoice::kAuto) {
+  MapQuality Evaluate(AlignmentKind alignment = AlignmentKind::kAuto) {
     std::ranges::stable_sort(sequence_.detections, {}, &Detection::frame_index);
     return EvaluateMapQuality(sequence_, estimates_,
                               Fields(sequence_.frames, &Frame::world_from_camera),

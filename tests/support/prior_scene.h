@@ -94,8 +94,7 @@ class PriorSceneBuilder {
       const double angle = Uniform(-std::numbers::pi, std::numbers::pi);
       const double radius = Uniform(min_radius, max_radius);
       const Eigen::Vector2d at(radius * std::cos(angle), radius * std::sin(angle));
-      const bool is_free = std::ranges::none_of(bodies_, [&](const Body& other) {
-        const Landmark& body = other.landmark;
+      const bool is_free = std::ranges::none_of(bodies_, [&](const Landmark& body) {
         const double base = body.Centre().z() - body.half_axes.z();
         return std::abs(base - plane_height) < 0.01 &&
                (body.Centre().head<2>() - at).norm() < size + body.half_axes.head<2>().norm();
@@ -106,8 +105,8 @@ class PriorSceneBuilder {
           UprightRotation(Eigen::Vector3d::UnitZ(), Uniform(-std::numbers::pi, std::numbers::pi));
       landmark.frame_from_object.translation << at, plane_height + half_axes.z();
       landmark.half_axes = half_axes;
-      const ShapePrior prior = *table_.Find(label);
-      bodies_.push_back({ShapeOf(prior.shape_exponents), landmark});
+      landmark.shape_exponents = ExponentsOf(ShapeOf(table_.Find(label)->shape_exponents));
+      bodies_.push_back(landmark);
       body_labels_.push_back(label);
       return true;
     }
@@ -179,7 +178,7 @@ class PriorSceneBuilder {
       add((kWall - origin(axis)) / direction(axis));
       add((-kWall - origin(axis)) / direction(axis));
     }
-    for (const Body& body : bodies_) {
+    for (const Landmark& body : bodies_) {
       const auto depth = NearestIntersection(body, origin, direction);
       if (depth) add(*depth);
     }
@@ -197,7 +196,7 @@ class PriorSceneBuilder {
   std::optional<Box> DrawBox(const Frame& frame, size_t body) {
     const Camera& camera = scene_.sequence.camera;
     const auto exact =
-        OutlineBox(camera, Transform(frame.world_from_camera.Inverse(), bodies_[body]));
+        ExactOutline(camera, Transform(frame.world_from_camera.Inverse(), bodies_[body]));
     if (!exact || !(DistanceToBorder(*exact, camera.width, camera.height) > 3.0) ||
         exact->Width() < 10.0 || exact->Height() < 10.0 ||
         !CentreIsVisible(bodies_, static_cast<int>(body), frame.world_from_camera.translation)) {
@@ -231,7 +230,7 @@ class PriorSceneBuilder {
     for (size_t k = 0; k < bodies_.size(); ++k) {
       if (boxes[k] < 3) continue;
       ++scene_.objects;
-      const Landmark& landmark = bodies_[k].landmark;
+      const Landmark& landmark = bodies_[k];
       planes.insert(landmark.Centre().z() - landmark.half_axes.z() > 0.5 * table_height_ &&
                             table_height_ > 0.0
                         ? table_height_
@@ -309,7 +308,7 @@ class PriorSceneBuilder {
   PriorSceneOptions options_;
   std::mt19937 random_;
   std::normal_distribution<double> normal_;
-  std::vector<Body> bodies_;
+  std::vector<Landmark> bodies_;
   std::vector<std::string> body_labels_;
   double table_height_ = 0.0, table_radius_ = 0.0;
   PriorScene scene_;

@@ -119,7 +119,7 @@ class Placement {
   std::mt19937& random_;
   std::vector<Rigid3d> poses_;
   size_t min_views_;
-  std::vector<Body> bodies_;                // in the world, one per object
+  std::vector<Landmark> bodies_;            // in the world, one per object
   std::vector<std::vector<size_t>> views_;  // per object, the frames that see it
 };
 

@@ -23,27 +23,28 @@ double Support(Shape shape, const Eigen::Vector3d& half_axes, const Eigen::Vecto
 }
 
 // A point of the surface in the direction of longitude and latitude, by central projection.
-Eigen::Vector3d SurfacePoint(const Body& body, double longitude, double latitude) {
+Eigen::Vector3d SurfacePoint(Shape shape, const Eigen::Vector3d& half_axes, double longitude,
+                             double latitude) {
   const Eigen::Vector3d direction(std::cos(latitude) * std::cos(longitude),
                                   std::cos(latitude) * std::sin(longitude), std::sin(latitude));
   double gauge = direction.norm();
-  if (body.shape == Shape::kBox) gauge = direction.lpNorm<Eigen::Infinity>();
-  if (body.shape == Shape::kCylinder) {
+  if (shape == Shape::kBox) gauge = direction.lpNorm<Eigen::Infinity>();
+  if (shape == Shape::kCylinder) {
     gauge = std::max(direction.head<2>().norm(), std::abs(direction.z()));
   }
-  return (direction / gauge).cwiseProduct(body.landmark.half_axes);
+  return (direction / gauge).cwiseProduct(half_axes);
 }
 
-Box SampledOutline(const Camera& camera, const Body& body_in_camera) {
+Box SampledOutline(const Camera& camera, Shape shape, const Landmark& body_in_camera) {
   constexpr int kSteps = 1000;
   Box box = {1e9, 1e9, -1e9, -1e9};
   for (int i = 0; i < kSteps; ++i) {
     for (int j = 0; j <= kSteps / 2; ++j) {
       const Eigen::Vector3d point =
-          SurfacePoint(body_in_camera, 2.0 * std::numbers::pi * i / kSteps,
+          SurfacePoint(shape, body_in_camera.half_axes, 2.0 * std::numbers::pi * i / kSteps,
                        std::numbers::pi * (2.0 * j / kSteps - 0.5));
       const Eigen::Vector2d pixel =
-          camera.Project(body_in_camera.landmark.frame_from_object * point).value();
+          camera.Project(body_in_camera.frame_from_object * point).value();
       box = {std::min(box.x_min, pixel.x()), std::min(box.y_min, pixel.y()),
              std::max(box.x_max, pixel.x()), std::max(box.y_max, pixel.y())};
     }
@@ -51,7 +52,14 @@ Box SampledOutline(const Camera& camera, const Body& body_in_camera) {
   return box;
 }
 
-class BodyTest : public testing::TestWithParam<Shape> {};
+class BodyTest : public testing::TestWithParam<Shape> {
+ protected:
+  // The landmark with the shape under test.
+  static Landmark Shaped(Landmark landmark) {
+    landmark.shape_exponents = ExponentsOf(GetParam());
+    return landmark;
+  }
+};
 
 INSTANTIATE_TEST_SUITE_P(Shapes, BodyTest,
                          testing::Values(Shape::kBox, Shape::kEllipsoid, Shape::kCylinder));
@@ -59,9 +67,9 @@ INSTANTIATE_TEST_SUITE_P(Shapes, BodyTest,
 TEST_P(BodyTest, OutlineHoldsSampledSurfaceTightly) {
   const Camera camera = TestCamera();
   for (int trial = 0; trial < 5; ++trial) {
-    const Body body = {GetParam(), RandomLandmarkInCamera()};
-    const Box sampled = SampledOutline(camera, body);
-    const Box exact = OutlineBox(camera, body).value();
+    const Landmark body = Shaped(RandomLandmarkInCamera());
+    const Box sampled = SampledOutline(camera, GetParam(), body);
+    const Box exact = ExactOutline(camera, body).value();
     // Samples are inside the body, so their box is inside the exact one; steps of 0.006 rad miss
     // the extreme point by less than half a pixel here (rims of cylinders and corners are hit less
     // well than smooth surfaces).
@@ -78,32 +86,32 @@ TEST_P(BodyTest, OutlineHoldsSampledSurfaceTightly) {
 TEST_P(BodyTest, BackProjectedBoxEdgesAreTangent) {
   const Camera camera = TestCamera();
   for (int trial = 0; trial < 200; ++trial) {
-    const Body body = {GetParam(), RandomLandmarkInCamera()};
-    const Rigid3d& camera_from_object = body.landmark.frame_from_object;
-    for (const Eigen::Vector3d& line : OutlineBox(camera, body)->EdgeLines()) {
+    const Landmark body = Shaped(RandomLandmarkInCamera());
+    const Rigid3d& camera_from_object = body.frame_from_object;
+    for (const Eigen::Vector3d& line : ExactOutline(camera, body)->EdgeLines()) {
       const Plane plane_in_camera = camera.BackProject(line);
       const Eigen::Vector3d normal_in_object =
           camera_from_object.rotation.conjugate() * plane_in_camera.normal;
-      const double extent = Support(body.shape, body.landmark.half_axes, normal_in_object);
+      const double extent = Support(GetParam(), body.half_axes, normal_in_object);
       // Rounding only: metres, at 2.5 to 5 metres.
-      EXPECT_NEAR(std::abs(plane_in_camera.SignedDistance(body.landmark.Centre())), extent, 1e-12);
+      EXPECT_NEAR(std::abs(plane_in_camera.SignedDistance(body.Centre())), extent, 1e-12);
     }
   }
 }
 
 TEST_P(BodyTest, NoOutlineUnlessWhollyInFront) {
   const Landmark landmark = {{RandomRotation(), {0.0, 0.0, 0.2}}, {0.5, 0.4, 0.3}};
-  EXPECT_FALSE(OutlineBox(TestCamera(), Body{GetParam(), landmark}));
+  EXPECT_FALSE(ExactOutline(TestCamera(), Shaped(landmark)));
   const Landmark behind = {{RandomRotation(), {0.0, 0.0, -5.0}}, {0.5, 0.4, 0.3}};
-  EXPECT_FALSE(OutlineBox(TestCamera(), Body{GetParam(), behind}));
+  EXPECT_FALSE(ExactOutline(TestCamera(), Shaped(behind)));
 }
 
 TEST_P(BodyTest, RayMeetsSurfaceFirstWhereItEnters) {
   int hits = 0;
   for (int trial = 0; trial < 500; ++trial) {
-    const Body body = {GetParam(), RandomLandmarkInCamera()};
+    const Landmark body = Shaped(RandomLandmarkInCamera());
     const Eigen::Vector3d direction =
-        body.landmark.Centre() + RandomVector(-0.7, 0.7);  // from the origin, at or past the body
+        body.Centre() + RandomVector(-0.7, 0.7);  // from the origin, at or past the body
     const auto depth = NearestIntersection(body, Eigen::Vector3d::Zero(), direction);
     bool passes_through = false;
     for (double t = 0.0; t < 2.0; t += 0.01) passes_through |= Contains(body, t * direction);
@@ -122,12 +130,12 @@ TEST_P(BodyTest, RayMeetsSurfaceFirstWhereItEnters) {
 
 TEST_P(BodyTest, NormalSupportsTheBodyAtItsPoint) {
   for (int trial = 0; trial < 200; ++trial) {
-    const Body body = {GetParam(), {Rigid3d{}, RandomVector(0.1, 0.8)}};
-    const Eigen::Vector3d point =
-        SurfacePoint(body, RandomUniform(-3.0, 3.0), RandomUniform(-1.5, 1.5));
+    const Landmark body = Shaped({Rigid3d{}, RandomVector(0.1, 0.8)});
+    const Eigen::Vector3d point = SurfacePoint(GetParam(), body.half_axes, RandomUniform(-3.0, 3.0),
+                                               RandomUniform(-1.5, 1.5));
     const Eigen::Vector3d normal = OutwardNormal(body, point);
     EXPECT_NEAR(normal.norm(), 1.0, 1e-12);
-    EXPECT_NEAR(normal.dot(point), Support(body.shape, body.landmark.half_axes, normal), 1e-12);
+    EXPECT_NEAR(normal.dot(point), Support(GetParam(), body.half_axes, normal), 1e-12);
   }
 }
 

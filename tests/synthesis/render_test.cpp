@@ -84,13 +84,13 @@ TEST(RenderFrame, ShowsTheSurfaceColourUnderTheLight) {
   const Scene scene = OneObject(Shape::kEllipsoid, 0.5);
   const cv::Mat image = Render(scene);
   const Rigid3d world_from_camera = TruePoses(scene).front();
-  const Body body = ObjectBody(scene, scene.objects[0]);
+  const Landmark body = ObjectBody(scene, scene.objects[0]);
   const SurfaceTexture texture(scene.objects[0]);
   const auto colour_at = [&](double u, double v) -> std::optional<Eigen::Vector3d> {
     const Eigen::Vector3d ray = world_from_camera.rotation * scene.camera.Ray({u, v});
     const auto depth = NearestIntersection(body, world_from_camera.translation, ray);
     if (!depth) return std::nullopt;
-    return texture.Colour(body.landmark.frame_from_object.Inverse() *
+    return texture.Colour(body.frame_from_object.Inverse() *
                           (world_from_camera.translation + *depth * ray));
   };
   int compared = 0;

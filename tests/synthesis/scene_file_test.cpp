@@ -117,7 +117,7 @@ TEST(Scene, ObjectsStandUprightOnTheirPlane) {
   document["planes"][0]["d"] = 0.3;
   const Scene scene = ParseScene(document, "scene.json");
   for (const SceneObject& object : scene.objects) {
-    const Landmark landmark = ObjectBody(scene, object).landmark;
+    const Landmark landmark = ObjectBody(scene, object);
     const Plane& plane = scene.planes[object.plane_index].plane_in_world;
     EXPECT_NEAR(plane.SignedDistance(landmark.Centre()), object.half_axes.z(), 1e-12);
     const Eigen::Vector3d z_axis = landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ();
@@ -139,9 +139,9 @@ TEST(Scene, LaidAndLeaningObjectsTouchTheirPlane) {
       const Landmark landmark = ObjectLandmark(scene, ball);
       EXPECT_EQ(landmark.half_axes, HalfAxesOnFace(ball.half_axes, face));
       // No point of the surface is below the floor, and some is on it.
-      const Body body = ObjectBody(scene, ball);
-      EXPECT_EQ(body.landmark.half_axes, ball.half_axes);
-      const Rigid3d& world_from_own = body.landmark.frame_from_object;
+      const Landmark body = ObjectBody(scene, ball);
+      EXPECT_EQ(body.half_axes, ball.half_axes);
+      const Rigid3d& world_from_own = body.frame_from_object;
       double lowest = std::numeric_limits<double>::infinity();
       for (int i = 0; i < 20000; ++i) {
         const Eigen::Vector3d direction = RandomVector(-1.0, 1.0);

@@ -61,18 +61,19 @@ class PlanStateTest : public FolderTest {
     return "results/" + InstancePath(InstanceOf(stage).Id(), file);
   }
   std::vector<std::string> Reasons(const std::string& stage) const {
-    return StatesOf(plan_, folders_, folder_ / "bin").at(InstanceOf(stage).Id()).reasons;
+    return StatesOf(plan_, folders_).at(InstanceOf(stage).Id()).reasons;
   }
   // States of import, initialise and evaluate.
   std::vector<std::string> States() const {
-    const auto states = StatesOf(plan_, folders_, folder_ / "bin");
+    const auto states = StatesOf(plan_, folders_);
     const std::vector<std::string> stages = {"import", "initialise", "evaluate"};
     return Fields(stages, [&](const std::string& stage) {
       return std::string(NameOf(states.at(InstanceOf(stage).Id()).state));
     });
   }
 
-  PlanFolders folders_ = {folder_ / "data", folder_ / "pipelines", folder_ / "results"};
+  PlanFolders folders_ = {folder_ / "data", folder_ / "pipelines", folder_ / "results",
+                          folder_ / "bin"};
   fs::file_time_type start_ = fs::file_time_type::clock::now() - std::chrono::hours(1);
   int minute_ = 0;
   Plan plan_;
@@ -139,7 +140,7 @@ TEST_F(PlanStateTest, WhatIsQueuedOrRunsSaysSoUnlessItIsDone) {
   Write("under_way", import + " queued\n" + initialise + " running\n" + initialise + " queued\n" +
                          evaluate + " queued\n" + other + " running\n");
   auto under_way = ReadStagesUnderWay(folder_ / "under_way");
-  const auto states = StatesOf(plan_, folders_, folder_ / "bin", under_way["room"]);
+  const auto states = StatesOf(plan_, folders_, under_way["room"]);
   const auto state = [&](const std::string& stage) {
     return std::string(NameOf(states.at(InstanceOf(stage).Id()).state));
   };

@@ -1,18 +1,21 @@
 "use strict";
 // The paper's figures from these runs.
 
+// The first item of each object; items are of detections of the variant's sequence.
+function firstOfEachObject(page, variant, items) {
+  const { detections } = page.sequences[variant.sequence];
+  const taken = new Set();
+  return items.filter(({ detection }) => {
+    const { object } = detections[detection];
+    return taken.has(object) ? false : taken.add(object);
+  });
+}
+
 // The first observation of each object that all of these variants have an estimate of.
 function exampleDetections(page, variants, count) {
-  const sequence = page.sequences[variants[0].sequence];
-  const taken = new Set();
-  const examples = [];
-  sequence.detections.forEach((detection, i) => {
-    if (taken.has(detection.object)) return;
-    if (!variants.every((variant) => variant.outlines[i])) return;
-    taken.add(detection.object);
-    examples.push(i);
-  });
-  return examples.slice(0, count);
+  const known = variants[0].outlines.map((_, detection) => ({ detection }))
+    .filter(({ detection }) => variants.every((variant) => variant.outlines[detection]));
+  return firstOfEachObject(page, variants[0], known).slice(0, count);
 }
 
 function sameSequence(variants) {
@@ -24,7 +27,7 @@ function comparison(page, all, names, count) {
   const variants = sameSequence(names.map((name) => all.find((variant) => variant.name === name)));
   if (variants.length < 2) return [];
   const sequence = page.sequences[variants[0].sequence];
-  return exampleDetections(page, variants, count).map((index) => {
+  return exampleDetections(page, variants, count).map(({ detection: index }) => {
     const detection = sequence.detections[index];
     const object = sequence.objects[detection.object];
     return element("div", { class: "comparison" }, element("h4", {},
@@ -53,15 +56,6 @@ function curvesOf(page, variant) {
   return variant.symmetry == null ? [] : page.symmetries[variant.symmetry].curves;
 }
 
-function firstOfEachObject(page, { curves, variant }) {
-  const { detections } = page.sequences[variant.sequence];
-  const taken = new Set();
-  return curves.filter(({ detection }) => {
-    const { object } = detections[detection];
-    return taken.has(object) ? false : taken.add(object);
-  });
-}
-
 function nameOfRecord(page, variant, record) {
   const { detections, objects, frames } = page.sequences[variant.sequence];
   const { object, frame } = detections[record.detection];
@@ -78,7 +72,7 @@ function pairShapes(record, width) {
 
 function pairFigures(page, ways) {
   return ways.flatMap((way) => {
-    const records = firstOfEachObject(page, way).filter(({ pairs }) => pairs.length > 0).slice(0, 4);
+    const records = firstOfEachObject(page, way.variant, way.curves).filter(({ pairs }) => pairs.length > 0).slice(0, 4);
     if (records.length === 0) return [];
     return [element("div", { class: "comparison" }, element("h4", {}, way.names),
       element("div", { class: "grid" }, records.map((record) => element("figure", {},
@@ -107,7 +101,7 @@ function descriptorTable(descriptors) {
 
 function curveFigures(page, ways) {
   return ways.flatMap((way) => {
-    const strips = firstOfEachObject(page, way).slice(0, 4).map((record) => element("figure", {},
+    const strips = firstOfEachObject(page, way.variant, way.curves).slice(0, 4).map((record) => element("figure", {},
       yawStrips(record, "cost over yaw"), element("figcaption", {}, nameOfRecord(page, way.variant, record))));
     const overall = Object.keys(way.descriptors).length === 0 ? []
       : [descriptorTable(way.descriptors), yawErrorChart(way.descriptors)];

@@ -116,8 +116,11 @@ const FuzzTarget kDetectionsCsv("detections_csv", [](const HostileInput& input) 
 });
 
 const FuzzTarget kKittiLabels("kitti_labels", [](const HostileInput& input) {
-  ReadBy(input.AsFile("000000.txt"), ReadKittiCalibration, ReadKittiTrackingLabels,
-         ReadKittiObjectLabels, ReadKittiBoxes);
+  const auto file = input.AsFile("000000.txt");
+  ReadBy(file, ReadKittiCalibration, ReadKittiBoxes);
+  for (const bool has_tracks : {true, false}) {
+    IsAccepted(file, [&] { ReadKittiLabels(file, has_tracks); });
+  }
 });
 
 const FuzzTarget kLists("lists", [](const HostileInput& input) {

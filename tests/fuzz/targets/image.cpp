@@ -12,7 +12,7 @@ namespace {
 // What is read has the size that the header says.
 void CheckHeader(const std::filesystem::path& file) {
   const auto header = ReadImageHeader(file);
-  const cv::Mat image = ReadGreyImage(file);
+  const cv::Mat image = ReadImage(file, cv::IMREAD_GRAYSCALE);
   const ImageSize size = header ? header->Size(ImageOrientation::kUpright) : ImageSize{};
   if (size.width == image.cols && size.height == image.rows) return;
   throw std::logic_error("the header says another size: " + file.string());
@@ -20,9 +20,11 @@ void CheckHeader(const std::filesystem::path& file) {
 
 const FuzzTarget kImage("image", [](const HostileInput& input) {
   const auto file = input.AsFile("image.png");
-  IsAccepted(file, [&] { ReadGreyImage(file, ImageOrientation::kUpright, cv::Size(60, 40)); });
-  IsAccepted(file, [&] { ReadColourImage(file, ImageOrientation::kStored); });
-  if (IsAccepted(file, [&] { ReadGreyImage(file); })) CheckHeader(file);
+  IsAccepted(file, [&] {
+    ReadImage(file, cv::IMREAD_GRAYSCALE, ImageOrientation::kUpright, cv::Size(60, 40));
+  });
+  IsAccepted(file, [&] { ReadImage(file, cv::IMREAD_COLOR, ImageOrientation::kStored); });
+  if (IsAccepted(file, [&] { ReadImage(file, cv::IMREAD_GRAYSCALE); })) CheckHeader(file);
 });
 
 // Not OpenCV's reader, which is not for hostile input.
