@@ -57,25 +57,6 @@ TEST(LensCameraTest, NumbersOfCoefficientsAreThoseOfTheModel) {
   ExpectLensRefused("none", kFour, {"'none'", "none but 0"});
 }
 
-// A file of ROS' camera_calibration.
-constexpr const char* kRos = R"(image_width: 640
-image_height: 480
-camera_name: head
-camera_matrix:
-  rows: 3
-  cols: 3
-  data: [500.0, 0.0, 319.5, 0.0, 510.0, 239.5, 0.0, 0.0, 1.0]
-distortion_model: plumb_bob
-distortion_coefficients:
-  rows: 1
-  cols: 5
-  data: [0.1, -0.2, 0.003, -0.004, 0.5]
-rectification_matrix:
-  rows: 3
-  cols: 3
-  data: [1, 0, 0, 0, 1, 0, 0, 0, 1]
-)";
-
 // A CameraInfo in the format of `ros2 topic echo`.
 constexpr const char* kRosMessage = R"(header:
   stamp:
@@ -133,28 +114,6 @@ distortion_model: radial-tangential
 distortion_coefficients: [0.1, -0.2, 0.003, -0.004]
 )";
 
-constexpr const char* kKalibr = R"(cam0:
-  T_cam_imu:
-  - [0.0, 1.0, 0.0, 0.06]
-  - [-1.0, 0.0, 0.0, -0.02]
-  - [0.0, 0.0, 1.0, -0.01]
-  - [0.0, 0.0, 0.0, 1.0]
-  cam_overlaps: [1]
-  camera_model: pinhole
-  distortion_coeffs: [0.1, -0.2, 0.003, -0.004]
-  distortion_model: radtan
-  intrinsics: [500, 510, 319.5, 239.5]
-  resolution: [640, 480]
-  rostopic: /cam0/image_raw
-  timeshift_cam_imu: 0.01
-cam1:
-  camera_model: omni
-  distortion_coeffs: [0.5, 0.5, 0.5, 0.5]
-  distortion_model: equidistant
-  intrinsics: [1.5, 300, 300, 100, 100]
-  resolution: [320, 240]
-)";
-
 constexpr const char* kOrbSlam = R"(%YAML:1.0
 Camera.type: "PinHole"
 Camera1.fx: 500
@@ -193,27 +152,33 @@ const Camera kCamera = {640, 480, 500, 510, 319.5, 239.5};
 
 class CalibrationFileTest : public FolderTest {
  protected:
+  static std::string InCorpus(const std::string& name) {
+    return FileBytes(SOSLAM_SOURCE_DIR "/tests/fuzz/corpus/cameras/" + name);
+  }
   Calibration Read(const std::string& text, const std::string& name = "a.yaml") {
     return ReadCameraFile(Write(name, text));
   }
   void ExpectRefused(const std::string& from, const std::string& to,
                      const std::vector<std::string>& words) {
-    std::string text = kRos;
+    std::string text = ros_;
     text.replace(text.find(from), from.size(), to);
     ExpectError<InputError>([&] { Read(text); }, words);
   }
+
+  const std::string ros_ = InCorpus("ros.yaml");  // from ROS' camera_calibration
+  const std::string kalibr_ = InCorpus("kalibr.yaml");
 };
 
 TEST_F(CalibrationFileTest, AllToolsSayTheSameCamera) {
   const Distortion lens{0.1, -0.2, 0.003, -0.004, 0.5};
   const Distortion lens_of_four{0.1, -0.2, 0.003, -0.004};
   for (const auto& [text, name, distortion] :
-       std::vector<std::tuple<const char*, const char*, Distortion>>{
-           {kRos, "ros.yaml", lens},
+       std::vector<std::tuple<std::string, const char*, Distortion>>{
+           {ros_, "ros.yaml", lens},
            {kRosMessage, "info.yml", {1, 2, 3, 4, 5, 6, 7, 8}},
            {kOpenCv, "opencv.yml", lens},
            {kOpenCvXml, "opencv.xml", lens},
-           {kKalibr, "camchain.yaml", lens_of_four},
+           {kalibr_, "camchain.yaml", lens_of_four},
            {kEuroc, "sensor.yaml", lens_of_four},
            {kOrbSlam, "orb.yaml", lens_of_four},
            {kDistCoeff, "dist_coeff.yaml", lens_of_four}}) {
@@ -224,8 +189,8 @@ TEST_F(CalibrationFileTest, AllToolsSayTheSameCamera) {
 }
 
 TEST_F(CalibrationFileTest, EurocAndKalibrSayWhereTheCameraIs) {
-  EXPECT_FALSE(Read(kRos).body_from_camera);
-  for (const char* text : {kEuroc, kKalibr}) {
+  EXPECT_FALSE(Read(ros_).body_from_camera);
+  for (const std::string& text : {std::string(kEuroc), kalibr_}) {
     const auto body_from_camera = Read(text).body_from_camera;
     ASSERT_TRUE(body_from_camera) << text;
     EXPECT_TRUE(
@@ -238,7 +203,7 @@ TEST_F(CalibrationFileTest, EurocAndKalibrSayWhereTheCameraIs) {
 TEST_F(CalibrationFileTest, WideLensesOfKalibrAreNamed) {
   for (const auto& [from, to] :
        {std::pair("radtan", "equidistant"), {"pinhole", "omni"}, {"pinhole", "eucm"}}) {
-    std::string text = kKalibr;
+    std::string text = kalibr_;
     text.replace(text.find(from), std::string(from).size(), to);
     text.replace(text.find("[500,"), 5, "[0.5, 500,");
     ExpectError<InputError>([&] { Read(text); },
@@ -268,9 +233,10 @@ TEST_F(CalibrationFileTest, BadCalibrationsAreNamed) {
 }
 
 TEST_F(CalibrationFileTest, WhatSaysNothingOfTheCameraIsOfNoMatter) {
-  std::string text = kRos;
+  std::string text = ros_;
   text +=
       "fisheye_model: 0\nbinning_x: 1\nbinning_y: 0\nmin_dist: 30\n"
+      "rectification_matrix: {rows: 3, cols: 3, data: [1, 0, 0, 0, 1, 0, 0, 0, 1]}\n"
       "roi: {x_offset: 0, y_offset: 0, width: 640, height: 480, do_rectify: false}\n";
   EXPECT_EQ(Read(text).camera.camera, kCamera);
 }

@@ -16,32 +16,6 @@
 namespace soslam {
 namespace {
 
-// Bytes of COLMAP's binary files, one number after the other.
-class ColmapBytes {
- public:
-  template <typename Number>
-  ColmapBytes& Add(const std::vector<Number>& numbers) {
-    bytes_.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number));
-    return *this;
-  }
-  ColmapBytes& Text(const std::string& text) {
-    bytes_ += text + '\0';
-    return *this;
-  }
-  operator const std::string&() const { return bytes_; }  // NOLINT: reads as the bytes
-
- private:
-  std::string bytes_;
-};
-
-std::string ColmapCamerasBinary(int model, const std::vector<double>& parameters) {
-  return ColmapBytes()
-      .Add<std::uint64_t>({1})
-      .Add<std::int32_t>({1, model})
-      .Add<std::uint64_t>({640, 480})
-      .Add(parameters);
-}
-
 class ColmapModelTest : public FolderTest {
  protected:
   LensCamera Cameras(const std::string& lines) {
@@ -121,6 +95,10 @@ TEST_F(ColmapModelTest, BadPosesAreNamed) {
   refused("", {"images.txt", "no pose"});
 }
 
+// Bytes before numbers of the first camera and of the first point.
+constexpr size_t kModelOfCamera = 12, kFocalLengthOfCamera = 32;
+constexpr size_t kZOfPoint = 32, kImageOfPoint = 59;
+
 // Two images and two points, in both formats; the second point comes first.
 class WholeModelTest : public FolderTest {
  protected:
@@ -133,46 +111,20 @@ class WholeModelTest : public FolderTest {
                "9 4 5 6 255 0 0 -1 4 0 3 0\n7 1 2 3 0 0 0 0.25 3 1 4 0\n");
   }
 
-  // The bytes of a file of the binary model.
-  static std::string Images() {
-    return ColmapBytes()
-        .Add<std::uint64_t>({2})
-        .Add<std::uint32_t>({3})
-        .Add<double>({0.5, 0.5, -0.5, 0.5, 2, 3, -1})
-        .Add<std::uint32_t>({1})
-        .Text("rgb/a b.jpg")
-        .Add<std::uint64_t>({2})
-        .Add<double>({10.5, 20.5})
-        .Add<std::int64_t>({-1})
-        .Add<double>({1.5, 2.5})
-        .Add<std::int64_t>({7})
-        .Add<std::uint32_t>({4})
-        .Add<double>({1, 0, 0, 0, -4, 0, 0})
-        .Add<std::uint32_t>({1})
-        .Text("rgb/c.jpg")
-        .Add<std::uint64_t>({1})
-        .Add<double>({3, 4})
-        .Add<std::int64_t>({7});
+  // A file of the binary model with the same content.
+  static std::string InCorpus(const std::string& name) {
+    return FileBytes(SOSLAM_SOURCE_DIR "/tests/fuzz/corpus/colmap/" + name);
   }
-  static std::string Points(double z = 6.0, std::uint32_t image = 4) {
-    return ColmapBytes()
-        .Add<std::uint64_t>({2, 9})
-        .Add<double>({4, 5, z})
-        .Add<std::uint8_t>({255, 0, 0})
-        .Add<double>({-1})
-        .Add<std::uint64_t>({2})
-        .Add<std::uint32_t>({image, 0, 3, 0})
-        .Add<std::uint64_t>({7})
-        .Add<double>({1, 2, 3})
-        .Add<std::uint8_t>({0, 0, 0})
-        .Add<double>({0.25})
-        .Add<std::uint64_t>({2})
-        .Add<std::uint32_t>({3, 1, 4, 0});
+  // The file with other bytes at this place.
+  template <typename Number>
+  static std::string Patched(const std::string& name, size_t offset, Number number) {
+    return InCorpus(name).replace(offset, sizeof number, reinterpret_cast<const char*>(&number),
+                                  sizeof number);
   }
   void WriteBinary() {
-    Write("cameras.bin", ColmapCamerasBinary(2, {500, 320, 240, 0.1}));
-    Write("images.bin", Images());
-    Write("points3D.bin", Points());
+    Write("cameras.bin", InCorpus("cameras_bin"));
+    Write("images.bin", InCorpus("images_bin"));
+    Write("points3D.bin", InCorpus("points_bin"));
   }
   void ExpectRefused(const std::vector<std::string>& words) {
     ExpectError<InputError>([&] { ReadColmapModel(folder_.path()); }, words);
@@ -225,21 +177,21 @@ TEST_F(WholeModelTest, BinaryFilesThatAreCutAreRefused) {
 
 TEST_F(WholeModelTest, BinaryNumbersThatCannotBeAreRefused) {
   WriteBinary();
-  Write("points3D.bin", Points(std::nan("")));
+  Write("points3D.bin", Patched("points_bin", kZOfPoint, std::nan("")));
   ExpectRefused({"points3D.bin: point 1", "nan"});
-  Write("points3D.bin", ColmapBytes().Add<std::uint64_t>({1ull << 60}));
+  Write("points3D.bin", InCorpus("many_points_bin"));
   ExpectRefused({"points3D.bin", "1152921504606846976 points", "damaged"});
-  Write("cameras.bin", ColmapCamerasBinary(8, {500, 320, 240, 0.1}));
+  Write("cameras.bin", Patched("cameras_bin", kModelOfCamera, std::int32_t{8}));
   ExpectRefused({"cameras.bin: camera 1", "'SIMPLE_RADIAL_FISHEYE'", "image_undistorter"});
-  Write("cameras.bin", ColmapCamerasBinary(77, {}));
+  Write("cameras.bin", Patched("cameras_bin", kModelOfCamera, std::int32_t{77}));
   ExpectRefused({"cameras.bin: camera 1", "model 77"});
-  Write("cameras.bin", ColmapCamerasBinary(2, {-500, 320, 240, 0.1}));
+  Write("cameras.bin", Patched("cameras_bin", kFocalLengthOfCamera, -500.0));
   ExpectRefused({"cameras.bin: camera 1", "focal length above 0"});
 }
 
 TEST_F(WholeModelTest, TracksOfOtherModelsAreRefused) {
   WriteBinary();
-  Write("points3D.bin", Points(6.0, 5));
+  Write("points3D.bin", Patched("points_bin", kImageOfPoint, std::uint32_t{5}));
   ExpectRefused({"points3D.bin: point 9", "image point 0 of image 5", "one model"});
   std::filesystem::remove(folder_ / "cameras.bin");
   Write("points3D.txt", "7 1 2 3 0 0 0 0.25 3 2\n");

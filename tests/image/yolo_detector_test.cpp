@@ -121,9 +121,9 @@ TEST_F(YoloDetectorTest, EndToEndKeepsOverlaps) {
 
 // The end of this graph is what OpenCV before 4.7 does not run. Masks are a second output.
 TEST_F(YoloDetectorTest, V8WithMasksAsExported) {
-  const V8Network network = {{{8, 15, 24, 25, 36, 0, 0.81F},
-                              {16, 16, 24, 26, 36, 0, 0.72F},
-                              {8, 36, 16, 44, 24, 1, 0.3F}}};
+  const V8Network network = {{{0, {20, 30, 10, 12}, 0, 0.81F},
+                              {64, {21, 30, 10, 12}, 0, 0.72F},
+                              {83, {40, 20, 8, 8}, 1, 0.3F}}};
   ExpectTheTwoBoxes(Detect(network, image_), 0.81, 0.3);
 }
 

@@ -34,12 +34,6 @@ std::vector<std::optional<ShapePrior>> TruePriors(const Sequence& sequence) {
   return priors;
 }
 
-UprightOptions WithoutAxes() {
-  UprightOptions options;
-  options.axes_weight = 0.0;
-  return options;
-}
-
 TEST(InitialiseUpright, HasUprightHypothesesInTheOrderOfTheirCosts) {
   const Sequence sequence = Bodies();
   const auto priors = TruePriors(sequence);
@@ -68,27 +62,6 @@ TEST(InitialiseUpright, HasUprightHypothesesInTheOrderOfTheirCosts) {
           1e-9);
     }
   }
-}
-
-TEST(InitialiseUpright, HasTheTrueBodyAmongItsHypotheses) {
-  const Sequence sequence = Bodies();
-  const LandmarkEstimates estimates =
-      InitialiseUpright(sequence, TruePriors(sequence), WithoutAxes(), 2);
-  size_t found = 0;
-  for (const ObservationEstimate& estimate : estimates.observations) {
-    const Landmark truth =
-        *TrueLandmarkInCamera(sequence, sequence.detections[estimate.detection_index]);
-    EXPECT_LT(estimate.hypotheses.front().cost, 1e-3);
-    found += std::any_of(estimate.hypotheses.begin(), estimate.hypotheses.end(),
-                         [&](const Hypothesis& hypothesis) {
-                           return IsSameBody(hypothesis.landmark_in_camera, truth, 0.05);
-                         })
-                 ? 1
-                 : 0;
-  }
-  // Neighbouring yaws that are almost equally good share one hypothesis, which may not be the true
-  // one.
-  EXPECT_GE(found, estimates.observations.size() * 9 / 10);
 }
 
 TEST(InitialiseUpright, NamesObjectsWithoutRatio) {

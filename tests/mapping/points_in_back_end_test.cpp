@@ -36,12 +36,5 @@ TEST(TangencyBackEnd, PointsWithDefaultWeightsDoNoHarm) {
   EXPECT_GT(GainOfPoints(sequence, WithBoxNoise(sequence, 6.0), TangencyOptions()), -0.01);
 }
 
-TEST(TangencyBackEnd, ObjectsWithoutPointsAreCounted) {
-  const Sequence sequence = CuboidSequence(3, 8);
-  BackEndInput input = TruthInput(sequence);
-  input.points.resize(sequence.objects.size());
-  EXPECT_EQ(OptimiseMap(input, TangencyOptions()).solver.gated.at("objects_without_points"), 3);
-}
-
 }  // namespace
 }  // namespace soslam

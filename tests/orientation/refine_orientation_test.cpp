@@ -153,6 +153,11 @@ TEST_F(RefineBoxes, FindsTheYawOfTexturedBoxes) {
     const RefinedObservation refined = Refine(i, OffAxesOptions());
     ExpectTruth(i, refined, 6.0 * kRadPerDeg, 0.88);
     EXPECT_LT(std::abs(YawError(refined)), 2.5 * *refined.record.yaw_sigma) << i;
+    EXPECT_FALSE(refined.record.yaw.empty());
+    for (const std::string part : {"total", "edge_alignment", "texture_symmetry"}) {
+      ASSERT_EQ(refined.record.cost.count(part), 1) << part;
+      EXPECT_EQ(refined.record.cost.at(part).size(), refined.record.yaw.size()) << part;
+    }
   }
 }
 

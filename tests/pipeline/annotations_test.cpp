@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/hash.h"
+#include "support/folder_test.h"
 #include "support/run_command.h"
 #include "support/temporary_folder.h"
 
@@ -40,18 +41,12 @@ TEST(AnnotationsTest, AllOfFr2DeskHasTheFilesOfItsImages) {
 }
 
 // prepare.sh of a dataset on downloads that the test makes.
-class PrepareTest : public testing::Test {
+class PrepareTest : public FolderTest {
  protected:
   void Prepare(const std::string& name, const fs::path& own) const {
     ExpectSuccess(RunCommand({"env", "-C", folder_.path().string(), "bash", "-euo", "pipefail",
                               (kAnnotations / name / "prepare.sh").string(), own.string()}));
   }
-  void Write(const std::string& name, const std::string& bytes) const {
-    fs::create_directories((folder_ / name).parent_path());
-    WriteBytes(folder_ / name, bytes);
-  }
-
-  TemporaryFolder folder_;
 };
 
 // OpenCV's encoder is an independent witness.

@@ -17,7 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-using testing::AllOf;
 using testing::HasSubstr;
 
 // Runs stages one by one, each on what those before it wrote into folder "chain".
@@ -58,7 +57,6 @@ class StageChain {
       add("curves", artefact("symmetry.h5"));
     }
     if (stage == "optimise") add("landmarks", artefact("refined.json"));
-    if (fs::exists(Artefact("settings.json"))) add("settings", artefact("settings.json"));
     return RunCommand(words);
   }
 
@@ -125,11 +123,6 @@ void Truncate(const fs::path& file) { fs::resize_file(file, fs::file_size(file) 
 void LinkToItself(const fs::path& file) {
   fs::remove_all(file);
   fs::create_symlink(file.filename(), file);
-}
-
-void PutFolderInPlaceOf(const fs::path& file) {
-  fs::remove(file);
-  fs::create_directory(file);
 }
 
 // Replaces a file of the dataset by a symbolic link to a file with the same content elsewhere.
@@ -220,17 +213,9 @@ TEST_P(RefusedInputTest, EndsWithItsExitCodeAndOneLineThatNamesIt) {
 constexpr const char* kDetectionsHeader = "frame,object_id,label,score,x1,y1,x2,y2\n";
 
 const std::vector<RefusedInput> kRefusedInputs = {
-    Refused("ImageTruncated", "edges", InDataset("rgb/000002.png", Truncate), {"rgb/000002.png"}),
-    Refused("DetectionsMalformed", "import",
-            InDataset("detections.csv", Line(3, "0,2,stool,1.0,wide,100,200,200")),
-            {"detections.csv:3", "x1", "'wide'"}),
     Refused("NoDetectionLeft", "import", InDataset("detections.csv", Content(kDetectionsHeader)),
             {"no usable detection"}, 4),
     Refused("EdgesTruncated", "refine", InArtefact("edges.h5", Truncate), {"edges.h5"}),
-    Refused("SequenceNewer", "initialise",
-            InArtefact("sequence.json",
-                       Text("\"schema_version\": [\n   1,", "\"schema_version\": [\n   2,")),
-            {"sequence.json", "schema version [2, 8]", "[1, 8]"}),
     Refused("ArtefactOfAnotherKind", "optimise",
             [](const StageChain& chain) {
               fs::copy_file(chain.Artefact("sequence.json"), chain.Artefact("refined.json"),
@@ -247,8 +232,6 @@ const std::vector<RefusedInput> kRefusedInputs = {
     Refused("AMillionDigits", "import",
             InDataset("odometry.txt", Line(3, std::string(1000000, '1') + "e 0 0 1 0 0 0 1")),
             {"odometry.txt:3", "timestamp is '11", " ... ", "expected a finite number"}),
-    Refused("FolderForFile", "import", InDataset("detections.csv", PutFolderInPlaceOf),
-            {"detections.csv", "cannot be read"}),
     Refused("LinkToItself", "import", InDataset("camera.json", LinkToItself),
             {"camera.json is missing"}),
     Refused("ZeroByteInLabel", "import",
@@ -298,17 +281,6 @@ TEST(UnusableInputTest, NoLabelInTheTable) {
   const StageChain& chain = StageChain::Finished();
   TableOf({"sofa"})(chain);
   EXPECT_THAT(ExpectExit(4, chain.Run("initialise")).errors, HasSubstr("no_ratio_for_label 12"));
-}
-
-TEST(UnknownSettingTest, IsRefusedByEveryStage) {
-  const StageChain& chain = StageChain::Finished();
-  WriteBytes(chain.Artefact("settings.json"), R"({"colour": "red"})");
-  for (const std::string& stage : StageChain::kStages) {
-    SCOPED_TRACE(stage);
-    const std::string errors = ExpectExit(2, chain.Run(stage)).errors;
-    EXPECT_THAT(errors, AllOf(HasSubstr("settings.json"), HasSubstr("colour")));
-    EXPECT_EQ(std::ranges::count(errors, '\n'), 1) << errors;
-  }
 }
 
 }  // namespace

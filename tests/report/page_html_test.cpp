@@ -18,11 +18,6 @@ TEST(UrlOf, IsTheSameBytes) {
   EXPECT_EQ(UrlOf("a b%.\xe9"), "a%20b%25%2E%E9");
 }
 
-TEST(Utf8, ReplacesWhatIsNone) {
-  EXPECT_EQ(Utf8("caf\xc3\xa9"), "caf\xc3\xa9");
-  EXPECT_EQ(Utf8("caf\xe9!"), "caf\xef\xbf\xbd!");
-}
-
 TEST(HtmlText, IsTextWithinElementsAndQuotes) {
   EXPECT_EQ(HtmlText("<b a='1' c=\"2\"> & \xe9"),
             "&lt;b a=&#39;1&#39; c=&quot;2&quot;&gt; &amp; \xef\xbf\xbd");
@@ -36,13 +31,6 @@ TEST(PageHtml, EndsNoElementBecauseOfWhatItShows) {
   EXPECT_THAT(html, Not(HasSubstr("alert(1)</script>")));
   EXPECT_THAT(html, Not(HasSubstr("<script>")));
   EXPECT_THAT(html, HasSubstr("\\u003c/script>"));
-}
-
-TEST(PageHtml, FillsNothingIntoWhatItShows) {
-  const std::string html =
-      PageHtml("{{data}}", "{{style}}", {{"label", "{{scripts}}"}}, PageScripts::kNone);
-  EXPECT_THAT(html, AllOf(HasSubstr("<title>{{data}}"), HasSubstr("\n{{style}}</main>"),
-                          HasSubstr("{\"label\":\"{{scripts}}\"}")));
 }
 
 TEST(PageHtml, CarriesTheLicencesOfTheScriptsInIt) {

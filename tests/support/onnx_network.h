@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -167,96 +165,43 @@ struct MeanNetwork {
   std::string Onnx() const { return Graph().Onnx(metadata, opset); }
 };
 
-// The head of YOLOv8's graph as Ultralytics exports it with masks and two classes, for an input of
-// 64 x 64: distances to the four sides as the mean of 16 bins, boxes in cells [1, 4, 84] by the
-// pixels of a cell [1, 84], beside the scores' Sigmoid and three coefficients of masks. What it
-// finds does not depend on the image.
+// The end of YOLOv8's graph as Ultralytics exports it with masks and two classes, for an input of
+// 64 x 64: boxes in cells [1, 4, 84] by the pixels of a cell [1, 84], beside scores and three
+// coefficients of masks. What it finds does not depend on the image.
 struct V8Network {
   struct Found {
-    int stride;
-    float x_min, y_min, x_max, y_max;  // px, around the centre of the cell that contains the centre
+    int candidate;             // 64 with cells of 8 px, 16 of 16 px, 4 of 32 px
+    std::array<float, 4> box;  // centre and size, px
     int label;
     float score;
   };
   std::vector<Found> found;
 
   std::string Onnx() const {
+    constexpr int kCandidates = 84, kFields = 4 + 2 + 3;
+    std::vector<float> numbers(kFields * kCandidates, 0.0F), strides(64, 8.0F);
+    strides.resize(80, 16.0F);
+    strides.resize(kCandidates, 32.0F);
+    for (const Found& object : found) {
+      float* const fields = &numbers[object.candidate];
+      for (int i = 0; i < 4; ++i) {
+        fields[i * kCandidates] = object.box[i] / strides[object.candidate];
+      }
+      fields[(4 + object.label) * kCandidates] = object.score;
+    }
     OnnxGraph graph;
-    graph.Input("images", {1, 3, 64, 64}).Output("output0", {1, 9, kCells});
-    AddMeans("numbers", Numbers(), {}, "numbers_weights", &graph);
     const auto axis = OnnxGraph::Integer("axis", 1);
-    graph.Int64s("shape", {1, kFields, kCells}).Node("Reshape", {"numbers", "shape"}, "fields");
-    graph.Node("Split", {"fields"}, std::vector<std::string>{"bins", "logits", "coefficients"},
-               {axis, OnnxGraph::Integers("split", {4 * kBins, 2, 3})});
-    AddBoxes(axis, &graph);
-    graph.Node("Sigmoid", {"logits"}, "scores")
-        .Node("Concat", {"in_pixels", "scores", "coefficients"}, "output0", {axis})
+    graph.Input("images", {1, 3, 64, 64}).Output("output0", {1, kFields, kCandidates});
+    AddMeans("numbers", numbers, {}, "numbers_weights", &graph);
+    graph.Int64s("shape", {1, kFields, kCandidates}).Floats("strides", {1, kCandidates}, strides);
+    graph.Node("Reshape", {"numbers", "shape"}, "fields")
+        .Node("Split", {"fields"}, std::vector<std::string>{"in_cells", "rest"},
+              {axis, OnnxGraph::Integers("split", {4, kFields - 4})})
+        .Node("Mul", {"in_cells", "strides"}, "in_pixels")
+        .Node("Concat", {"in_pixels", "rest"}, "output0", {axis})
         .Node("GlobalAveragePool", {"images"}, "output1")
         .Output("output1", {1, 3, 1, 1});
     return graph.Onnx();
-  }
-
- private:
-  static constexpr int kCells = 84, kBins = 16, kFields = 4 * kBins + 5;
-
-  // The logits of bins and classes, all candidates of one after the other.
-  std::vector<float> Numbers() const {
-    std::vector<float> numbers(kFields * kCells, -30.0F);
-    for (const Found& object : found) {
-      const auto cells = static_cast<float>(object.stride);
-      const int column = static_cast<int>((object.x_min + object.x_max) / (2 * cells));
-      const int row = static_cast<int>((object.y_min + object.y_max) / (2 * cells));
-      const int first = object.stride == 8 ? 0 : object.stride == 16 ? 64 : 80;
-      const int cell = first + row * (64 / object.stride) + column;
-      const auto at = [&](int field) -> float& { return numbers[field * kCells + cell]; };
-      const float x = static_cast<float>(column) + 0.5F, y = static_cast<float>(row) + 0.5F;
-      const std::array<float, 4> sides = {x - object.x_min / cells, y - object.y_min / cells,
-                                          object.x_max / cells - x, object.y_max / cells - y};
-      for (int side = 0; side < 4; ++side) {
-        const float distance = sides[side];
-        const int bin = static_cast<int>(distance);
-        const float rest = distance - static_cast<float>(bin);
-        at(side * kBins + bin) = std::log(1.0F - rest);
-        at(side * kBins + bin + 1) = std::log(std::max(rest, 1e-9F));
-      }
-      at(4 * kBins + object.label) = std::log(object.score / (1.0F - object.score));
-    }
-    return numbers;
-  }
-
-  static void AddBoxes(const ProtoMessage& axis, OnnxGraph* graph) {
-    std::vector<float> anchors_x, anchors_y, strides, bins;
-    for (const int stride : {8, 16, 32}) {
-      const int side = 64 / stride;
-      for (int cell = 0; cell < side * side; ++cell) {
-        anchors_x.push_back(static_cast<float>(cell % side) + 0.5F);
-        anchors_y.push_back(static_cast<float>(cell / side) + 0.5F);
-        strides.push_back(static_cast<float>(stride));
-      }
-    }
-    for (int bin = 0; bin < kBins; ++bin) bins.push_back(static_cast<float>(bin));
-    std::vector<float> anchors = anchors_x;
-    anchors.insert(anchors.end(), anchors_y.begin(), anchors_y.end());
-    graph->Floats("anchors", {1, 2, kCells}, anchors).Floats("strides", {1, kCells}, strides);
-    graph->Floats("bin_numbers", {1, kBins, 1, 1}, bins).Floats<float>("two", {}, {2.0F});
-    graph->Int64s("shape_of_bins", {1, 4, kBins, kCells}).Int64s("shape_of_sides", {1, 4, kCells});
-    graph->Int64s("axes", {1}).Int64s("at0", {0}).Int64s("at2", {2}).Int64s("at4", {4});
-    graph->Node("Reshape", {"bins", "shape_of_bins"}, "bins_of_sides")
-        .Node("Transpose", {"bins_of_sides"}, "sides_of_bins",
-              {OnnxGraph::Integers("perm", {0, 2, 1, 3})})
-        .Node("Softmax", {"sides_of_bins"}, "weights_of_bins", {axis})
-        .Node("Conv", {"weights_of_bins", "bin_numbers"}, "mean_bins",
-              {OnnxGraph::Integers("kernel_shape", {1, 1})})
-        .Node("Reshape", {"mean_bins", "shape_of_sides"}, "sides")
-        .Node("Slice", {"sides", "at0", "at2", "axes"}, "left_top")
-        .Node("Slice", {"sides", "at2", "at4", "axes"}, "right_bottom")
-        .Node("Sub", {"anchors", "left_top"}, "min")
-        .Node("Add", {"anchors", "right_bottom"}, "max")
-        .Node("Add", {"min", "max"}, "sum")
-        .Node("Div", {"sum", "two"}, "centres")
-        .Node("Sub", {"max", "min"}, "sizes")
-        .Node("Concat", {"centres", "sizes"}, "in_cells", {axis})
-        .Node("Mul", {"in_cells", "strides"}, "in_pixels");
   }
 };
 

@@ -9,12 +9,8 @@ namespace soslam {
 // The poses and planes of a sequence as a map of it, without objects.
 inline MapEstimate EmptyMap(const Sequence& sequence) {
   MapEstimate map;
-  for (const Frame& frame : sequence.frames) {
-    map.world_from_camera.push_back(frame.world_from_camera);
-  }
-  for (const SupportPlane& plane : sequence.planes) {
-    map.planes_in_world.push_back(plane.plane_in_world);
-  }
+  map.world_from_camera = PosesOf(sequence);
+  map.planes_in_world = PlanesOf(sequence);
   return map;
 }
 
