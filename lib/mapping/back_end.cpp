@@ -12,7 +12,7 @@ namespace {
 // Image residuals are renewed until no landmark changes by more than the tolerance (m per m of
 // size, rad): which texture and edges are visible, and where the mirror planes are, depends on the
 // landmarks.
-constexpr int kMaxImageRounds = 25;
+constexpr int kMaxImageRounds = 50;
 constexpr double kConvergenceTolerance = 1e-3;
 // A round need not converge, as the next one changes its residuals.
 constexpr int kIterationsPerRound = 10;
