@@ -121,7 +121,7 @@ json EstimateToJson(const ObjectEstimate& estimate, const Sequence& sequence) {
 }  // namespace
 
 json ObjectEstimatesToJson(const std::vector<ObjectEstimate>& estimates, const Sequence& sequence) {
-  return ListToJson(estimates, EstimateToJson, sequence);
+  return ListToJson(estimates, &EstimateToJson, sequence);
 }
 
 ObjectEstimate ObjectEstimateFromJson(const json& row) {

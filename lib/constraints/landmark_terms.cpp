@@ -131,7 +131,7 @@ void YawTerm::Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> res
 
 void LeaningTerm::Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
                            Jacobian* jacobian) const {
-  const StandingOnPlane standing(landmark, plane_, sigmas_, true);
+  const StandingOnPlane standing(landmark, plane_, sigmas_, /*may_lean=*/true);
   residuals = standing.residuals;
   if (jacobian != nullptr) *jacobian = standing.d_landmark;
 }

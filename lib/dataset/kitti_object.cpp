@@ -39,7 +39,7 @@ void AddFrame(const fs::path& folder, const NumberedPath& label_file, ImageOrien
   const fs::path calibration_file = RequiredFile(folder / "calib" / label_file.path.filename());
   content->files.insert(content->files.end(), {label_file.path, calibration_file});
   const KittiCalibration calibration = ReadKittiCalibration(calibration_file);
-  const std::vector<KittiLabel> labels = ReadKittiLabels(label_file.path, false);
+  const std::vector<KittiLabel> labels = ReadKittiLabels(label_file.path, /*has_tracks=*/false);
   if (labels.size() > kIdsPerFrame) {
     throw InputError(fmt::format("{}: has {} labels; expected at most {}", label_file.path.string(),
                                  labels.size(), kIdsPerFrame));

@@ -85,7 +85,7 @@ class Recording {
         options_(options),
         content_(content) {
     calibration_ = ReadKittiCalibration(Read(folder / "calib" / file_));
-    labels_ = ReadKittiLabels(Read(labels.path), true);
+    labels_ = ReadKittiLabels(Read(labels.path), /*has_tracks=*/true);
     poses_ = ReadKittiTrajectory(Read(folder / options_.kitti.poses / file_));
     const double scale =
         RecordingValues("translation_scale", options_.kitti.translation_scale).PositiveOf(number_);

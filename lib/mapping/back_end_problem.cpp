@@ -303,7 +303,7 @@ void BackEndProblem::Solve(int max_iterations) {
     // step, each is optimised alone.
     options.inner_iteration_ordering = LandmarkOrdering();
     options.use_inner_iterations = options.inner_iteration_ordering->NumElements() > 0;
-    // Ceres ends inner iterations for good once they gain less than this.
+    // Ceres ends inner iterations for good once they gain less than this: as soon as a step would.
     options.inner_iteration_tolerance = options.function_tolerance;
   }
   IterationProgress progress;

@@ -100,7 +100,7 @@ class Learner {
       : pooled_(pooled), options_(options) {}
 
   // Updates a row of the base table, or learns a new one that has no more than a label and a shape.
-  SemanticRow Improved(const SemanticRow& base, const RowData& data, bool is_new) const {
+  SemanticRow Learned(const SemanticRow& base, const RowData& data, bool is_new) const {
     const bool update = is_new || options_.base_rows == BaseRows::kUpdate;
     const auto known = [&](double median, double log_sigma) {
       const double objects = std::max(1, base.samples);
@@ -234,14 +234,14 @@ SemanticRows LearnPriors(const SemanticRows& base, const std::vector<PriorSource
   SemanticRows learned{base.description, base.default_row, {}};
   if (learned.default_row) learner.LearnCorrelation({}, &learned.default_row->prior);
   for (const SemanticRow& row : base.rows) {
-    learned.rows.push_back(learner.Improved(row, data[row.label], false));
+    learned.rows.push_back(learner.Learned(row, data[row.label], /*is_new=*/false));
     data.erase(row.label);
   }
   SemanticRow new_row;
   if (base.default_row) new_row.prior.shape_exponents = base.default_row->prior.shape_exponents;
   for (const auto& [label, of_label] : data) {
     new_row.label = label;
-    learned.rows.push_back(learner.Improved(new_row, of_label, true));
+    learned.rows.push_back(learner.Learned(new_row, of_label, /*is_new=*/true));
   }
   std::ranges::sort(learned.rows, {}, &SemanticRow::label);
   LookUpTable(learned);  // throws if names are not unique

@@ -17,10 +17,10 @@
 
 namespace soslam {
 
-// Edge maps of a sequence's frames in file "edges"; both arguments must outlive it. Thread-safe.
-// It throws InputError when the frame is missing, or its maps are not of its camera's size, as
-// those of other images.
+// Edge maps of a frame. Thread-safe. Throws InputError when the frame is missing, or its maps are
+// not of its camera's size, as those of other images.
 using EdgeSource = std::function<EdgeMaps(const Frame&)>;
+// Those in file "edges". Both arguments must outlive what is returned.
 EdgeSource EdgesOfSequence(const Sequence& sequence, const StageFiles& files);
 
 // Throws SettingsError if points are to be used and no file "points" is given.

@@ -123,7 +123,7 @@ class Reproduction {
     }
     if (written.empty()) return record.stage + " is no stage of the pipeline";
     for (const RunFile& input : record.inputs) {
-      if (written.contains(input.argument.value_or("")))
+      if (input.argument && written.contains(*input.argument))
         return "--" + *input.argument + " is among its inputs";
     }
     for (const auto& [argument, folder] : record.folders) {

@@ -87,7 +87,7 @@ class RunRecorderTest : public FolderTest {
   // "argument relative_to path" of each file.
   static std::vector<std::string> Places(const std::vector<RunFile>& files) {
     return Fields(files, [](const RunFile& file) {
-      return file.argument.value_or("") + " " + file.relative_to + " " + file.path.string();
+      return file.argument.value_or("-") + " " + file.relative_to + " " + file.path.string();
     });
   }
 

@@ -11,6 +11,7 @@
 namespace soslam {
 namespace {
 
+using testing::Each;
 using testing::ElementsAre;
 using testing::Pair;
 
@@ -214,9 +215,10 @@ TEST_F(MapQualityTest, ThereIsNoneWithoutTruth) {
 
 // The largest overlap is not in the best sum, unless the threshold leaves no other way.
 TEST(MatchByIou, IsTheBestSumOfThoseThatReachTheThreshold) {
-  const Eigen::MatrixXd ious{{0.9, 0.8}, {0.85, 0.1}};
-  EXPECT_THAT(MatchByIou(ious, 0.8), ElementsAre(1, 0));
+  const Eigen::MatrixXd ious{{0.9, 0.1, 0.8}, {0.85, 0.1, 0.1}};
+  EXPECT_THAT(MatchByIou(ious, 0.8), ElementsAre(2, 0));
   EXPECT_THAT(MatchByIou(ious, 0.81), ElementsAre(0, kUnassigned));
+  EXPECT_THAT(MatchByIou(ious.leftCols(0), 0.8), Each(kUnassigned));
 }
 
 AlignedLandmark CubeAt(double x, double half_axis) {

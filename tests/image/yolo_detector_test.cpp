@@ -120,7 +120,7 @@ TEST_F(YoloDetectorTest, EndToEndKeepsOverlaps) {
 }
 
 // The end of this graph is what OpenCV before 4.7 does not run. Masks are a second output.
-TEST_F(YoloDetectorTest, V8WithMasksAsExported) {
+TEST_F(YoloDetectorTest, V8WithMasks) {
   const V8Network network = {{{0, {20, 30, 10, 12}, 0, 0.81F},
                               {64, {21, 30, 10, 12}, 0, 0.72F},
                               {83, {40, 20, 8, 8}, 1, 0.3F}}};

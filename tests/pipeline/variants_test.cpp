@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include "artefact/files.h"
+#include "artefact/hdf5_artefact.h"
 #include "support/small_pipeline.h"
 
 namespace soslam {
@@ -24,6 +26,9 @@ TEST(VariantsTest, ResultsDoNotDependOnThreadsOrFolders) {
       EXPECT_TRUE(found.at(name) == bytes) << name << " differs";
     }
   }
+  const auto variant = one_thread.Results() / "OursSTE";
+  EXPECT_EQ(ReadSymmetry(variant / "symmetry.h5").size(),
+            ReadSequence(variant / "sequence.json").detections.size());
 }
 
 }  // namespace

@@ -33,6 +33,13 @@ TEST(PageHtml, EndsNoElementBecauseOfWhatItShows) {
   EXPECT_THAT(html, HasSubstr("\\u003c/script>"));
 }
 
+TEST(PageHtml, FillsNothingIntoWhatItShows) {
+  const std::string html =
+      PageHtml("{{data}}", "{{style}}", {{"label", "{{scripts}}"}}, PageScripts::kNone);
+  EXPECT_THAT(html, AllOf(HasSubstr("<title>{{data}}"), HasSubstr("\n{{style}}</main>"),
+                          HasSubstr("{\"label\":\"{{scripts}}\"}")));
+}
+
 TEST(PageHtml, CarriesTheLicencesOfTheScriptsInIt) {
   const std::string html = PageHtml("room", "", {}, PageScripts::kDataset);
   const size_t footer = html.find("<footer>");

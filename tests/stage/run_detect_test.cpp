@@ -92,6 +92,9 @@ TEST_F(RunDetectTest, CommentsSayWhatItWasMadeFrom) {
 TEST_F(RunDetectTest, SameBytesForAnyNumberOfThreads) {
   ExpectSameBytesForThreads([&](int threads) { Run(Files(), threads); },
                             {folder_ / "detections.csv"});
+  const std::string bytes = FileBytes(folder_ / "detections.csv");
+  Run(Files(), 50);  // more than images
+  EXPECT_EQ(FileBytes(folder_ / "detections.csv"), bytes);
 }
 
 TEST_F(RunDetectTest, BadInputIsNamedAndNothingIsWritten) {

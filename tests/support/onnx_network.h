@@ -165,7 +165,7 @@ struct MeanNetwork {
   std::string Onnx() const { return Graph().Onnx(metadata, opset); }
 };
 
-// The end of YOLOv8's graph as Ultralytics exports it with masks and two classes, for an input of
+// The end of a YOLOv8 graph with masks and two classes, as far as boxes go, for an input of
 // 64 x 64: boxes in cells [1, 4, 84] by the pixels of a cell [1, 84], beside scores and three
 // coefficients of masks. What it finds does not depend on the image.
 struct V8Network {
