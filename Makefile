@@ -213,8 +213,8 @@ SIDE_BY_SIDE = $(if $(SEVERAL_VARIANTS),$(if $(GIVEN_JOBS)$(LAUNCH),,--jobs=$(sh
 .PHONY: run
 run: build ## Run DATASET=<name> through VARIANT=<name>|all; only what is out of date, past what fails; -j1: one stage at a time
 	$(if $(SIDE_BY_SIDE),@echo 'run: stages side by side; each prints when it ends (-j1: one by one with progress)')
-	+@status=0; $(MAKE) $(SIDE_BY_SIDE) run-built || status=$$?; \
-	  echo 'run: results are in $(RESULTS)/$(DATASET)/<variant>/ (make report: tables and pages)'; exit $$status
+	+@$(MAKE) $(SIDE_BY_SIDE) run-built
+	@echo 'run: results are in $(RESULTS)/$(DATASET)/$(if $(SEVERAL_VARIANTS),<variant>,$(VARIANT))/ (make report: tables and pages)'
 
 .PHONY: run-built
 run-built:

@@ -9,8 +9,8 @@ StandingOnPlane::StandingOnPlane(const Landmark& landmark, const Plane& plane,
                                  const StandingSigmas& sigmas, bool may_lean) {
   const Eigen::Matrix3d frame_from_object = landmark.frame_from_object.rotation.toRotationMatrix();
   const Eigen::Vector3d normal_in_object = frame_from_object.transpose() * plane.normal;
-  // The body is symmetric: it reaches as far down as up.
   const double c = landmark.half_axes.z();
+  // The body is symmetric: it reaches as far down as up.
   const SupportValue support =
       may_lean ? SupportFunction(landmark.half_axes, landmark.shape_exponents, normal_in_object)
                : SupportValue{c, Eigen::Vector3d::Zero(), {0.0, 0.0, c}};
