@@ -188,12 +188,14 @@ json PagePoints(const MapEstimate& map, const std::vector<MapPoint>& points,
       for (const PointObservation& observation : PointAt(posterior.index, points).observations) {
         const auto frame = FrameIndexOf(sequence, observation);
         if (!frame) continue;
-        const auto found = std::ranges::equal_range(
-            selection.detections, std::pair(static_cast<int>(*frame), estimate.object_index), {},
-            frame_and_object);
+        const std::pair of_point(static_cast<int>(*frame), estimate.object_index);
+        const auto found =
+            std::ranges::lower_bound(selection.detections, of_point, {}, frame_and_object);
+        const bool is_selected =
+            found != selection.detections.end() && frame_and_object(*found) == of_point;
         const auto pixel = UndistortedPixel(sequence, observation);
-        if (found.empty() || !pixel) continue;
-        json& of_detection = page[found.begin() - selection.detections.begin()];
+        if (!is_selected || !pixel) continue;
+        json& of_detection = page[found - selection.detections.begin()];
         for (const json& coordinate : PagePixels({*pixel})) of_detection.push_back(coordinate);
         of_detection.push_back(std::lround(100.0 * posterior.responsibility));
       }
