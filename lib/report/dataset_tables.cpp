@@ -142,18 +142,20 @@ std::vector<Cell> QualityRow(const std::string& name, const json& quality) {
 }
 
 std::vector<Cell> ErrorsRow(const std::string& name, const json& quality) {
+  const json& first = quality.at("scores").front();
   std::vector<Cell> row = {name};
   for (const char* text :
-       {"{scores/0/of_found/centre_m_mean:.3f}", "{scores/0/of_found/centre_relative_mean:.2f}",
-        "{scores/0/of_found/log_size_abs_mean/0:.2f}, {scores/0/of_found/log_size_abs_mean/1:.2f}, "
-        "{scores/0/of_found/log_size_abs_mean/2:.2f}",
-        "{scores/0/of_found/log_scale_abs_mean:.3f}", "{scores/0/of_found/yaw_error_deg_mean:.1f}",
-        "{scores/0/of_found/up_error_deg_mean:.1f}",
-        "{scores/0/of_found/plane_offset_m_abs_mean:.3f}",
-        "{scores/0/of_found/plane_tilt_deg_mean:.1f}",
-        "{scores/0/of_found/labels_agree} of {scores/0/found}",
-        "{scores/0/of_found/ids_agree} of {scores/0/of_found/ids_known}",
-        "{in_frames/iou_mean:.3f}", "{in_frames/iou_mean_in_world:.3f}"}) {
+       {"{centre_m_mean:.3f}", "{centre_relative_mean:.2f}",
+        "{log_size_abs_mean/0:.2f}, {log_size_abs_mean/1:.2f}, {log_size_abs_mean/2:.2f}",
+        "{log_scale_abs_mean:.3f}", "{yaw_error_deg_mean:.1f}", "{up_error_deg_mean:.1f}",
+        "{plane_offset_m_abs_mean:.3f}", "{plane_tilt_deg_mean:.1f}"}) {
+    row.emplace_back(FillIn(text, first.at("of_found")));
+  }
+  for (const char* text :
+       {"{of_found/labels_agree} of {found}", "{of_found/ids_agree} of {of_found/ids_known}"}) {
+    row.emplace_back(FillIn(text, first));
+  }
+  for (const char* text : {"{in_frames/iou_mean:.3f}", "{in_frames/iou_mean_in_world:.3f}"}) {
     row.emplace_back(FillIn(text, quality));
   }
   return row;
