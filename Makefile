@@ -69,7 +69,7 @@ ifeq ($(MAKELEVEL),0)
 given-names = $(foreach name,$(.VARIABLES),$(if $(filter command,$(origin $(name))),$(name)))
 KNOWN := $(NAMES) $(NUMBERS) $(PATHS) $(OTHERS) CC CXX SHELL %FLAGS CMAKE_% SOSLAM_% MAKE%
 $(foreach name,$(filter-out $(KNOWN) -%,$(given-names)), \
-  $(warning $(name)=...: no variable of this Makefile has this name))
+  $(error $(name)=...: no variable of this Makefile has this name))
 endif
 
 BIN := $(BUILD)/bin
@@ -121,6 +121,12 @@ $(call one-word,DATASET,the name of one folder in DATA_ROOT = $(DATA_ROOT))
 endif
 override DATASET := $(foreach name,$(DATASET),$(call dataset-name,$(name)))
 override DATASETS := $(foreach name,$(DATASETS),$(call dataset-name,$(name)))
+# Before everything is built for a name that does not exist.
+ifneq ($(filter run,$(MAKECMDGOALS)),)
+$(if $(wildcard $(DATA_ROOT)/$(DATASET)/.),,$(error DATASET=$(DATASET): no such folder in DATA_ROOT = $(DATA_ROOT)))
+$(foreach name,$(filter-out all,$(VARIANT)),$(if $(wildcard $(PIPELINES)/variants/$(name).json),, \
+  $(error VARIANT=$(name): no such variant; known are $(basename $(notdir $(wildcard $(PIPELINES)/variants/*.json))))))
+endif
 ifneq ($(filter sweep submit,$(MAKECMDGOALS)),)
 $(if $(DATASETS)$(SCENES),,$(error expected DATASETS='<name> ...', SCENES='<file> ...' or both))
 $(if $(filter-out $(words $(sort $(SEEDED))),$(words $(SEEDED))),$(error SCENES or SEEDS='$(SEEDS)' has a name twice))

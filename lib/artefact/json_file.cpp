@@ -66,7 +66,7 @@ void ValidateAgainstSchema(const json& document, const std::string& kind, const 
 namespace {
 
 // [major, minor] of all schemas. A reader supports all versions up to its own.
-const std::vector<int> kSchemaVersion = {1, 8};
+const std::vector<int> kSchemaVersion = {1, 9};
 
 // Parser callback that rejects duplicate keys, of which nlohmann silently keeps the last, and deep
 // nesting, which would exhaust the stack in recursive code.

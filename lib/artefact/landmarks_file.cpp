@@ -11,9 +11,10 @@
 
 namespace soslam {
 
-// Before version 1.1 there was no bias of the detector.
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(SolverSummary, initial_cost, final_cost, iterations,
-                                                converged, cost_per_iteration, residuals, gated,
+// Before version 1.1 there was no bias of the detector, before 1.9 no cost of boxes.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(SolverSummary, initial_cost, final_cost, box_cost,
+                                                expected_box_cost, iterations, converged,
+                                                cost_per_iteration, residuals, gated,
                                                 detector_bias_px)
 
 namespace {

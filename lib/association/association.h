@@ -86,7 +86,7 @@ struct Association {
   std::vector<DetectionDecision> detections;  // one per Sequence::detections
   std::vector<Track> tracks;
   std::vector<int> objects;  // indices in `tracks`, ordered by first detection
-  // Keyed by segment; empty when support planes are given.
+  // One entry for each segment; empty when support planes are given.
   std::map<int, UpEstimate> up_of_segments;
 };
 

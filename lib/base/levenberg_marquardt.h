@@ -35,7 +35,7 @@ auto MinimiseSquares(const Linearise& linearise, const Plus& plus,
   using Vector = decltype(at.gradient);
   using Matrix = decltype(at.information);
   double damping = 1e-4;
-  double growth = 2.0;  // of the damping; doubles with each failed step
+  double damping_factor = 2.0;  // of a failed step; doubles with each
   for (int i = 0; i < options.max_iterations && damping < kMaxDamping; ++i) {
     const Vector weights = damping * at.information.diagonal().cwiseMax(kMinDiagonal);
     Matrix damped = at.information;
@@ -56,12 +56,12 @@ auto MinimiseSquares(const Linearise& linearise, const Plus& plus,
       }
     }
     if (gain_ratio > 0.0) {
-      const double surprise = 2.0 * gain_ratio - 1.0;
-      damping *= std::max(1.0 / 3.0, 1.0 - surprise * surprise * surprise);
-      growth = 2.0;
+      const double centred = 2.0 * gain_ratio - 1.0;  // Nielsen's rule (1999)
+      damping *= std::max(1.0 / 3.0, 1.0 - centred * centred * centred);
+      damping_factor = 2.0;
     } else {
-      damping *= growth;
-      growth *= 2.0;
+      damping *= damping_factor;
+      damping_factor *= 2.0;
     }
   }
   return at;

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <functional>
 #include <sstream>
+#include <utility>
 
 namespace soslam {
 namespace {
@@ -110,10 +112,12 @@ std::string Counted(size_t count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
-std::string CountsText(const std::map<std::string, int>& counts) {
+std::string CountsInWords(const std::map<std::string, int>& counts) {
+  std::vector<std::pair<std::string, int>> sorted(counts.begin(), counts.end());
+  std::ranges::stable_sort(sorted, std::greater{}, &std::pair<std::string, int>::second);
   std::vector<std::string> words;
-  for (const auto& [name, count] : counts) words.push_back(fmt::format("{} {}", name, count));
-  return fmt::format("{}", fmt::join(words, ", "));
+  for (const auto& [name, count] : sorted) words.push_back(fmt::format("{} {}", count, name));
+  return words.empty() ? "none" : fmt::format("{}", fmt::join(words, ", "));
 }
 
 }  // namespace soslam

@@ -40,8 +40,8 @@ std::string NamesInWords(const std::vector<std::string>& names, size_t most = 3)
 // "1 object", "2 objects"
 std::string Counted(size_t count, const char* what);
 
-// "near_border 7, duplicate 2", in the order of names.
-std::string CountsText(const std::map<std::string, int>& counts);
+// "7 near_border, 2 duplicate", the most frequent first; "none" when there are none.
+std::string CountsInWords(const std::map<std::string, int>& counts);
 
 // Throws InputError, naming the file, if a text's first byte belongs to a byte order mark of UTF-16
 // or UTF-32, as some editors write it. No text in UTF-8 begins with these bytes.

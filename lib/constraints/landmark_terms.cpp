@@ -80,7 +80,7 @@ void RatioTerm::Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> r
 
 void HeightTerm::Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
                           Jacobian* jacobian) const {
-  residuals[0] = std::log(2.0 * landmark.half_axes[axis_] / height_m_.median) / height_m_.log_sigma;
+  residuals[0] = HeightResidual(height_m_, landmark.half_axes[axis_]);
   if (jacobian == nullptr) return;
   jacobian->setZero();
   (*jacobian)(0, 6 + axis_) = 1.0 / height_m_.log_sigma;
@@ -90,10 +90,7 @@ void RobustViewTerm::Evaluate(const Landmark& landmark_in_reference,
                               Eigen::Ref<Eigen::VectorXd> residuals, Jacobian* jacobian) const {
   term_->Evaluate(Transform(camera_from_reference_, landmark_in_reference), residuals, jacobian);
   if (jacobian != nullptr) {
-    const Eigen::Matrix3d rotation = camera_from_reference_.rotation.toRotationMatrix();
-    for (int block = 0; block < 2; ++block) {
-      jacobian->middleCols<3>(3 * block) = (jacobian->middleCols<3>(3 * block) * rotation).eval();
-    }
+    *jacobian *= LandmarkInCameraJacobian(camera_from_reference_.rotation.toRotationMatrix());
   }
   const ceres::HuberLoss loss(huber_delta_);
   for (Eigen::Index i = 0; i < residuals.size(); ++i) {
@@ -140,7 +137,7 @@ bool LandmarkTermResidual::Evaluate(double const* const* blocks, double* residua
                                     double** jacobians) const {
   const bool with_jacobian = jacobians != nullptr && jacobians[0] != nullptr;
   LandmarkTerm::Jacobian d_landmark(num_residuals(), kLandmarkDof);
-  term_->Evaluate(UnpackLandmark(blocks[0]),
+  term_->Evaluate(UnpackLandmark(blocks[0], shape_exponents_),
                   Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()),
                   with_jacobian ? &d_landmark : nullptr);
   if (!Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()).allFinite()) return false;

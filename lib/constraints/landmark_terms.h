@@ -86,8 +86,13 @@ class RatioTerm final : public LandmarkTerm {
   RatioRows rows_;
 };
 
-// Residual of the logarithm of the height under the prior's height_m: along the object's own z, 2 c
-// of an object that stands.
+// Residual of the logarithm of the height that is twice a half axis.
+inline double HeightResidual(const LogNormal& height_m, double half_axis) {
+  return std::log(2.0 * half_axis / height_m.median) / height_m.log_sigma;
+}
+
+// Residual of the height under the prior's height_m: along the object's own z, 2 c of an object
+// that stands.
 class HeightTerm final : public LandmarkTerm {
  public:
   explicit HeightTerm(const LogNormal& height_m, RestingFace rests_on = RestingFace::kBottom)
@@ -170,11 +175,13 @@ class LeaningTerm final : public LandmarkTerm {
   StandingSigmas sigmas_;
 };
 
-// A LandmarkTerm as a Ceres cost function. Residuals: those of the term. Block: landmark in the
-// frame of the term.
+// A LandmarkTerm as a Ceres cost function, for a body of constant shape exponents. Residuals: those
+// of the term. Block: landmark in the frame of the term.
 class LandmarkTermResidual final : public ceres::CostFunction {
  public:
-  explicit LandmarkTermResidual(std::unique_ptr<const LandmarkTerm> term) : term_(std::move(term)) {
+  LandmarkTermResidual(std::shared_ptr<const LandmarkTerm> term,
+                       const ShapeExponents& shape_exponents)
+      : term_(std::move(term)), shape_exponents_(shape_exponents) {
     set_num_residuals(term_->NumResiduals());
     *mutable_parameter_block_sizes() = {kLandmarkSize};
   }
@@ -182,7 +189,8 @@ class LandmarkTermResidual final : public ceres::CostFunction {
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
 
  private:
-  std::unique_ptr<const LandmarkTerm> term_;
+  std::shared_ptr<const LandmarkTerm> term_;
+  ShapeExponents shape_exponents_;
 };
 
 }  // namespace soslam

@@ -24,8 +24,8 @@ Rigid3d UnpackPose(const double* block) {
   return {Eigen::Quaterniond(block).normalized(), Eigen::Vector3d(block + 4)};
 }
 
-Landmark UnpackLandmark(const double* block) {
-  return {UnpackPose(block), Eigen::Vector3d(block + kPoseSize).array().exp()};
+Landmark UnpackLandmark(const double* block, const ShapeExponents& shape_exponents) {
+  return {UnpackPose(block), Eigen::Vector3d(block + kPoseSize).array().exp(), shape_exponents};
 }
 
 Eigen::Matrix<double, 3, 4> RotationVectorJacobian(const double* quaternion_xyzw) {

@@ -32,7 +32,8 @@ using LandmarkBlock = std::array<double, kLandmarkSize>;
 PoseBlock ToParameterBlock(const Rigid3d& pose);
 LandmarkBlock ToParameterBlock(const Landmark& landmark);
 Rigid3d UnpackPose(const double* block);
-Landmark UnpackLandmark(const double* block);
+Landmark UnpackLandmark(const double* block,
+                        const ShapeExponents& shape_exponents = kEllipsoidExponent);
 inline Plane UnpackPlane(const double* normal, const double* offset) {
   return {Eigen::Map<const Eigen::Vector3d>(normal), *offset};
 }

@@ -34,10 +34,9 @@ StandingOnPlane::StandingOnPlane(const Landmark& landmark, const Plane& plane,
 
 bool StandingOnPlaneResidual::Evaluate(double const* const* blocks, double* residuals,
                                        double** jacobians) const {
-  Landmark landmark = UnpackLandmark(blocks[0]);
+  const Landmark landmark = UnpackLandmark(blocks[0], shape_exponents_);
   if (!landmark.half_axes.allFinite())
     return false;  // the step was too large: the solver shortens it
-  landmark.shape_exponents = shape_exponents_;
   Plane plane = UnpackPlane(blocks[1], blocks[2]);
   plane.normal *= side_;
   const StandingOnPlane standing(landmark, plane, sigmas_, may_lean_);

@@ -14,7 +14,7 @@ constexpr double kNearCentre = 1e-9;
 // would jump where the sections' sides meet.
 constexpr double kSharpSection = 40.0;
 
-// In the object's frame.
+// A point's distance from the surface, with derivatives in the object's frame.
 struct Distance {
   double value;
   Eigen::Vector3d normal;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <numbers>
-
 #include "base/options.h"
+#include "geometry/angles.h"
 
 namespace soslam {
 
@@ -30,9 +29,7 @@ struct ConstraintVariances {
 
   // Conversions to the units of the residuals.
   double DetectionM4() const { return 1e-4 * detection_dm4; }
-  double SupportAngleRad2() const {
-    return support_angle_deg2 * std::numbers::pi * std::numbers::pi / (180.0 * 180.0);
-  }
+  double SupportAngleRad2() const { return support_angle_deg2 * kRadPerDeg * kRadPerDeg; }
   double SupportTangencyM4() const { return 1e-4 * support_tangency_dm4; }
 };
 

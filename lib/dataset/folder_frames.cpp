@@ -240,7 +240,8 @@ std::vector<ListedFrame> ReadFolderFrames(const fs::path& folder, const DatasetF
     frame.image = ImageOfFrame(folder, files, images[i], options);
     frame.world_from_camera = estimates[i].value_or(Rigid3d());
     frame.true_world_from_camera = truth[i];
-    if (frame.image.empty()) ++absent;
+    std::error_code ignored;
+    if (frame.image.empty() || !fs::exists(folder / frame.image, ignored)) ++absent;
     frames.push_back({frame, estimates[i].has_value()});
   }
   if (absent > 0) {

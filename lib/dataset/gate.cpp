@@ -31,8 +31,8 @@ void Rejections::Add(const DetectionRow& row, RejectReason reason) {
 std::string DescribeRejections(const RejectionCounts& rejected) {
   int total = 0;
   for (const auto& [reason, count] : rejected) total += count;
-  return fmt::format("{} detections rejected{}{}", total, rejected.empty() ? "" : ": ",
-                     CountsText(rejected));
+  return fmt::format("{} detections rejected{}", total,
+                     rejected.empty() ? "" : ": " + CountsInWords(rejected));
 }
 
 bool IsInView(RejectReason reason) {

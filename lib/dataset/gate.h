@@ -70,7 +70,7 @@ struct Rejections {
   void Add(const DetectionRow& row, RejectReason reason);
 };
 
-// "12 detections rejected: duplicate 2, near_border 10".
+// "12 detections rejected: 10 near_border, 2 duplicate".
 std::string DescribeRejections(const RejectionCounts& rejected);
 
 // True if the object of a rejected row is still in view and may occlude others.

@@ -11,6 +11,7 @@
 #include "dataset/image_path.h"
 #include "evaluation/statistics.h"
 #include "geometry/angles.h"
+#include "geometry/triangulation.h"
 
 namespace soslam {
 namespace {
@@ -30,25 +31,18 @@ MapPoint PointOf(const ColmapPoint& point, const ColmapModel& model,
   return read;
 }
 
-// The largest angle between rays from two of the cameras that see a point, rad; of tracks longer
-// than 50 views, of 50 that are evenly spread.
+// LargestAngle at a point; of tracks longer than 50 views, of 50 that are evenly spread.
 double TriangulationAngle(const MapPoint& point,
                           const std::vector<std::optional<Rigid3d>>& world_from_camera) {
   constexpr size_t kMostViews = 50;
   const size_t views = point.observations.size();
   const size_t used = std::min(views, kMostViews);
-  std::vector<Eigen::Vector3d> rays;
+  std::vector<Eigen::Vector3d> centres;
   for (size_t i = 0; i < used; ++i) {
     const auto frame = static_cast<size_t>(point.observations[i * views / used].frame_id);
-    rays.push_back(point.position_in_world - world_from_camera[frame]->translation);
+    centres.push_back(world_from_camera[frame]->translation);
   }
-  double largest = 0.0;
-  for (size_t i = 0; i < rays.size(); ++i) {
-    for (size_t k = 0; k < i; ++k) {
-      largest = std::max(largest, std::atan2(rays[i].cross(rays[k]).norm(), rays[i].dot(rays[k])));
-    }
-  }
-  return largest;
+  return LargestAngle(centres, point.position_in_world);
 }
 
 }  // namespace

@@ -169,7 +169,7 @@ BodyErrors CompareBodies(const Landmark& estimate, const GroundTruth& truth,
   BodyErrors errors;
   errors.iou = own.iou;
   errors.centre_m = own.centre_m;
-  errors.centre_relative = own.centre_m / (2.0 * std::cbrt(truth_in_frame.half_axes.prod()));
+  errors.centre_relative = own.centre_m / (2.0 * MeanHalfAxis(truth_in_frame));
   errors.log_size = named.half_axes.cwiseQuotient(truth_in_frame.half_axes).array().log();
   errors.log_scale = errors.log_size.mean();
   errors.up_deg = AngleBetweenDeg(Up(estimate), Up(truth_in_frame));
@@ -183,9 +183,7 @@ BodyErrors CompareBodies(const Landmark& estimate, const GroundTruth& truth,
 }
 
 PlaneErrors ComparePlane(const Plane& plane, const Landmark& truth) {
-  const Eigen::Vector3d up = Up(truth);
-  return {-plane.SignedDistance(Foot(truth)),
-          kDegPerRad * std::atan2(plane.normal.cross(up).norm(), plane.normal.dot(up))};
+  return {-plane.SignedDistance(Foot(truth)), AngleBetweenDeg(plane.normal, Up(truth))};
 }
 
 bool StandsOffItsPlane(const Landmark& estimate, const Plane& plane, const Landmark& truth) {

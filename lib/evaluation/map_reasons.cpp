@@ -198,7 +198,7 @@ Explanation ExplainLeftOut(const Fates& fates) {
   const bool by_association = fates.frames_before_association.size() > fates.frames_in_use.size();
   return {by_association ? MapReason::kLostInAssociation : MapReason::kGated,
           fmt::format("boxes in use in {} frames; left out: {}", fates.frames_in_use.size(),
-                      CountsText(fates.by_reason))};
+                      CountsInWords(fates.by_reason))};
 }
 
 std::string FailureOf(const std::vector<ObjectEstimate>& estimates, int object_index) {

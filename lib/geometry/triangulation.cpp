@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "base/levenberg_marquardt.h"
+#include "base/quadratic_model.h"
 #include "geometry/angles.h"
 
 namespace soslam {
@@ -27,19 +28,18 @@ std::optional<Eigen::Vector3d> NearestPoint(const std::vector<PointView>& views)
   return NearestPointToRays(rays, kLeastSpread);
 }
 
-// Reprojection errors (px) to first order about a point: cost, gradient and J^T J under the loss.
-struct ReprojectionModel {
-  double cost = 0.0;  // not finite behind a camera
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  Eigen::Matrix3d information_without_loss = Eigen::Matrix3d::Zero();
-  double sum_px = 0.0;
-};
+// d pixel / d point in the world.
+Eigen::Matrix<double, 2, 3> PixelJacobian(const PointView& view, const Eigen::Vector3d& in_camera) {
+  return view.camera.ProjectionJacobian(in_camera) *
+         view.camera_from_world.rotation.toRotationMatrix();
+}
 
-ReprojectionModel Linearise(const std::vector<PointView>& views,
+// Reprojection errors (px) to second order about a point, under the loss; a cost that is not finite
+// behind a camera.
+QuadraticModel<3> Linearise(const std::vector<PointView>& views,
                             const Eigen::Vector3d& point_in_world,
                             const ceres::LossFunction& loss) {
-  ReprojectionModel model;
+  QuadraticModel<3> model;
   for (const PointView& view : views) {
     const Eigen::Vector3d in_camera = view.camera_from_world * point_in_world;
     const auto pixel = view.camera.Project(in_camera);
@@ -48,15 +48,12 @@ ReprojectionModel Linearise(const std::vector<PointView>& views,
       return model;
     }
     const Eigen::Vector2d residual = *pixel - view.pixel;
-    const Eigen::Matrix<double, 2, 3> jacobian = view.camera.ProjectionJacobian(in_camera) *
-                                                 view.camera_from_world.rotation.toRotationMatrix();
+    const Eigen::Matrix<double, 2, 3> jacobian = PixelJacobian(view, in_camera);
     double rho[3];
     loss.Evaluate(residual.squaredNorm(), rho);
     model.cost += 0.5 * rho[0];
     model.gradient += rho[1] * jacobian.transpose() * residual;
     model.information += rho[1] * jacobian.transpose() * jacobian;
-    model.information_without_loss += jacobian.transpose() * jacobian;
-    model.sum_px += residual.norm();
   }
   return model;
 }
@@ -84,11 +81,13 @@ std::optional<TriangulatedPoint> Triangulate(const std::vector<PointView>& views
   auto point = NearestPoint(views);
   if (!point) return std::nullopt;
   const ceres::HuberLoss loss(huber_px);
-  const ReprojectionModel at = MinimiseSquares(
+  const QuadraticModel<3> at = MinimiseSquares(
       [&](const Eigen::Vector3d& state) { return Linearise(views, state, loss); }, {}, &*point);
   if (!std::isfinite(at.cost)) return std::nullopt;
-  const TriangulatedPoint result = {*point, at.information_without_loss.inverse(),
-                                    at.sum_px / static_cast<double>(views.size())};
+  double sum_px = 0.0;
+  for (const PointView& view : views) sum_px += ReprojectionError(view, *point);
+  const TriangulatedPoint result = {*point, PointInformation(views, *point).inverse(),
+                                    sum_px / static_cast<double>(views.size())};
   return result.covariance.allFinite() ? std::optional(result) : std::nullopt;
 }
 
@@ -97,10 +96,21 @@ double ReprojectionError(const PointView& view, const Eigen::Vector3d& point_in_
   return pixel ? (*pixel - view.pixel).norm() : std::numeric_limits<double>::infinity();
 }
 
-double LargestAngle(const std::vector<PointView>& views, const Eigen::Vector3d& point_in_world) {
-  std::vector<Eigen::Vector3d> directions;
+Eigen::Matrix3d PointInformation(const std::vector<PointView>& views,
+                                 const Eigen::Vector3d& point_in_world) {
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
   for (const PointView& view : views) {
-    directions.push_back(view.camera_from_world.Inverse().translation - point_in_world);
+    const auto jacobian = PixelJacobian(view, view.camera_from_world * point_in_world);
+    information += jacobian.transpose() * jacobian;
+  }
+  return information;
+}
+
+double LargestAngle(const std::vector<Eigen::Vector3d>& camera_centres,
+                    const Eigen::Vector3d& point_in_world) {
+  std::vector<Eigen::Vector3d> directions;
+  for (const Eigen::Vector3d& centre : camera_centres) {
+    directions.push_back(centre - point_in_world);
   }
   double largest = 0.0;
   for (size_t i = 0; i < directions.size(); ++i) {

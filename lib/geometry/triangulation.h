@@ -55,7 +55,16 @@ std::optional<TriangulatedPoint> Triangulate(const std::vector<PointView>& views
 // Distance (px) between a view's pixel and the projection of a point; infinite behind the camera.
 double ReprojectionError(const PointView& view, const Eigen::Vector3d& point_in_world);
 
+// Inverse covariance (1 / m^2) of a point in front of all cameras, of pixels with independent
+// errors of 1 px.
+Eigen::Matrix3d PointInformation(const std::vector<PointView>& views,
+                                 const Eigen::Vector3d& point_in_world);
+// Smallest standard deviation (px) that is assumed of the pixels of a point, whatever its
+// reprojection error.
+inline constexpr double kLeastPixelSigma = 0.5;
+
 // Largest angle (rad) at a point between the directions to two of the cameras.
-double LargestAngle(const std::vector<PointView>& views, const Eigen::Vector3d& point_in_world);
+double LargestAngle(const std::vector<Eigen::Vector3d>& camera_centres,
+                    const Eigen::Vector3d& point_in_world);
 
 }  // namespace soslam

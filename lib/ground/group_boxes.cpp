@@ -175,7 +175,7 @@ class Grouping {
   }
   const Box& BoxOf(const Place& place) const { return sequence_.detections[place.detection].box; }
 
-  // Sorted by frame, those of most overlap first.
+  // The order: by frame, those of most overlap first.
   std::vector<Supporter> SupportersOf(const Place& place) const {
     std::vector<Supporter> supporters;
     for (size_t i = 0; i < sequence_.detections.size(); ++i) {

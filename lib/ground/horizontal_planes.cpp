@@ -6,40 +6,40 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
 
 #include "constraints/loss.h"
 #include "geometry/angles.h"
+#include "geometry/triangulation.h"
 
 namespace soslam {
 namespace {
 
-constexpr double kLeastErrorPx = 0.5;
 // Error of a point's depth that all its views share, as a fraction.
 constexpr double kDepthError = 1e-3;
 
 std::optional<GroundPoint> GroundPointOf(const Sequence& sequence, const MapPoint& point) {
   GroundPoint result{point.position_in_world, Eigen::Matrix3d::Zero(), {}};
-  const double sigma_px = std::max(kLeastErrorPx, point.reprojection_error_px);
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  double nearest = 0.0;
+  const double sigma_px = std::max(kLeastPixelSigma, point.reprojection_error_px);
+  std::vector<PointView> views;
+  double nearest = std::numeric_limits<double>::infinity();
   for (const PointObservation& observation : point.observations) {
     const auto index = FrameIndexOf(sequence, observation);
     if (!index) continue;
     const Frame& frame = sequence.frames[*index];
-    const Eigen::Vector3d in_camera = frame.world_from_camera.Inverse() * point.position_in_world;
-    if (!(in_camera.z() > 0.0)) return std::nullopt;
-    const Eigen::Matrix<double, 2, 3> d_world =
-        sequence.CameraOf(frame).ProjectionJacobian(in_camera) *
-        frame.world_from_camera.rotation.toRotationMatrix().transpose();
-    information += d_world.transpose() * d_world / (sigma_px * sigma_px);
-    nearest = result.frame_indices.empty() ? in_camera.z() : std::min(nearest, in_camera.z());
+    views.push_back(
+        {sequence.CameraOf(frame), frame.world_from_camera.Inverse(), observation.pixel});
+    const double depth_m = (views.back().camera_from_world * point.position_in_world).z();
+    if (!(depth_m > 0.0)) return std::nullopt;
+    nearest = std::min(nearest, depth_m);
     result.frame_indices.push_back(static_cast<int>(*index));
   }
   if (result.frame_indices.size() < 2) return std::nullopt;
-  result.covariance = information.inverse();
+  result.covariance =
+      sigma_px * sigma_px * PointInformation(views, point.position_in_world).inverse();
   result.covariance.diagonal().array() += kDepthError * kDepthError * nearest * nearest;
   return result.covariance.allFinite() ? std::optional(std::move(result)) : std::nullopt;
 }
@@ -161,7 +161,7 @@ std::vector<double> PeakHeights(const std::vector<GroundPoint>& points, const Ei
   return peaks;
 }
 
-// Normal equations in two tilts of up and the heights of all planes.
+// Up and the heights of all planes, which points fit best.
 struct Fit {
   Eigen::Vector3d up;
   std::vector<double> heights;

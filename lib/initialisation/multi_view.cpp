@@ -17,7 +17,7 @@ namespace soslam {
 namespace {
 
 constexpr int kMaxRounds = 20;
-constexpr double kSettled = 1e-6;  // relative change of the half axes
+constexpr double kConvergenceTolerance = 1e-6;  // relative change of the half axes
 // Smallest reciprocal condition number (1-norm) of the first round's system: below it, the boxes do
 // not determine the body.
 constexpr double kMinConditionReciprocal = 1e-9;
@@ -136,7 +136,7 @@ class LinearViews {
       const Eigen::Vector3d before = body.half_axes;
       const bool is_first = round == 0;
       if (!Step(is_first, &body)) return std::nullopt;
-      if ((body.half_axes - before).norm() < kSettled * before.norm()) break;
+      if ((body.half_axes - before).norm() < kConvergenceTolerance * before.norm()) break;
     }
     const Landmark landmark = LandmarkOf(body);
     for (const BoxView& view : observation_.views) {
@@ -247,7 +247,7 @@ class LinearViews {
     const double before = body.half_axes[axis];
     LinearSystem::Row row = LinearSystem::Row::Zero();
     row(2 + axis) = 1.0 / (height_m.log_sigma * before);
-    system->Add(row, (std::log(2.0 * before / height_m.median) - 1.0) / height_m.log_sigma, 1.0);
+    system->Add(row, HeightResidual(height_m, before) - row(2 + axis) * before, 1.0);
   }
 
   // Without the preference of axes, which does not depend on foot and size.

@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kHuberPx = 1.0;
 // Reprojection errors are not known better than this.
-constexpr double kLeastErrorPx = 0.5;
 constexpr size_t kFewestFramesInBox = 2;
 // Probability that a point which all frames see in the box of an object is of the object.
 constexpr double kObjectShare = 0.7;
@@ -87,7 +86,7 @@ class ObjectPointFinder {
     return views;
   }
 
-  // Keyed by object.
+  // One entry for each object.
   std::map<int, PlacesInBoxes> PlacesOf(const std::vector<View>& views) const {
     std::map<int, PlacesInBoxes> places;
     for (const View& view : views) {
@@ -120,7 +119,7 @@ class ObjectPointFinder {
     const Rigid3d camera_from_world =
         sequence_.FrameOf(DetectionAt(anchor)).world_from_camera.Inverse();
     const Eigen::Matrix3d rotation = camera_from_world.rotation.toRotationMatrix();
-    const double sigma_px = std::max(kLeastErrorPx, point.mean_error_px);
+    const double sigma_px = std::max(kLeastPixelSigma, point.mean_error_px);
     const Eigen::Matrix3d covariance_in_world =
         0.5 * static_cast<double>(views) * sigma_px * sigma_px * point.covariance;
     ObjectPoint result;

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "constraints/point_term.h"
+#include "constraints/point_cost.h"
 #include "model/estimates.h"
 #include "model/map_points.h"
 #include "model/sequence.h"

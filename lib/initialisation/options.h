@@ -4,7 +4,7 @@
 #include <array>
 
 #include "base/options.h"
-#include "constraints/point_term.h"
+#include "constraints/point_cost.h"
 #include "constraints/variances.h"
 #include "initialisation/cuboid_score.h"
 #include "initialisation/upright_observation.h"

@@ -31,7 +31,7 @@ LandmarkCosts ObservationTerms(const UprightObservation& observation,
   }
   if (observation.points) {
     const PointEvidence& evidence = *observation.points;
-    terms.push_back(std::make_unique<PointTerm>(evidence.points, start_in_camera, evidence.size_m,
+    terms.push_back(std::make_unique<PointCost>(evidence.points, start_in_camera, evidence.size_m,
                                                 evidence.options, evidence.weight));
   }
   return terms;

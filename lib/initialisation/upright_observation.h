@@ -7,7 +7,7 @@
 
 #include "base/options.h"
 #include "constraints/landmark_terms.h"
-#include "constraints/point_term.h"
+#include "constraints/point_cost.h"
 #include "constraints/tangency.h"
 #include "geometry/camera.h"
 #include "geometry/plane.h"

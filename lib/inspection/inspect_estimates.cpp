@@ -10,6 +10,7 @@
 #include "artefact/hdf5_artefact.h"
 #include "artefact/json_file.h"
 #include "artefact/model_json.h"
+#include "base/text.h"
 #include "geometry/angles.h"
 #include "geometry/landmark.h"
 #include "inspection/inspection.h"

@@ -19,7 +19,7 @@ constexpr const char* kAlignment =
     "{kind}, scale {scale:.4g}; cameras {rmse_m:.4f} m from the true ones ({frames} frames, path: "
     "{camera_path})";
 constexpr const char* kScore =
-    "{found} of {true_objects} objects found ({found_detectable} of {detectable} detectable), "
+    "{found} of {true_objects} objects found ({found_detectable} of the {detectable} detectable), "
     "{found} of {judged} landmarks right, {ignored} ignored; precision {precision:.3f}, recall "
     "{recall:.3f} (of detectable {recall_of_detectable:.3f}), F1 {f1:.3f} (of detectable "
     "{f1_of_detectable:.3f})";

@@ -218,14 +218,6 @@ std::string FormatInspection(const Inspection& inspection, bool is_coloured) {
   return text + "\n" + FormatTable(inspection.table, is_coloured);
 }
 
-std::string CountsInWords(const std::map<std::string, int>& counts) {
-  std::vector<std::pair<std::string, int>> sorted(counts.begin(), counts.end());
-  std::ranges::stable_sort(sorted, std::greater{}, &std::pair<std::string, int>::second);
-  std::vector<std::string> words;
-  for (const auto& [name, count] : sorted) words.push_back(fmt::format("{} {}", count, name));
-  return words.empty() ? "none" : fmt::format("{}", fmt::join(words, ", "));
-}
-
 std::map<std::string, int> CountsBy(const char* field, const json& rows) {
   std::map<std::string, int> counts;
   for (const json& row : rows) ++counts[row.at(field)];

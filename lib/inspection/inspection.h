@@ -61,9 +61,6 @@ Inspection Inspect(const std::filesystem::path& file, const std::optional<Sequen
 // Text for a terminal: title, facts, table. `is_coloured`: with escape sequences.
 std::string FormatInspection(const Inspection& inspection, bool is_coloured);
 
-// "3 near_border, 2 duplicate", the most frequent first; "none" when there are none.
-std::string CountsInWords(const std::map<std::string, int>& counts);
-
 // Number of rows for each value of a field, except empty ones.
 std::map<std::string, int> CountsBy(const char* field, const nlohmann::json& rows);
 

@@ -113,7 +113,7 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
       has_converged = SolveWithImages(&problem);
     }
   } else if (!input.symmetry_images.empty()) {
-    problem.RenewImageResiduals();  // the paper's pairs are those of the initial landmarks
+    problem.RenewImageResiduals();  // the paper's pairs stay those of this map
     problem.Solve();
   }
   map.solver = problem.summary();

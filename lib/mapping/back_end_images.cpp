@@ -81,7 +81,7 @@ BackEndProblem::ImageBlocks BackEndProblem::TextureBlocks(
     size_t index, const std::shared_ptr<const SymmetryImage>& image) const {
   const Detection& detection = input_.sequence.detections[index];
   const Landmark in_camera = LandmarkInCamera(detection);
-  auto texture = std::make_unique<AsymmetryTerm>(image, input_.sequence.CameraOf(detection),
+  auto texture = std::make_unique<AsymmetryCost>(image, input_.sequence.CameraOf(detection),
                                                  in_camera, options_.texture,
                                                  options_.symmetry_options, view_weights_[index]);
   ImageBlocks blocks{kSymmetry, kTooFewPairs, texture->NumPairs(), {}, true};
@@ -99,12 +99,13 @@ BackEndProblem::ImageBlocks BackEndProblem::PairBlocks(
   const Camera& camera = input_.sequence.CameraOf(detection);
   const SymmetryOptions& symmetry = options_.symmetry_options;
   const SymmetryDescriptor descriptor(symmetry.descriptor, *image, camera, in_camera);
+  const auto samples = SamplePixels(*image, camera, in_camera, symmetry);
   std::vector<Eigen::Vector2d> visible;
-  for (const Eigen::Vector2d& pixel : SamplePixels(*image, camera, in_camera, symmetry)) {
+  for (const Eigen::Vector2d& pixel : samples) {
     if (descriptor.Evaluate(pixel, symmetry.min_viewing_cosine, false)) visible.push_back(pixel);
   }
   ImageBlocks blocks{kSymmetry, kTooFewPairs, static_cast<int>(visible.size()), {}, false};
-  if (blocks.count < symmetry.min_pairs) return blocks;
+  if (blocks.count < symmetry.MinPairs(samples.size())) return blocks;
   for (const Eigen::Vector2d& pixel : visible) {
     blocks.functions.push_back(
         std::make_unique<SymmetryResidual>(symmetry.descriptor, image, camera, pixel,
@@ -113,7 +114,7 @@ BackEndProblem::ImageBlocks BackEndProblem::PairBlocks(
   return blocks;
 }
 
-PointTerm BackEndProblem::PointTermOf(size_t object_index, const PointsInView& view,
+PointCost BackEndProblem::PointCostOf(size_t object_index, const PointsInView& view,
                                       const Landmark& start_in_camera) const {
   return {view.points,
           start_in_camera,
@@ -128,7 +129,7 @@ std::vector<PointPosterior> BackEndProblem::PointsOf(size_t object_index) const 
   if (input_.points.empty() || !input_.initial_landmarks[object_index]) return points;
   for (const PointsInView& view : input_.points[object_index]) {
     const Landmark in_camera = LandmarkInCamera(input_.sequence.detections[view.detection_index]);
-    std::ranges::copy(PointTermOf(object_index, view, in_camera).Posteriors(in_camera),
+    std::ranges::copy(PointCostOf(object_index, view, in_camera).Posteriors(in_camera),
                       std::back_inserter(points));
   }
   std::ranges::stable_sort(points, {}, &PointPosterior::index);
@@ -139,7 +140,7 @@ BackEndProblem::ImageBlocks BackEndProblem::PointBlocks(size_t object_index,
                                                         const PointsInView& view) const {
   const Detection& detection = input_.sequence.detections[view.detection_index];
   const Landmark in_camera = LandmarkInCamera(detection);
-  auto points = std::make_unique<PointTerm>(PointTermOf(object_index, view, in_camera));
+  auto points = std::make_unique<PointCost>(PointCostOf(object_index, view, in_camera));
   ImageBlocks blocks{kPoints, nullptr, static_cast<int>(view.points.size()), {}, true};
   blocks.functions.push_back(
       std::make_unique<ImageResidual>(std::move(points), in_camera.shape_exponents));
@@ -150,7 +151,7 @@ BackEndProblem::ImageBlocks BackEndProblem::EdgeBlocks(
     size_t index, const std::shared_ptr<const EdgeImage>& image) const {
   const Detection& detection = input_.sequence.detections[index];
   const Landmark in_camera = LandmarkInCamera(detection);
-  auto edges = std::make_unique<EdgeTerm>(image, input_.sequence.CameraOf(detection), in_camera,
+  auto edges = std::make_unique<EdgeCost>(image, input_.sequence.CameraOf(detection), in_camera,
                                           options_.edges);
   // Where an object's model edges are not visible in the image, as for the cuboid of a chair, the
   // edges that happen to be near carry no information.

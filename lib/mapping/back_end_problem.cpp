@@ -161,9 +161,8 @@ void BackEndProblem::AddLandmark(size_t object_index) {
   }
   if (options_.ratio) AddRatio(object_index);
   if (IsTangency() && options_.axes_weight > 0.0 && support.scene_axis_in_world) {
-    problem_.AddResidualBlock(new LandmarkTermResidual(std::make_unique<AxisTerm>(
-                                  plane, *support.scene_axis_in_world, options_.axes_weight)),
-                              nullptr, landmark);
+    AddTerm(std::make_unique<AxisTerm>(plane, *support.scene_axis_in_world, options_.axes_weight),
+            object_index);
   }
 }
 
@@ -174,16 +173,20 @@ void BackEndProblem::AddRatio(size_t object_index) {
   }
   const ShapePrior prior =
       OnFace(*input_.priors[object_index], input_.initial_landmarks[object_index]->rests_on);
-  double* landmark = variables_.Landmark(object_index);
   if (IsTangency()) {
     // No loss: a ratio far from the prior is as unlikely as its spread says.
-    problem_.AddResidualBlock(new LandmarkTermResidual(std::make_unique<RatioTerm>(prior)), nullptr,
-                              landmark);
+    AddTerm(std::make_unique<RatioTerm>(prior), object_index);
   } else {
     problem_.AddResidualBlock(new ScaleRatioResidual(prior.ratio, options_.variances.ratio), &loss_,
-                              landmark);
+                              variables_.Landmark(object_index));
   }
   ++summary_.residuals["ratio"];
+}
+
+void BackEndProblem::AddTerm(std::unique_ptr<const LandmarkTerm> term, size_t object_index) {
+  const ShapeExponents& exponents = input_.initial_landmarks[object_index]->shape_exponents;
+  problem_.AddResidualBlock(new LandmarkTermResidual(std::move(term), exponents), nullptr,
+                            variables_.Landmark(object_index));
 }
 
 void BackEndProblem::AddDetections() {
@@ -212,9 +215,10 @@ void BackEndProblem::AddDetection(size_t index, const Landmark& initial_in_camer
   const Detection& detection = input_.sequence.detections[index];
   const Camera& camera = input_.sequence.CameraOf(detection);
   if (!IsTangency()) {
-    problem_.AddResidualBlock(
-        new DetectionResidual(camera, detection.box, options_.variances.DetectionM4()), &loss_,
-        Pose(detection), LandmarkOf(detection));
+    AddBoxBlock(problem_.AddResidualBlock(
+                    new DetectionResidual(camera, detection.box, options_.variances.DetectionM4()),
+                    &loss_, Pose(detection), LandmarkOf(detection)),
+                0.5 * 4.0);
     return;
   }
   view_losses_.emplace_back(&loss_, view_weights_[index], ceres::DO_NOT_TAKE_OWNERSHIP);
@@ -228,11 +232,18 @@ void BackEndProblem::AddDetection(size_t index, const Landmark& initial_in_camer
       ++summary_.gated["edge_behind_camera"];
       continue;
     }
-    problem_.AddResidualBlock(new TangencyResidual(edges[side], initial_in_camera, &for_solver_),
-                              &view_losses_.back(), Pose(detection), LandmarkOf(detection),
-                              variables_.Bias(side),
-                              variables_.Misfit(static_cast<size_t>(detection.object_index), side));
+    AddBoxBlock(
+        problem_.AddResidualBlock(
+            new TangencyResidual(edges[side], initial_in_camera, &for_solver_),
+            &view_losses_.back(), Pose(detection), LandmarkOf(detection), variables_.Bias(side),
+            variables_.Misfit(static_cast<size_t>(detection.object_index), side)),
+        0.5 * view_weights_[index]);
   }
+}
+
+void BackEndProblem::AddBoxBlock(ceres::ResidualBlockId block, double expected_cost) {
+  box_blocks_.push_back(block);
+  summary_.expected_box_cost += expected_cost;
 }
 
 // A bias or misfit that some box has: normal about zero, or zero where sigma is.
@@ -293,7 +304,8 @@ std::shared_ptr<ceres::ParameterBlockOrdering> BackEndProblem::LandmarkOrdering(
 }
 
 void BackEndProblem::Solve(int max_iterations) {
-  ceres::Solver::Options options = SolverOptions(std::min(max_iterations, options_.max_iterations));
+  const int iterations_left = options_.max_iterations - summary_.iterations;
+  ceres::Solver::Options options = SolverOptions(std::min(max_iterations, iterations_left));
   if (IsTangency() && !image_blocks_.empty()) {
     // The costs of images have kinks at pixels: every step that crosses one may be refused.
     options.use_nonmonotonic_steps = true;
@@ -318,6 +330,11 @@ void BackEndProblem::Record(const ceres::Solver::Summary& solution) {
   std::vector<double>& costs = summary_.cost_per_iteration;
   if (costs.empty()) summary_.initial_cost = solution.initial_cost;
   summary_.final_cost = solution.final_cost;
+  ceres::Problem::EvaluateOptions boxes;
+  boxes.residual_blocks = box_blocks_;
+  if (!box_blocks_.empty()) {  // which would mean all
+    problem_.Evaluate(boxes, &summary_.box_cost, nullptr, nullptr, nullptr);
+  }
   summary_.iterations += static_cast<int>(std::max<size_t>(1, solution.iterations.size())) - 1;
   summary_.converged = solution.termination_type == ceres::CONVERGENCE;
   summary_.detector_bias_px = variables_.BiasValues();

@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "constraints/landmark_terms.h"
 #include "mapping/back_end.h"
 #include "mapping/back_end_variables.h"
 #include "mapping/options.h"
@@ -63,6 +64,7 @@ class BackEndProblem {
   void AddLandmark(size_t object_index);
   void AddStanding(size_t object_index);
   void AddRatio(size_t object_index);
+  void AddTerm(std::unique_ptr<const LandmarkTerm> term, size_t object_index);
   void AddDetections();
   void AddDetection(size_t index, const Landmark& initial_in_camera);
   void AddOutwardPrior(double* variable, double sigma);
@@ -71,12 +73,13 @@ class BackEndProblem {
   void FixPoses();
   ImageBlocks TextureBlocks(size_t index, const std::shared_ptr<const SymmetryImage>& image) const;
   ImageBlocks PairBlocks(size_t index, const std::shared_ptr<const SymmetryImage>& image) const;
-  PointTerm PointTermOf(size_t object_index, const PointsInView& view,
+  PointCost PointCostOf(size_t object_index, const PointsInView& view,
                         const Landmark& start_in_camera) const;
   ImageBlocks PointBlocks(size_t object_index, const PointsInView& view) const;
   ImageBlocks EdgeBlocks(size_t index, const std::shared_ptr<const EdgeImage>& image) const;
   void AddImageBlocks(size_t index, ImageBlocks blocks);
   std::shared_ptr<ceres::ParameterBlockOrdering> LandmarkOrdering();
+  void AddBoxBlock(ceres::ResidualBlockId block, double expected_cost);
   void Record(const ceres::Solver::Summary& solution);
 
   // A detection's landmark in its camera, at the present values of the variables.
@@ -97,6 +100,7 @@ class BackEndProblem {
   ceres::HuberLoss loss_;
   std::deque<ceres::ScaledLoss> view_losses_;
   ceres::Problem problem_;
+  std::vector<ceres::ResidualBlockId> box_blocks_;
   std::vector<ceres::ResidualBlockId> image_blocks_;
   SolverSummary summary_;
 };

@@ -61,8 +61,8 @@ std::array<double, 4> BackEndVariables::BiasValues() const {
 
 Landmark BackEndVariables::LandmarkValue(size_t object_index) const {
   soslam::Landmark landmark =
-      UnpackLandmark(&values_[first_landmark_ + kLandmarkSize * object_index]);
-  landmark.shape_exponents = input_.initial_landmarks[object_index]->shape_exponents;
+      UnpackLandmark(&values_[first_landmark_ + kLandmarkSize * object_index],
+                     input_.initial_landmarks[object_index]->shape_exponents);
   landmark.rests_on = input_.initial_landmarks[object_index]->rests_on;
   return landmark;
 }

@@ -39,7 +39,7 @@ class BackEndVariables {
     return &values_[first_misfit_ + kMisfitSize * (4 * object_index + side)];
   }
 
-  // In the world.
+  // A frame's pose in the world.
   Rigid3d PoseValue(size_t frame_index) const {
     return UnpackPose(&values_[kPoseSize * frame_index]);
   }

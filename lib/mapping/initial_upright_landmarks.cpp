@@ -130,7 +130,7 @@ class ObjectFit {
       const auto image = input_.edge_images.find(detections_[i]);
       if (image == input_.edge_images.end() || !IsInFront(in_camera)) continue;
       terms.push_back(std::make_unique<ViewCost>(
-          std::make_unique<EdgeTerm>(image->second, input_.sequence.CameraOf(Of(i)), in_camera,
+          std::make_unique<EdgeCost>(image->second, input_.sequence.CameraOf(Of(i)), in_camera,
                                      options_.edges),
           view.camera_from_world, view.weight));
     }
@@ -148,7 +148,7 @@ class ObjectFit {
           input_.sequence.FrameOf(detection).world_from_camera.Inverse();
       const Landmark in_camera = Transform(camera_from_world, landmark_in_world);
       terms->push_back(std::make_unique<ViewCost>(
-          std::make_unique<PointTerm>(view.points, in_camera, point_size_m_, options_.points,
+          std::make_unique<PointCost>(view.points, in_camera, point_size_m_, options_.points,
                                       weight),
           camera_from_world, 1.0));
     }

@@ -5,7 +5,7 @@
 
 #include "base/options.h"
 #include "constraints/odometry.h"
-#include "constraints/point_term.h"
+#include "constraints/point_cost.h"
 #include "constraints/variances.h"
 #include "geometry/angles.h"
 #include "model/semantic_table.h"

@@ -68,6 +68,9 @@ struct LandmarkEstimates {
 struct SolverSummary {
   double initial_cost = 0.0;
   double final_cost = 0.0;
+  double box_cost = 0.0;           // part of the boxes in final_cost
+  double expected_box_cost = 0.0;  // of boxes that contain only their noise: 1/2 for each edge,
+                                   // times the weight of its view
   int iterations = 0;
   bool converged = false;
   std::vector<double> cost_per_iteration;

@@ -95,7 +95,7 @@ FrameEdges::FrameEdges(EdgeMaps edge_maps) : maps(std::move(edge_maps)) {
   cv::Sobel(smooth, slope_y, CV_32F, 0, 1);
 }
 
-EdgeTerm::EdgeTerm(std::shared_ptr<const EdgeImage> image, const Camera& camera,
+EdgeCost::EdgeCost(std::shared_ptr<const EdgeImage> image, const Camera& camera,
                    const Landmark& start_in_camera, const EdgeOptions& options)
     : image_(std::move(image)),
       camera_(camera),
@@ -115,7 +115,7 @@ EdgeTerm::EdgeTerm(std::shared_ptr<const EdgeImage> image, const Camera& camera,
   weight_ = observations / (count * options.edge_sigma_px * options.edge_sigma_px);
 }
 
-bool EdgeTerm::Counts(const ModelPoint& point, const Landmark& start_in_camera) const {
+bool EdgeCost::Counts(const ModelPoint& point, const Landmark& start_in_camera) const {
   const auto pixel = camera_.Project(PointAt(start_in_camera, point.in_unit_body));
   const FrameEdges& frame = *image_->frame;
   if (!pixel || !IsBetweenPixelCentres(frame.maps.distance, *pixel)) return false;
@@ -128,12 +128,12 @@ bool EdgeTerm::Counts(const ModelPoint& point, const Landmark& start_in_camera) 
   return std::abs(point.along.dot(edge)) >= edge.norm() * least_cosine_;
 }
 
-double EdgeTerm::Support(const Landmark& landmark_in_camera) const {
+double EdgeCost::Support(const Landmark& landmark_in_camera) const {
   const double largest = (points_that_do_not_count_ + NumPoints()) * LargestCost();
   return 1.0 - (Value(landmark_in_camera) + ConstantCost()) / largest;
 }
 
-double EdgeTerm::Residual(const Landmark& landmark, const Eigen::Matrix3d& rotation,
+double EdgeCost::Residual(const Landmark& landmark, const Eigen::Matrix3d& rotation,
                           const Eigen::Vector3d& in_unit_body, LandmarkJacobian1* jacobian) const {
   if (jacobian != nullptr) jacobian->setZero();
   const Eigen::Vector3d in_object = landmark.half_axes.cwiseProduct(in_unit_body);
@@ -154,7 +154,7 @@ double EdgeTerm::Residual(const Landmark& landmark, const Eigen::Matrix3d& rotat
   return robust.value;
 }
 
-double EdgeTerm::Value(const Landmark& landmark_in_camera) const {
+double EdgeCost::Value(const Landmark& landmark_in_camera) const {
   const Eigen::Matrix3d rotation = landmark_in_camera.frame_from_object.rotation.toRotationMatrix();
   double sum = 0.0;
   for (const Eigen::Vector3d& point : in_unit_body_) {
@@ -164,7 +164,7 @@ double EdgeTerm::Value(const Landmark& landmark_in_camera) const {
   return 0.5 * weight_ * sum;
 }
 
-void EdgeTerm::AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) const {
+void EdgeCost::AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) const {
   const Eigen::Matrix3d rotation = landmark_in_camera.frame_from_object.rotation.toRotationMatrix();
   LandmarkModel points;
   for (const Eigen::Vector3d& point : in_unit_body_) {

@@ -52,9 +52,9 @@ struct EdgeImage {
 // outside nearer boxes, and whose nearest image edge has about their direction. The others cost as
 // much as a point far from any edge, whatever the landmark: an edge that is not seen supports no
 // landmark.
-class EdgeTerm final : public LandmarkCost {
+class EdgeCost final : public LandmarkCost {
  public:
-  EdgeTerm(std::shared_ptr<const EdgeImage> image, const Camera& camera,
+  EdgeCost(std::shared_ptr<const EdgeImage> image, const Camera& camera,
            const Landmark& start_in_camera, const EdgeOptions& options);
 
   // Number of points that are used.

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "base/options.h"
-#include "constraints/point_term.h"
+#include "constraints/point_cost.h"
 #include "constraints/symmetry.h"
 #include "constraints/variances.h"
 #include "initialisation/upright_observation.h"

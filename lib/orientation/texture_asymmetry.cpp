@@ -69,8 +69,8 @@ double TextureAsymmetry::Cost(const Landmark& landmark_in_camera) const {
 std::optional<MirroredTexture> TextureAsymmetry::Find(const Landmark& landmark_in_camera) const {
   const SymmetryDescriptor descriptor(symmetry_options_.descriptor, image_, camera_,
                                       InOwnAxes(landmark_in_camera));
-  const double squared_scale =
-      std::pow(Scale(landmark_in_camera, symmetry_options_.descriptor, options_), 2);
+  const double scale = Scale(landmark_in_camera, symmetry_options_.descriptor, options_);
+  const GemanMcClureLoss loss(scale);
   std::vector<Eigen::Vector2d> samples;
   const auto num_places = static_cast<Eigen::Index>(places_.size());
   constexpr Eigen::Index kUsualSamples = 256;  // more than 150 corners and a grid of 8 x 8
@@ -90,7 +90,7 @@ std::optional<MirroredTexture> TextureAsymmetry::Find(const Landmark& landmark_i
     for (Eigen::Index place = 0; place < num_places; ++place) {
       const double residual = residuals(place, static_cast<Eigen::Index>(i));
       if (!std::isfinite(residual)) continue;
-      sums[place] += residual * residual / (residual * residual + squared_scale);
+      sums[place] += 2.0 * EvaluateLoss(loss, residual).cost / (scale * scale);
       pairs[place] += 1.0;
     }
   }
@@ -110,7 +110,7 @@ std::optional<MirroredTexture> TextureAsymmetry::Find(const Landmark& landmark_i
   return best;
 }
 
-AsymmetryTerm::AsymmetryTerm(std::shared_ptr<const SymmetryImage> image, const Camera& camera,
+AsymmetryCost::AsymmetryCost(std::shared_ptr<const SymmetryImage> image, const Camera& camera,
                              const Landmark& start_in_camera, const TextureOptions& options,
                              const SymmetryOptions& symmetry_options, double weight)
     : image_(std::move(image)),
@@ -124,13 +124,13 @@ AsymmetryTerm::AsymmetryTerm(std::shared_ptr<const SymmetryImage> image, const C
       weight_(2.0 * weight * options.asymmetry_cost /
               static_cast<double>(std::max<size_t>(1, texture_.pixels.size()))) {}
 
-SymmetryDescriptor AsymmetryTerm::DescriptorOf(const Landmark& landmark_in_camera) const {
+SymmetryDescriptor AsymmetryCost::DescriptorOf(const Landmark& landmark_in_camera) const {
   Landmark landmark = landmark_in_camera;
   landmark.rests_on = rests_on_;
   return {descriptor_, *image_, camera_, InOwnAxes(landmark)};
 }
 
-double AsymmetryTerm::Residual(const SymmetryDescriptor& descriptor, const Eigen::Vector2d& pixel,
+double AsymmetryCost::Residual(const SymmetryDescriptor& descriptor, const Eigen::Vector2d& pixel,
                                LandmarkJacobian1* jacobian) const {
   const bool with_jacobian = jacobian != nullptr;
   if (with_jacobian) jacobian->setZero();
@@ -144,7 +144,7 @@ double AsymmetryTerm::Residual(const SymmetryDescriptor& descriptor, const Eigen
   return robust.value / scale_;
 }
 
-double AsymmetryTerm::Value(const Landmark& landmark_in_camera) const {
+double AsymmetryCost::Value(const Landmark& landmark_in_camera) const {
   const SymmetryDescriptor descriptor = DescriptorOf(landmark_in_camera);
   double sum = 0.0;
   for (const Eigen::Vector2d& pixel : texture_.pixels) {
@@ -154,7 +154,7 @@ double AsymmetryTerm::Value(const Landmark& landmark_in_camera) const {
   return 0.5 * weight_ * sum;
 }
 
-void AsymmetryTerm::AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) const {
+void AsymmetryCost::AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) const {
   const SymmetryDescriptor descriptor = DescriptorOf(landmark_in_camera);
   const Eigen::Matrix3d own_from_object = OwnFromObject(rests_on_).cwiseAbs();
   LandmarkModel pairs;

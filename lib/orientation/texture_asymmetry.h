@@ -54,9 +54,9 @@ class TextureAsymmetry {
 // The asymmetry cost for the back end, with the pairs and the mirror plane of the initial landmark
 // fixed, multiplied by `weight`. A pair whose pixel leaves the surface counts as fully asymmetric,
 // the limit for large differences. Only for descriptors with a derivative.
-class AsymmetryTerm final : public LandmarkCost {
+class AsymmetryCost final : public LandmarkCost {
  public:
-  AsymmetryTerm(std::shared_ptr<const SymmetryImage> image, const Camera& camera,
+  AsymmetryCost(std::shared_ptr<const SymmetryImage> image, const Camera& camera,
                 const Landmark& start_in_camera, const TextureOptions& options,
                 const SymmetryOptions& symmetry_options, double weight);
 

@@ -2,6 +2,7 @@
 #include "planes/standing_body.h"
 
 #include <Eigen/Dense>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -129,34 +130,29 @@ namespace {
 constexpr int kMaxIterations = 60;
 constexpr double kNegligiblePlaneDecrease = 1e-9;
 
-// Quadratic approximation of the cost of all bodies and of the cameras' attitude, in the planes'
-// motions.
-struct Quadratic {
-  double cost = 0.0;
-  Eigen::VectorXd gradient;
-  Eigen::MatrixXd information;
+// Two turns, and the height of each plane.
+Eigen::VectorXd NoMotion(const StandingBodies& standing) {
+  return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(standing.planes.size()) + 2);
+}
 
-  explicit Quadratic(size_t planes)
-      : gradient(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(planes) + 2)),
-        information(Eigen::MatrixXd::Zero(gradient.size(), gradient.size())) {}
-
-  void Add(const PlaneEvidence& evidence, int plane) {
+// The cost of all bodies and of the cameras' attitude to second order in the planes' motions.
+QuadraticModel<Eigen::Dynamic> ModelOf(const StandingBodies& standing,
+                                       const Eigen::Vector3d& pivot) {
+  const Eigen::VectorXd zero = NoMotion(standing);
+  QuadraticModel<Eigen::Dynamic> sum{0.0, zero, Eigen::MatrixXd::Zero(zero.size(), zero.size())};
+  const auto add = [&](const PlaneEvidence& evidence, int plane) {
     const std::array<Eigen::Index, 3> at = {0, 1, 2 + plane};
-    cost += evidence.cost;
-    gradient(at) += evidence.gradient;
-    information(at, at) += evidence.information;
-  }
-};
-
-Quadratic QuadraticOf(const StandingBodies& standing, const Eigen::Vector3d& pivot) {
-  Quadratic quadratic(standing.planes.size());
-  quadratic.Add(EvidenceOf(standing.attitude, standing.planes.front()), 0);
+    sum.cost += evidence.cost;
+    sum.gradient(at) += evidence.gradient;
+    sum.information(at, at) += evidence.information;
+  };
+  add(EvidenceOf(standing.attitude, standing.planes.front()), 0);
   for (size_t i = 0; i < standing.bodies.size(); ++i) {
     const StandingBody& body = standing.bodies[i];
     const double sigma = HeightSigma(body, standing.height_sigma_fraction);
-    quadratic.Add(WithHeightNoise(EvidenceOf(body, pivot), sigma), standing.plane_of[i]);
+    add(WithHeightNoise(EvidenceOf(body, pivot), sigma), standing.plane_of[i]);
   }
-  return quadratic;
+  return sum;
 }
 
 PlaneMotion MotionOfPlane(const Eigen::VectorXd& step, int plane) {
@@ -213,18 +209,16 @@ Eigen::Vector3d MeanBasePoint(const std::vector<StandingBody>& bodies) {
 
 std::optional<RefinedPlanes> Refine(StandingBodies* standing, int threads) {
   const Eigen::Vector3d pivot = MeanBasePoint(standing->bodies);
-  const Eigen::VectorXd no_step =
-      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(standing->planes.size()) + 2);
-  const auto start = Stepped(*standing, pivot, no_step, threads);
+  const auto start = Stepped(*standing, pivot, NoMotion(*standing), threads);
   if (!start) return std::nullopt;
   *standing = *start;
-  const auto linearise = [&](const StandingBodies& at) { return QuadraticOf(at, pivot); };
+  const auto linearise = [&](const StandingBodies& at) { return ModelOf(at, pivot); };
   const auto plus = [&](const StandingBodies& at, const Eigen::VectorXd& step) {
     return step.allFinite() ? Stepped(at, pivot, step, threads) : std::nullopt;
   };
-  const Quadratic quadratic =
+  const auto model =
       MinimiseSquares(linearise, plus, {kMaxIterations, kNegligiblePlaneDecrease}, standing);
-  return RefinedPlanes{quadratic.cost, pivot, quadratic.information.inverse()};
+  return RefinedPlanes{model.cost, pivot, model.information.inverse()};
 }
 
 }  // namespace soslam

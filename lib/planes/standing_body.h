@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/quadratic_model.h"
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
 #include "initialisation/multi_view.h"
@@ -20,13 +21,9 @@ Plane Moved(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMotion&
 Landmark Moved(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMotion& motion,
                const Landmark& landmark);
 
-// Quadratic approximation, in the plane's motion, of the cost of an object's boxes, minimised over
-// the body on the plane.
-struct PlaneEvidence {
-  double cost = 0.0;
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-};
+// The cost of an object's boxes to second order in the plane's motion, minimised over the body on
+// the plane.
+using PlaneEvidence = QuadraticModel<3>;
 
 // The boxes of an object and the body on a plane that fits them best.
 struct StandingBody {

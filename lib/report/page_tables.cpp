@@ -350,7 +350,7 @@ std::string LinkToFindings(const json& page) {
   return fmt::format("<p><a href=\"#remarks\">{}</a> below</p>\n", Counted(count, "finding"));
 }
 
-std::string CountsText(const json& counts) {
+std::string FramesObjectsDetections(const json& counts) {
   return fmt::format("{}, {}, {} used", Counted(counts.at("frames").get<size_t>(), "frame"),
                      Counted(counts.at("objects").get<size_t>(), "object"),
                      Counted(counts.at("detections").get<size_t>(), "detection"));
@@ -361,7 +361,7 @@ std::string CountsText(const json& counts) {
 std::string DatasetTables(const json& page) {
   if (page.at("variants").empty()) return "";
   const json& sequence = page.at("sequences").front();
-  std::string counts = CountsText(sequence.at("counts"));
+  std::string counts = FramesObjectsDetections(sequence.at("counts"));
   const json& frames = sequence.at("frames");
   const auto shown = std::ranges::count_if(
       frames, [](const json& frame) { return frame.at("shown").get<bool>(); });
@@ -385,7 +385,7 @@ std::string OverviewTables(const json& overview) {
     if (!dataset.at("counts").is_null()) {
       content = fmt::format(
           "<p>{}. <a href=\"./{}/report.html\">Map, frames, objects and figures</a></p>\n",
-          CountsText(dataset.at("counts")), HtmlText(url));
+          FramesObjectsDetections(dataset.at("counts")), HtmlText(url));
     }
     content += Remarks(dataset);
     if (!dataset.at("variants").empty()) {

@@ -22,7 +22,8 @@
 #include "initialisation/object_points.h"
 #include "initialisation/options.h"
 #include "orientation/options.h"
-#include "orientation/refine_orientation.h"
+#include "orientation/refine_by_profile.h"
+#include "orientation/refine_by_turning.h"
 #include "orientation/texture_asymmetry.h"
 #include "stage/read_evidence.h"
 #include "stage/stages.h"
@@ -114,7 +115,7 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
   if (failed == tried) {
     throw NothingUsableError(fmt::format("{}: no landmark from {} tries: {}",
                                          files.at("sequence").string(), tried,
-                                         CountsText(failures)));
+                                         CountsInWords(failures)));
   }
   std::vector<Finding> findings = CheckFailures(estimates);
   std::ranges::move(options.method == InitialisationMethod::kSvd
@@ -129,7 +130,7 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
   WriteLandmarks(files.at("output"), estimates, sequence,
                  {OptionsToJson(options), inputs, findings});
   fmt::print("{} landmarks{}{}{}\n", tried - failed, failed > 0 ? ", without one: " : "",
-             CountsText(failures), CountWithPoints(points, estimates));
+             failed > 0 ? CountsInWords(failures) : "", CountWithPoints(points, estimates));
 }
 
 namespace {
@@ -170,12 +171,12 @@ std::vector<RefinedObservation> RefineAll(const Sequence& sequence,
     const auto& prior = priors[detection.object_index];
     if (options.method == RefinementMethod::kProfile) {
       const int detection_index = initial[i]->detection_index;
-      refined[i] = RefineOrientation(
+      refined[i] = RefineByProfile(
           sequence, detection_index, edges, prior, options.profile, options.turn.symmetry,
           points ? points->Of(detection_index, initial[i]->hypotheses) : std::nullopt);
     } else {
       const auto ratio = prior ? std::optional(prior->ratio) : std::nullopt;
-      refined[i] = RefineObservation(sequence, *initial[i], edges->maps, ratio, options.turn);
+      refined[i] = RefineByTurning(sequence, *initial[i], edges->maps, ratio, options.turn);
     }
   });
   return refined;

@@ -154,7 +154,7 @@ bool IsMap(const std::filesystem::path& path) {
 void PrintQuality(const MapQuality& quality) {
   for (const MapScore& score : quality.scores) {
     fmt::print(
-        "IoU of at least {:g}: {} of {} true objects found ({} of {} detectable), {} of {} "
+        "IoU of at least {:g}: {} of {} true objects found ({} of the {} detectable), {} of {} "
         "landmarks right, {} ignored; mean IoU of the found {}\n",
         score.min_iou, score.found, score.true_objects, score.found_detectable, score.detectable,
         score.found, score.landmarks - score.ignored, score.ignored,

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cli/command_line.h"
-#include "constraints/point_term.h"
+#include "constraints/point_cost.h"
 #include "image/edge_maps.h"
 #include "image/read_image.h"
 #include "model/map_points.h"

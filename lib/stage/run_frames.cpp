@@ -143,7 +143,7 @@ void CheckEnough(const FramesRecord& record, const fs::path& images) {
       "{}: {} of {} images can be used ({}); expected at least 2 from different places: move the "
       "camera sideways, not only turn it",
       images.string(), std::ssize(record.frames) - left_out, record.frames.size(),
-      CountsText(CountLeftOut(record.frames))));
+      CountsInWords(CountLeftOut(record.frames))));
 }
 
 void WritePhoto(const Photo& photo, int max_image_px, const std::string& name,
@@ -204,11 +204,10 @@ void RunFrames(const FrameOptions& options, const StageFiles& files, int threads
   output.Write("frames.json", FramesText(folder / "frames.json", record,
                                          {OptionsToJson(options), chosen.inputs, findings}));
   output.Commit();
-  const auto counts = CountLeftOut(record.frames);
   const auto left_out = std::ranges::count_if(record.frames, IsLeftOut);
   fmt::print("{}: {} of {} images chosen, {} x {} px; left out: {}\n", record.name,
              std::ssize(record.frames) - left_out, record.frames.size(), record.width,
-             record.height, counts.empty() ? "none" : CountsText(counts));
+             record.height, CountsInWords(CountLeftOut(record.frames)));
 }
 
 }  // namespace soslam

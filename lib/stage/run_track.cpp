@@ -97,8 +97,12 @@ std::optional<MapPoint> PointOf(const Sequence& sequence, const std::vector<Fram
   if (near.size() < min_views || 2 * near.size() < all.size()) return std::nullopt;
   const auto point = Triangulate(near, 0.5 * max_error_px);
   if (!point) return std::nullopt;
+  std::vector<Eigen::Vector3d> centres;
+  for (const PointView& view : near) {
+    centres.push_back(view.camera_from_world.Inverse().translation);
+  }
   if (std::ranges::any_of(near, is_far_from(*point)) ||
-      LargestAngle(near, point->position_in_world) < options.min_angle_deg * kRadPerDeg) {
+      LargestAngle(centres, point->position_in_world) < options.min_angle_deg * kRadPerDeg) {
     return std::nullopt;
   }
   MapPoint result{point->position_in_world, point->mean_error_px, {}};
@@ -178,7 +182,8 @@ void PrintTrackSummary(const Sequence& sequence, const std::vector<MapPoint>& po
     return static_cast<double>(point.observations.size());
   };
   fmt::print(
-      "{}: {} points from {} tracks, median reprojection error {:.2f} px, in {:.0f} images\n",
+      "{}: {} points from {} tracks, median reprojection error {:.2f} px, each in {:.0f} "
+      "images (median)\n",
       sequence.name, points.size(), tracks,
       *MedianOf(ValuesOf(points, &MapPoint::reprojection_error_px)),
       *MedianOf(ValuesOf(points, views)));

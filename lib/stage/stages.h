@@ -134,7 +134,7 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
 
 // soslam-refine: initial.json and edges.h5, with point_evidence also points.h5, to refined.json and
 // symmetry.h5: files "sequence", "table", "initial", "edges", "points" (optional), "output",
-// "curves". Throws SettingsError for a descriptor without derivative where one is needed, and
+// "curves". Throws SettingsError for a descriptor that does not go with mirror_plane_range, and
 // without points that the settings need; InputError as RunInitialise; NothingUsableError when
 // initial.json has no single-frame landmarks.
 void RunRefine(const OrientationOptions& options, const StageFiles& files, int threads);

@@ -32,13 +32,13 @@
 namespace soslam {
 namespace {
 
-// Summary of the tracks' fates: "merged 3, object 12".
+// Summary of the tracks' fates: "12 object, 3 merged".
 std::string DescribeTracks(const Association& association) {
   std::map<std::string, int> counts;
   for (const Track& track : association.tracks) {
     ++counts[kTrackFateNames.at(static_cast<size_t>(track.fate))];
   }
-  return counts.empty() ? "none" : CountsText(counts);
+  return CountsInWords(counts);
 }
 
 // Finding of the first segment whose up direction is ambiguous.

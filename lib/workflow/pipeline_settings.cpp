@@ -179,8 +179,13 @@ std::vector<json> ReadVariantLayers(fs::path file) {
     layers.push_back(ReadLayer(file));
     const json extends = layers.back().value("extends", json());
     if (extends.is_null()) break;
-    const std::string name = extends.get<std::string>() + ".json";
-    file = (file.parent_path() / name).lexically_normal();
+    const fs::path extended =
+        (file.parent_path() / (extends.get<std::string>() + ".json")).lexically_normal();
+    if (!Exists(extended)) {
+      throw SettingsError(fmt::format("{}: 'extends' is {}, but {} does not exist", file.string(),
+                                      extends.dump(), extended.string()));
+    }
+    file = extended;
   }
   std::reverse(layers.begin(), layers.end());
   return layers;
@@ -207,6 +212,19 @@ void CheckNeeds(const VariantSettings& settings, const std::string& file) {
     if (UsesPoints(options)) {
       need(fmt::format("setting 'point_evidence' of {} needs", stage), "track");
     }
+  }
+}
+
+// A variant's own settings of a stage that it does not run would change nothing, without a word.
+void CheckSectionsAreUsed(const VariantSettings& settings, const json& own_layer,
+                          const std::string& file) {
+  for (const auto& [key, value] : own_layer.items()) {
+    const PipelineStage* stage = FindStage(key);
+    if (stage == nullptr || stage->asked_by != nullptr || settings.options.contains(key)) continue;
+    throw SettingsError(
+        fmt::format("{}: has settings of stage '{}', which does not run; expected "
+                    "it in 'stages'",
+                    file, key));
   }
 }
 
@@ -261,7 +279,8 @@ VariantSettings ReadVariant(const fs::path& pipelines, const std::string& datase
   json merged = ReadBaseLayer(pipelines / "base.json");
   const fs::path dataset_file = pipelines / "datasets" / (dataset + ".json");
   if (Exists(dataset_file)) merged.merge_patch(ReadBaseLayer(dataset_file));
-  for (const json& layer : ReadVariantLayers(variant_file)) merged.merge_patch(layer);
+  const std::vector<json> layers = ReadVariantLayers(variant_file);
+  for (const json& layer : layers) merged.merge_patch(layer);
 
   const std::string file = variant_file.string();
   VariantSettings settings;
@@ -277,6 +296,7 @@ VariantSettings ReadVariant(const fs::path& pipelines, const std::string& datase
     settings.options[stage.name] = resolved;
   }
   CheckNeeds(settings, file);
+  CheckSectionsAreUsed(settings, layers.back(), file);
   return settings;
 }
 

@@ -111,7 +111,7 @@ TEST_F(EdgesFileTest, CutShortAnywhereIsRefused) {
 
 TEST_F(EdgesFileTest, OtherKindsAndNewerVersionsAreRefused) {
   ExpectBadTexts({{R"({"kind": "symmetry", "schema_version": [1, 0]})", {"symmetry", "edges"}},
-                  {R"({"kind": "edges", "schema_version": [1, 9]})", {"[1, 9]", "[1, 8]"}},
+                  {R"({"kind": "edges", "schema_version": [1, 10]})", {"[1, 10]", "[1, 9]"}},
                   {"", {"header"}},
                   {"{", {"header"}}},
                  "header.h5",

@@ -60,7 +60,7 @@ TEST_F(JsonFileTest, HeaderNamesWhatShapedTheArtefact) {
   WriteArtefact(file, "landmarks", {{{"yaw", 3}}, {b, a}}, kEmptyLandmarks);
   const json header = ReadArtefact(file, "landmarks").at("artefact");
   EXPECT_EQ(header.at("kind"), "landmarks");
-  EXPECT_EQ(header.at("schema_version"), json({1, 8}));
+  EXPECT_EQ(header.at("schema_version"), json({1, 9}));
   EXPECT_THAT(header.at("software").get<std::string>(), testing::StartsWith("soslam "));
   EXPECT_EQ(header.at("settings").at("yaw"), 3);
   EXPECT_EQ(header.at("inputs").at(0).at("file"), "a.txt");
@@ -83,8 +83,8 @@ TEST_F(JsonFileTest, HeadersThatAreNotOursAreRefused) {
   for (const auto& [header, words] : std::vector<std::pair<json, std::string>>{
            {HeaderOfVersion({2, 0}),
             "has schema version [2, 0] of kind 'landmarks'; this software "
-            "reads up to [1, 8]"},
-           {HeaderOfVersion({1, 9}), "[1, 8]"},
+            "reads up to [1, 9]"},
+           {HeaderOfVersion({1, 10}), "[1, 9]"},
            {HeaderOfVersion("1.0"), "schema_version is \"1.0\""},
            {HeaderOfVersion({1, -1}), "schema_version is [1,-1]"},
            {ArtefactHeader("map", {}), "kind is \"map\"; expected \"landmarks\""},

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "benchmark/paper_residuals.h"
 #include "geometry/angles.h"
@@ -19,7 +18,7 @@ namespace {
 // 3, 1, 0.3, 0.1 and 0.03 m this one gives the highest IoU with these inputs.
 constexpr double kSingleFrameVariance = 1e-3;  // m^4
 constexpr double kAllFramesVariance = 10.0;    // m^4
-constexpr double kAngleVariance = 10.0 * std::numbers::pi * std::numbers::pi / (180.0 * 180.0);
+constexpr double kAngleVariance = 10.0 * kRadPerDeg * kRadPerDeg;
 constexpr double kSymmetrySigma = 3.0;  // m
 // Odometry between two frames.
 constexpr double kRotationSigma = 0.1 * kRadPerDeg;

@@ -11,7 +11,7 @@
 #include "benchmark/inputs.h"
 #include "benchmark/paper_baseline.h"
 #include "initialisation/initialise.h"
-#include "orientation/refine_orientation.h"
+#include "orientation/refine_by_profile.h"
 
 namespace soslam {
 namespace {
@@ -43,9 +43,9 @@ Landmarks SingleFrameTexture() {
   Landmarks landmarks;
   for (size_t i = 0; i < sequence.detections.size(); ++i) {
     const Detection& detection = sequence.detections[i];
-    const auto refined = RefineOrientation(sequence, static_cast<int>(i),
-                                           EdgesOfTwelveViews()[detection.frame_index],
-                                           priors[detection.object_index], options, SymmetryOfST());
+    const auto refined =
+        RefineByProfile(sequence, static_cast<int>(i), EdgesOfTwelveViews()[detection.frame_index],
+                        priors[detection.object_index], options, SymmetryOfST());
     landmarks.push_back(Transform(sequence.FrameOf(detection).world_from_camera,
                                   refined.estimate.hypotheses.front().landmark_in_camera));
   }

@@ -26,8 +26,7 @@ class DistanceResidual final : public ceres::SizedCostFunction<1, kLandmarkSize>
   DistanceResidual(const Eigen::Vector3d& point, const ShapeExponents& shape_exponents)
       : point_(point), shape_exponents_(shape_exponents) {}
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
-    Landmark landmark = UnpackLandmark(blocks[0]);
-    landmark.shape_exponents = shape_exponents_;
+    const Landmark landmark = UnpackLandmark(blocks[0], shape_exponents_);
     LandmarkJacobian1 jacobian;
     residuals[0] = SurfaceDistance(landmark, point_, &jacobian);
     if (jacobians != nullptr) WriteLandmarkJacobian<1>(blocks[0], jacobian, jacobians[0]);

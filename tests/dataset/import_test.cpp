@@ -316,7 +316,8 @@ TEST_F(ImportTest, TheWorldOfTheOdometryIsWhatTheSettingsSay) {
 TEST_F(ImportTest, NothingUsableSaysWhy) {
   options_.border_px = 150.0;
   ExpectRefused<NothingUsableError>(
-      {"no usable detection left; 7 detections rejected: near_border 7"});
+      {"no usable detection left; 7 detections rejected: 7 near_border"});
+  EXPECT_EQ(DescribeRejections({}), "0 detections rejected");
 }
 
 TEST(FolderEntriesTest, WhatCannotBeListedIsNamed) {

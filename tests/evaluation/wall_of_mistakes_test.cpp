@@ -88,7 +88,7 @@ TEST_F(WallOfMistakesTest, AWallOfMistakesHasItsCountsAndReasons) {
                           Pair(MapReason::kWrongHeight, 1), Pair(MapReason::kWrongSize, 1),
                           Pair(MapReason::kWrongYaw, 1), Pair(MapReason::kWrongPlace, 1),
                           Pair(MapReason::kDuplicate, 1), Pair(MapReason::kBackground, 1)));
-  EXPECT_EQ(RowOf(quality, 6).miss->detail, "boxes in use in 0 frames; left out: near_border 6");
+  EXPECT_EQ(RowOf(quality, 6).miss->detail, "boxes in use in 0 frames; left out: 6 near_border");
   EXPECT_EQ(RowOf(quality, 11).miss->detail, "too_few_views");
 }
 

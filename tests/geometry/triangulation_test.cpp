@@ -101,11 +101,10 @@ TEST(ReprojectionErrorTest, IsADistanceInPixels) {
   EXPECT_TRUE(std::isinf(ReprojectionError(views[0], {0.0, 0.0, -4.0})));
 }
 
-// Cameras at x = -0.3, 0 and 0.3, four metres away.
 TEST(LargestAngleTest, IsThatOfTheOutermostCameras) {
-  const Eigen::Vector3d point(0.0, 0.0, 4.0);
-  EXPECT_NEAR(LargestAngle(ViewsAlongALine(point, 3), point), 2.0 * std::atan(0.3 / 4.0), 1e-9);
-  EXPECT_EQ(LargestAngle(ViewsAlongALine(point, 1), point), 0.0);
+  const Eigen::Vector3d point(0.0, 0.0, 4.0), left(-0.3, 0.0, 0.0), right(0.3, 0.0, 0.0);
+  EXPECT_NEAR(LargestAngle({left, {}, right}, point), 2.0 * std::atan(0.3 / 4.0), 1e-9);
+  EXPECT_EQ(LargestAngle({left}, point), 0.0);
 }
 
 }  // namespace

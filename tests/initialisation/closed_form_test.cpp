@@ -26,7 +26,7 @@ TEST(ClosedForm, HasNoneWhereARepetitionIsNotInFront) {
 TEST(SolveAtYaw, RecoversTheBodyOfAnExactBoxAtItsYaw) {
   for (const ShapeExponents& p : kShapeExponents) {
     for (int i = 0; i < 50; ++i) {
-      const StandingBody body(p);
+      const ObservedBody body(p);
       const auto landmark = SolveAtYaw(body.observation, body.Yaw());
       ASSERT_TRUE(landmark) << p;
       EXPECT_TRUE(IsSameBody(*landmark, body.truth, 1e-8)) << p;
@@ -36,7 +36,7 @@ TEST(SolveAtYaw, RecoversTheBodyOfAnExactBoxAtItsYaw) {
 
 TEST(SolveAtYaw, StandsOnThePlaneAtTheYawWithThePriorsRatio) {
   for (int i = 0; i < 100; ++i) {
-    const StandingBody body(RandomUniform(1, 2));
+    const ObservedBody body(RandomUniform(1, 2));
     const double yaw = RandomYaw();
     const auto landmark = SolveAtYaw(body.Observe(Disturbed(body.box, 0.05)), yaw);
     ASSERT_TRUE(landmark);
@@ -73,7 +73,7 @@ TEST(SolveAtYaw, HasNoBodyThatIsNotInFrontOfTheCameraForBoxesThatNoneExplains) {
 
 TEST(SolveAtYaw, ScalesWithTheHeightOfTheCamera) {
   for (int i = 0; i < 50; ++i) {
-    const StandingBody body(RandomUniform(1, 2));
+    const ObservedBody body(RandomUniform(1, 2));
     UprightObservation observation = body.Observe(Disturbed(body.box, 0.05));
     const double yaw = RandomYaw();
     const auto landmark = SolveAtYaw(observation, yaw);
@@ -91,7 +91,7 @@ TEST(SolveAtYaw, ScalesWithTheHeightOfTheCamera) {
 // Half a turn leaves every body as it is; a quarter turn exchanges a and b.
 TEST(SolveAtYaw, IsTheSameBodyAfterAHalfTurnAndAfterAQuarterTurnWithTheAxesExchanged) {
   for (int i = 0; i < 50; ++i) {
-    const StandingBody body(RandomUniform(1, 2));
+    const ObservedBody body(RandomUniform(1, 2));
     UprightObservation observation = body.Observe(Disturbed(body.box, 0.05));
     const double yaw = RandomYaw();
     const auto landmark = SolveAtYaw(observation, yaw);
@@ -118,7 +118,7 @@ TEST(SolveAtYaw, RecoversABodyThatABoundCutsFromTheOtherThreeEdges) {
   for (const ShapeExponents& p : kShapeExponents) {
     for (size_t edge = 0; edge < 4; ++edge) {
       for (int i = 0; i < 10; ++i) {
-        const StandingBody body(p);
+        const ObservedBody body(p);
         const Box cut = WithEdgeMoved(body.box, edge, -RandomUniform(0.05, 0.3));
         std::array<bool, 4> is_one_sided{};
         is_one_sided[edge] = true;
@@ -154,7 +154,7 @@ TEST(SolveAtYaw, RecoversABodyThatIsHiddenUpToTheHorizon) {
 TEST(SolveAtYaw, HoldsABoundThatTheBodyDoesNotReachForMeasured) {
   for (size_t edge = 0; edge < 4; ++edge) {
     for (int i = 0; i < 20; ++i) {
-      const StandingBody body(RandomUniform(1, 2));
+      const ObservedBody body(RandomUniform(1, 2));
       const Box wide = WithEdgeMoved(body.box, edge, RandomUniform(0.05, 0.2));
       std::array<bool, 4> is_one_sided{};
       is_one_sided[edge] = true;

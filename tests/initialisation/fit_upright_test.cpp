@@ -33,7 +33,7 @@ constexpr double kCostTolerance = 1e-6;
 TEST(FitUpright, FindsTheBodyOfAnExactBoxAtItsYaw) {
   for (const ShapeExponents& p : kShapeExponents) {
     for (int i = 0; i < 20; ++i) {
-      const StandingBody body(p);
+      const ObservedBody body(p);
       const Landmark start = DisturbedFootAndSize(body.truth, body.plane);
       const auto terms = BoxAndRatio(body.observation.edges, body.observation.prior, start);
       const auto solution = FitUpright(body.plane, start, terms, /*yaw_is_free=*/false);
@@ -46,7 +46,7 @@ TEST(FitUpright, FindsTheBodyOfAnExactBoxAtItsYaw) {
 
 TEST(FitUpright, LowersTheCostThatItReportsAndKeepsWhatItIsTold) {
   for (int i = 0; i < 100; ++i) {
-    const StandingBody body(RandomUniform(1, 2));
+    const ObservedBody body(RandomUniform(1, 2));
     const auto edges = body.Observe(Disturbed(body.box, 0.05)).edges;
     const Landmark start =
         RotatedAboutZ(DisturbedFootAndSize(body.truth, body.plane), RandomUniform(-0.5, 0.5));
@@ -71,7 +71,7 @@ TEST(FitUpright, GainsNothingWhenItIsRunAgain) {
   int unfinished = 0;
   double largest_gain = 0.0;
   for (int i = 0; i < kBodies; ++i) {
-    const StandingBody body(RandomUniform(1, 2));
+    const ObservedBody body(RandomUniform(1, 2));
     const UprightObservation observation = body.Observe(Disturbed(body.box, 0.02));
     const auto start = SolveAtYaw(observation, body.Yaw() + RandomUniform(-0.05, 0.05));
     ASSERT_TRUE(start);

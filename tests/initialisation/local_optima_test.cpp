@@ -32,7 +32,7 @@ TEST(LocalOptima, HaveTheTrueBodyAmongThem) {
   int found_nearby = 0;
   for (const ShapeExponents& p : kShapeExponents) {
     for (int i = 0; i < 20; ++i) {
-      const StandingBody body(p);
+      const ObservedBody body(p);
       const auto optima = Optima(body.observation);
       ASSERT_FALSE(optima.empty());
       EXPECT_LT(optima.front().cost, 1e-3) << "body " << i << ", p " << p;
@@ -54,7 +54,7 @@ TEST(LocalOptima, HaveTheTrueBodyAmongThem) {
 }
 
 UprightObservation NoisyObservation(double axes_weight) {
-  const StandingBody body(RandomUniform(1, 2));
+  const ObservedBody body(RandomUniform(1, 2));
   UprightObservation observation = body.Observe(Disturbed(body.box, 0.03));
   observation.axes_weight = axes_weight;
   return observation;
@@ -131,7 +131,7 @@ TEST(LocalOptima, FewAreTheBestOfAll) {
 // A cost on top that only one yaw is spared, between the points of the grid.
 TEST(LocalOptima, FollowTheExtraCostToATenthOfTheGridsStep) {
   for (int i = 0; i < 20; ++i) {
-    const StandingBody body(RandomUniform(1, 2), /*ratio_log_sigma=*/0.5);
+    const ObservedBody body(RandomUniform(1, 2), /*ratio_log_sigma=*/0.5);
     const double yaw = RandomYaw();
     YawObjective objective;
     objective.compared_cost = [&](const Landmark& landmark) {

@@ -56,7 +56,7 @@ Landmark LandmarkOf(const UprightObservation& observation, const UprightFit& fit
 
 TEST(SweepYaw, CoversHalfATurnWithLandmarksAtTheirYaws) {
   for (const double step_deg : {1.0, 3.0, 7.0, 45.0}) {
-    const StandingBody body(1.5);
+    const ObservedBody body(1.5);
     const YawSweep sweep = SweepYaw(body.observation, {}, step_deg * kRadPerDeg);
     ASSERT_EQ(sweep.yaw.size(), static_cast<size_t>(std::lround(180.0 / step_deg)));
     ASSERT_EQ(sweep.fits.size(), sweep.yaw.size());
@@ -77,7 +77,7 @@ TEST(SweepYaw, CoversHalfATurnWithLandmarksAtTheirYaws) {
 }
 
 TEST(SweepYaw, IsEmptyWhereThePlaneIsNotInView) {
-  StandingBody body(1.5);
+  ObservedBody body(1.5);
   body.observation.plane_in_camera.offset = -1.0;
   const YawSweep sweep = SweepYaw(body.observation, {}, kStep);
   for (const double cost : sweep.Costs()) EXPECT_TRUE(std::isnan(cost));

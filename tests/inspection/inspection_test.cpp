@@ -165,7 +165,7 @@ TEST_F(InspectionTest, MetricsWithoutIdsHaveARowPerLandmark) {
   EXPECT_EQ(Said(inspection, "alignment"),
             "similarity, scale 2.5; cameras 0.0125 m from the true ones (9 frames, path: line)");
   EXPECT_THAT(Said(inspection, "IoU >= 0.25"),
-              HasSubstr("1 of 2 objects found (0 of 0 detectable), 1 of 2 landmarks right, 1 "
+              HasSubstr("1 of 2 objects found (0 of the 0 detectable), 1 of 2 landmarks right, 1 "
                         "ignored"));
   EXPECT_THAT(Said(inspection, "found"), HasSubstr("log scale 0.375"));
   EXPECT_EQ(Said(inspection, "missed"), "41 (mouse): gated; near_border 4");

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "evaluation/metrics.h"
+#include "evaluation/result_checks.h"
 #include "mapping/initial_landmarks.h"
 #include "support/cuboid_map.h"
 #include "support/random.h"
@@ -267,6 +268,37 @@ TEST(TangencyBackEnd, EdgesImproveWhatBoxesSay) {
   const double with = MeanIou(sequence, edges);
   EXPECT_GT(with, MeanIou(sequence, boxes));
   EXPECT_GT(with, 0.9);
+}
+
+TEST(TangencyBackEnd, AllSolvesTogetherKeepToTheLimitOfIterations) {
+  const Sequence sequence = CuboidSequence(3, 8);
+  const Sequence noisy = WithBoxNoise(sequence, 4.0);
+  BackEndInput input = TruthInput(noisy, 0.2);
+  input.edge_images = DrawnEdges(sequence);
+  OptimiseOptions options = TangencyOptions();
+  options.max_iterations = 3;
+  const SolverSummary solver = OptimiseMap(input, options).solver;
+  EXPECT_EQ(solver.iterations, 3);
+  EXPECT_FALSE(solver.converged);
+}
+
+// Views from about one side share the errors of the body's shape: together they cost as one.
+TEST(TangencyBackEnd, BoxesOfExchangedObjectsCostFarMoreThanTheirNoise) {
+  const Sequence right = WithBoxNoise(CuboidSequence(4, 20), 2.0);
+  Sequence exchanged = right;
+  for (Detection& detection : exchanged.detections) {
+    if (detection.frame_index % 2 == 1 && detection.object_index < 2) {
+      detection.object_index = 1 - detection.object_index;
+    }
+  }
+  OptimiseOptions options = TangencyOptions();
+  options.view_correlation_deg = 20.0;
+  const SolverSummary solver = OptimiseMap(TruthInput(right), options).solver;
+  EXPECT_GT(solver.box_cost, 0.0);
+  EXPECT_LT(solver.box_cost, solver.final_cost);
+  EXPECT_LT(solver.expected_box_cost, 2.0 * static_cast<double>(right.detections.size()));
+  EXPECT_TRUE(CheckCost(solver).empty());
+  EXPECT_FALSE(CheckCost(OptimiseMap(TruthInput(exchanged), options).solver).empty());
 }
 
 // Which edge points count is decided anew until nothing moves: from there, nothing does.

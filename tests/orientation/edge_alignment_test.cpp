@@ -28,7 +28,7 @@ std::shared_ptr<const EdgeImage> ImageOf(const Landmark& landmark,
 }
 
 // With the points that do not count.
-double TwiceTheCost(const EdgeTerm& term, const Landmark& landmark) {
+double TwiceTheCost(const EdgeCost& term, const Landmark& landmark) {
   return 2.0 * (term.Value(landmark) + term.ConstantCost());
 }
 
@@ -52,11 +52,11 @@ double MeanMotion(const Landmark& one, const Landmark& other) {
   return sum / static_cast<double>(points.size());
 }
 
-TEST(EdgeTerm, IsLeastWhereTheEdgesOfTheBodyAreThoseOfTheImage) {
+TEST(EdgeCost, IsLeastWhereTheEdgesOfTheBodyAreThoseOfTheImage) {
   for (const double yaw : {0.3, 1.0, -0.8}) {
     const Landmark truth = Cuboid(yaw);
     const auto image = ImageOf(truth);
-    const EdgeTerm term(image, TestCamera(), truth, EdgeOptions());
+    const EdgeCost term(image, TestCamera(), truth, EdgeOptions());
     const double largest = LargestCost(image->box, EdgeOptions());
     const double at_truth = TwiceTheCost(term, truth);
     // Edges are found to half a pixel, and none at the corners: (0.5 / 8)^2 and a few points.
@@ -78,10 +78,10 @@ TEST(EdgeTerm, IsLeastWhereTheEdgesOfTheBodyAreThoseOfTheImage) {
   }
 }
 
-TEST(EdgeTerm, IsBounded) {
+TEST(EdgeCost, IsBounded) {
   const Landmark truth = Cuboid(0.3);
   const auto image = ImageOf(truth);
-  const EdgeTerm term(image, TestCamera(), truth, EdgeOptions());
+  const EdgeCost term(image, TestCamera(), truth, EdgeOptions());
   const double largest = LargestCost(image->box, EdgeOptions());
   for (int i = 0; i < 100; ++i) {
     Landmark landmark = RandomLandmarkInCamera();
@@ -100,7 +100,7 @@ TEST(EdgeTerm, IsBounded) {
   EXPECT_EQ(model.gradient.norm(), 0.0);
   EXPECT_EQ(model.information.norm(), 0.0);
   // A body that no point of is in front of the camera has no edge in the image.
-  const EdgeTerm of_none(image, TestCamera(), behind, EdgeOptions());
+  const EdgeCost of_none(image, TestCamera(), behind, EdgeOptions());
   EXPECT_EQ(of_none.NumPoints(), 0);
   EXPECT_NEAR(2.0 * of_none.ConstantCost(), largest, 1e-9);
   EXPECT_NEAR(of_none.Support(behind), 0.0, 1e-12);
@@ -112,7 +112,7 @@ EdgeOptions AnyDirection() {
   return options;
 }
 
-TEST(EdgeTerm, PointsInNearerBoxesAndOutsideTheImageCostAsMuchAsCanBe) {
+TEST(EdgeCost, PointsInNearerBoxesAndOutsideTheImageCostAsMuchAsCanBe) {
   const Camera camera = TestCamera();
   const Box half{0, 0, 310, 480};
   const EdgeOptions options = AnyDirection();
@@ -127,14 +127,14 @@ TEST(EdgeTerm, PointsInNearerBoxesAndOutsideTheImageCostAsMuchAsCanBe) {
       return pixel.x() > 310.0 && pixel.x() <= camera.width - 1.0;
     });
     ASSERT_GT(visible, 0);
-    const EdgeTerm term(image, camera, truth, options);
+    const EdgeCost term(image, camera, truth, options);
     EXPECT_EQ(term.NumPoints(), visible);
     const double share = 1.0 - static_cast<double>(visible) / static_cast<double>(points.size());
     EXPECT_NEAR(2.0 * term.ConstantCost(), share * LargestCost(image->box, options), 1e-9);
   }
   const Landmark truth = Cuboid(0.3);
   const auto hidden = ImageOf(truth, {{0, 0, 640, 480}});
-  const EdgeTerm term(hidden, camera, truth, options);
+  const EdgeCost term(hidden, camera, truth, options);
   EXPECT_EQ(term.NumPoints(), 0);
   EXPECT_NEAR(2.0 * term.ConstantCost(), LargestCost(hidden->box, options), 1e-9);
   EXPECT_NEAR(term.Support(truth), 0.0, 1e-12);
@@ -158,25 +158,25 @@ RandomView CuboidView() {
   }
 }
 
-TEST(EdgeTerm, DerivativesAgreeWithNumbers) {
+TEST(EdgeCost, DerivativesAgreeWithNumbers) {
   const auto image = ImageOf(LinearMaps(SmallDistance));
   for (int i = 0; i < 10; ++i) {
     const Landmark landmark = CuboidView().LandmarkInCamera();
-    const EdgeTerm term(image, TestCamera(), landmark, AnyDirection());
+    const EdgeCost term(image, TestCamera(), landmark, AnyDirection());
     ASSERT_GT(term.NumPoints(), 32);
     ExpectCorrectGradient(term, landmark);
   }
 }
 
 // So far apart that some bodies have a single one.
-TEST(EdgeTerm, InformationOfOnePointIsThatOfItsGradient) {
+TEST(EdgeCost, InformationOfOnePointIsThatOfItsGradient) {
   const auto image = ImageOf(LinearMaps(SmallDistance));
   EdgeOptions options = AnyDirection();
   options.edge_spacing_px = 1000.0;
   int checked = 0;
   for (int i = 0; i < 1000 && checked < 10; ++i) {
     const Landmark landmark = CuboidView().LandmarkInCamera();
-    const EdgeTerm term(image, TestCamera(), landmark, options);
+    const EdgeCost term(image, TestCamera(), landmark, options);
     if (term.NumPoints() != 1) continue;
     ExpectInformationOfOneResidual(term, landmark);
     ++checked;
@@ -186,12 +186,12 @@ TEST(EdgeTerm, InformationOfOnePointIsThatOfItsGradient) {
 
 // Seen from right in front, all edges of a cuboid are vertical or horizontal in the image: of a
 // vertical image edge everywhere, the latter are as far away as can be.
-TEST(EdgeTerm, EdgesInAnotherDirectionCountAsFarAway) {
+TEST(EdgeCost, EdgesInAnotherDirectionCountAsFarAway) {
   EdgeMaps maps = LinearMaps(SmallDistance);
   maps.distance = cv::Scalar(0.0);
   const auto image = ImageOf(maps);
   const Landmark landmark{{{1, 0, 0, 0}, {0, 0, 3}}, {0.5, 0.4, 0.3}, kCuboidExponent};
-  const EdgeTerm term(image, TestCamera(), landmark, EdgeOptions());
+  const EdgeCost term(image, TestCamera(), landmark, EdgeOptions());
   const auto points = VisibleModelPoints(TestCamera(), landmark, EdgeOptions().edge_spacing_px);
   const auto vertical = std::ranges::count_if(
       points, [](const ModelPoint& point) { return std::abs(point.along.y()) > 0.5; });
@@ -199,7 +199,7 @@ TEST(EdgeTerm, EdgesInAnotherDirectionCountAsFarAway) {
   EXPECT_NEAR(term.Value(landmark), 0.0, 1e-12);
   const double share = 1.0 - static_cast<double>(vertical) / static_cast<double>(points.size());
   EXPECT_NEAR(2.0 * term.ConstantCost(), share * LargestCost(image->box, EdgeOptions()), 1e-9);
-  const EdgeTerm of_any_direction(image, TestCamera(), landmark, AnyDirection());
+  const EdgeCost of_any_direction(image, TestCamera(), landmark, AnyDirection());
   EXPECT_EQ(of_any_direction.NumPoints(), static_cast<int>(points.size()));
 }
 

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "geometry/angles.h"
-#include "orientation/refine_orientation.h"
+#include "orientation/refine_by_profile.h"
 
 namespace soslam {
 namespace {

@@ -102,7 +102,7 @@ TEST(MirrorPlane, MayNotLieBesideTheCentreOfWhatIsMeasuredOnTheSurface) {
   EXPECT_NO_THROW(CheckMirrorPlane(texture, Descriptor::kDistanceTransform));
 }
 
-TEST(AsymmetryTerm, IsTheCostAtItsStartTimesItsWeight) {
+TEST(AsymmetryCost, IsTheCostAtItsStartTimesItsWeight) {
   const auto image = SharedImage();
   for (const Descriptor descriptor : {Descriptor::kLinearisedDt, Descriptor::kDistanceTransform}) {
     const SymmetryOptions options = EverywhereInTheImage(descriptor);
@@ -111,7 +111,7 @@ TEST(AsymmetryTerm, IsTheCostAtItsStartTimesItsWeight) {
     texture.mirror_plane_range = descriptor == Descriptor::kDistanceTransform ? 0.3 : 0.0;
     for (int i = 0; i < 10; ++i) {
       const Landmark start = FacingView().LandmarkInCamera();
-      const AsymmetryTerm term(image, TestCamera(), start, texture, options, 0.25);
+      const AsymmetryCost term(image, TestCamera(), start, texture, options, 0.25);
       ASSERT_GT(term.NumPairs(), 50);
       const double expected =
           0.25 * TextureAsymmetry(*image, TestCamera(), texture, options).Cost(start);
@@ -129,24 +129,24 @@ void ExpectCorrectGradients(const TextureOptions& texture, Descriptor descriptor
   for (int i = 0; i < 12; ++i) {
     Landmark landmark = FacingView().LandmarkInCamera();
     landmark.rests_on = kRestingFaces[static_cast<size_t>(i) % kRestingFaces.size()];
-    const AsymmetryTerm term(SharedImage(kMiddle), TestCamera(), landmark, texture, options, 0.7);
+    const AsymmetryCost term(SharedImage(kMiddle), TestCamera(), landmark, texture, options, 0.7);
     ASSERT_GT(term.NumPairs(), landmark.rests_on == RestingFace::kSide ? 10 : 50);
     ExpectCorrectGradient(term, landmark);
   }
 }
 
-TEST(AsymmetryTerm, DerivativesAgreeWithNumbers) {
+TEST(AsymmetryCost, DerivativesAgreeWithNumbers) {
   ExpectCorrectGradients(Texture(4.0, 0.3), Descriptor::kLinearisedDt);
 }
 
-TEST(AsymmetryTerm, DerivativesAgreeWithNumbersWithAMirrorPlaneBesideTheCentre) {
+TEST(AsymmetryCost, DerivativesAgreeWithNumbersWithAMirrorPlaneBesideTheCentre) {
   TextureOptions texture = Texture(4.0, 0.3);
   texture.mirror_plane_range = 0.4;
   texture.asymmetry_scale_px = 1000.0;  // differences here are hundreds of pixels
   ExpectCorrectGradients(texture, Descriptor::kDistanceTransform);
 }
 
-TEST(AsymmetryTerm, InformationOfOnePairIsThatOfItsGradient) {
+TEST(AsymmetryCost, InformationOfOnePairIsThatOfItsGradient) {
   const auto middle = SharedImage({300, 220, 340, 260});
   SymmetryOptions options = EverywhereInTheImage(Descriptor::kLinearisedDt);
   options.uniform_columns = 1;
@@ -154,7 +154,7 @@ TEST(AsymmetryTerm, InformationOfOnePairIsThatOfItsGradient) {
   int checked = 0;
   for (int i = 0; i < 100; ++i) {
     const Landmark landmark = FacingView().LandmarkInCamera();
-    const AsymmetryTerm term(middle, TestCamera(), landmark, Texture(4.0, 0.3), options, 0.7);
+    const AsymmetryCost term(middle, TestCamera(), landmark, Texture(4.0, 0.3), options, 0.7);
     if (term.NumPairs() != 1) continue;
     ExpectInformationOfOneResidual(term, landmark);
     ++checked;
@@ -162,9 +162,9 @@ TEST(AsymmetryTerm, InformationOfOnePairIsThatOfItsGradient) {
   EXPECT_GT(checked, 10);
 }
 
-TEST(AsymmetryTerm, CountsPairsThatLeaveTheSurfaceAsAsymmetric) {
+TEST(AsymmetryCost, CountsPairsThatLeaveTheSurfaceAsAsymmetric) {
   Landmark landmark = FacingView().LandmarkInCamera();
-  const AsymmetryTerm term(SharedImage(), TestCamera(), landmark, Texture(4.0, 0.3),
+  const AsymmetryCost term(SharedImage(), TestCamera(), landmark, Texture(4.0, 0.3),
                            EverywhereInTheImage(Descriptor::kDistanceTransform), 1.0);
   ASSERT_GT(term.NumPairs(), 50);
   // Beside the image: no pixel's ray meets it any more.

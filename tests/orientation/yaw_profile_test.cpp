@@ -8,7 +8,7 @@
 #include <set>
 
 #include "geometry/angles.h"
-#include "orientation/refine_orientation.h"
+#include "orientation/refine_by_turning.h"
 #include "orientation/symmetry_samples.h"
 #include "support/random.h"
 #include "support/scene.h"
@@ -136,8 +136,8 @@ TEST_F(SyntheticTexture, RefinementTurnsADisturbedLandmarkBackAndRecordsAllCurve
     const Landmark disturbed = RotatedAboutZ(truth, 6.0 * kRadPerDeg);
     const Eigen::Vector2d ratio = truth.half_axes.head<2>() / truth.half_axes.z();
     const RefinedObservation refined =
-        RefineObservation(*sequence_, {static_cast<int>(i), {{disturbed, 0.0}}, ""}, maps->second,
-                          ratio, RefineOptions());
+        RefineByTurning(*sequence_, {static_cast<int>(i), {{disturbed, 0.0}}, ""}, maps->second,
+                        ratio, RefineOptions());
     ASSERT_EQ(refined.estimate.failure, "");
     ASSERT_EQ(refined.estimate.hypotheses.size(), 1u);
     EXPECT_EQ(refined.record.cost.size(), kDescriptorNames.size());
@@ -188,8 +188,8 @@ TEST(YawProfile, IsUndefinedWithoutEdgesAndSaysSo) {
   sequence.objects.resize(1);
   sequence.detections = {
       {0, 0, 1.0, *OutlineBox(TestCamera(), landmark), {{0, -1, 0}, 0.6}, {}, {}}};
-  const RefinedObservation refined = RefineObservation(sequence, {0, {{landmark, 0.0}}, ""}, maps,
-                                                       Eigen::Vector2d(0.8, 0.7), RefineOptions());
+  const RefinedObservation refined = RefineByTurning(sequence, {0, {{landmark, 0.0}}, ""}, maps,
+                                                     Eigen::Vector2d(0.8, 0.7), RefineOptions());
   EXPECT_EQ(refined.estimate.failure, "no_edges");
   ASSERT_EQ(refined.estimate.hypotheses.size(), 1u);
   for (const char* descriptor : {"improved_dt", "nearest_edge_3d"}) {

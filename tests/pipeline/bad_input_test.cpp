@@ -280,7 +280,7 @@ TEST(UnusualInputTest, WhatCannotBeInitialisedIsCountedWithItsReason) {
 TEST(UnusableInputTest, NoLabelInTheTable) {
   const StageChain& chain = StageChain::Finished();
   TableOf({"sofa"})(chain);
-  EXPECT_THAT(ExpectExit(4, chain.Run("initialise")).errors, HasSubstr("no_ratio_for_label 12"));
+  EXPECT_THAT(ExpectExit(4, chain.Run("initialise")).errors, HasSubstr("12 no_ratio_for_label"));
 }
 
 }  // namespace

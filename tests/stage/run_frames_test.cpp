@@ -184,7 +184,7 @@ TEST_F(RunFramesTest, RefusesWhatMakesNoDataset) {
   ExpectError<InputError>([&] { Run(photos_); }, {photos_.string(), "has 1 image(s)"});
   WritePhoto(photos_ / "2.jpg", DrawnView(0));
   ExpectError<NothingUsableError>([&] { Run(photos_); },
-                                  {photos_.string(), "1 of 2 images", "no_motion 1"});
+                                  {photos_.string(), "1 of 2 images", "1 no_motion"});
   ExpectError<InputError>([&] { Run(photos_ / "1.jpg"); }, {"1.jpg", "is no video"});
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 1) << "nothing is left";
 }

@@ -34,7 +34,7 @@ TEST_F(RunImportTest, WritesTheSequenceAndSaysHowMuchIsUsed) {
   options.min_observations = 4;
   EXPECT_THAT(PrintedBy([&] { Run(); }).output,
               testing::EndsWith("small: 4 frames, 2 objects, 4 detections used, 3 detections "
-                                "rejected: too_few_observations 3\n"));
+                                "rejected: 3 too_few_observations\n"));
   const Sequence sequence = ReadSequence(files.at("output"));
   EXPECT_EQ(sequence.detections.size(), 4u);
   EXPECT_EQ(sequence.rejected_detections.at("too_few_observations"), 3);

@@ -14,8 +14,8 @@
 
 #include "artefact/files.h"
 #include "geometry/angles.h"
+#include "geometry/triangulation.h"
 #include "ground/estimate_ground.h"
-#include "ground/horizontal_planes.h"
 #include "support/looking_at.h"
 #include "synthesis/simulate.h"
 
@@ -66,6 +66,8 @@ class PriorSceneBuilder {
   }
 
  private:
+  static constexpr double kPixelSigma = 0.7;
+
   double Uniform(double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random_);
   }
@@ -244,7 +246,7 @@ class PriorSceneBuilder {
   MapPoint Seen(const Eigen::Vector3d& point) const {
     MapPoint result;
     result.position_in_world = point;
-    result.reprojection_error_px = 0.7;
+    result.reprojection_error_px = kPixelSigma;
     for (const Frame& frame : scene_.sequence.frames) {
       if (!Sees(frame, point)) continue;
       const auto pixel = scene_.sequence.camera.Project(frame.world_from_camera.Inverse() * point);
@@ -278,14 +280,19 @@ class PriorSceneBuilder {
         if (point.observations.size() >= 3) points.push_back(std::move(point));
       }
     }
-    for (const GroundPoint& exact : GroundPoints(scene_.sequence, points)) {
-      const Eigen::Vector3d noise =
-          exact.covariance.llt().matrixL() * Eigen::Vector3d(Normal(), Normal(), Normal());
-      MapPoint point = Seen(exact.position_in_world);
-      point.position_in_world += noise;
+    for (MapPoint& point : points) {
+      std::vector<PointView> views;
+      for (PointObservation& observation : point.observations) {
+        observation.pixel += kPixelSigma * Eigen::Vector2d(Normal(), Normal());
+        const Frame& frame = scene_.sequence.frames[*FrameIndexOf(scene_.sequence, observation)];
+        views.push_back(
+            {scene_.sequence.camera, frame.world_from_camera.Inverse(), observation.pixel});
+      }
+      const auto triangulated = Triangulate(views, 10.0 * kPixelSigma);
+      if (!triangulated) continue;
+      point.position_in_world = triangulated->position_in_world;
       if (Uniform(0.0, 1.0) < options_.outlier_probability) {
-        const Eigen::Vector3d& origin =
-            scene_.sequence.frames[exact.frame_indices.front()].world_from_camera.translation;
+        const Eigen::Vector3d origin = views.front().camera_from_world.Inverse().translation;
         point.position_in_world = origin + Uniform(0.5, 1.5) * (point.position_in_world - origin);
       }
       scene_.points.push_back(std::move(point));

@@ -79,6 +79,8 @@ inline MapEstimate RandomMap() {
   map.planes_in_world = {RandomPlane(), RandomPlane()};
   map.solver = {12.5,
                 0.1,
+                1.0 / 3.0,
+                80.0,
                 3,
                 true,
                 {12.5, 1.0 / 7.0, 0.1},

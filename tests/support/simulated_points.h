@@ -15,7 +15,7 @@
 
 namespace soslam {
 
-// Sparse points with the errors that PointTerm assumes, of a cuboid and of what is behind it and in
+// Sparse points with the errors that PointCost assumes, of a cuboid and of what is behind it and in
 // front; the errors that grow with the range are independent, or all points have the same. Each
 // point is in the camera of one of the views, whose index is that of its detection.
 class PointSimulator {
@@ -42,7 +42,7 @@ class PointSimulator {
   }
 
  private:
-  static constexpr double kRoughShare = 0.6;  // of the object's points, as PointTerm has it
+  static constexpr double kRoughShare = 0.6;  // of the object's points, as PointCost has it
 
   ObjectPoint PointIn(const Rigid3d& world_from_camera, double prior) const {
     const Rigid3d camera_from_world = world_from_camera.Inverse();

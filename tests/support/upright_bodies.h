@@ -66,8 +66,8 @@ inline UprightObservation ObservationOf(const Box& box, const std::array<bool, 4
 }
 
 // A body, and the observation of it by one exact box and its true ratio.
-struct StandingBody {
-  explicit StandingBody(const ShapeExponents& shape_exponents, double ratio_log_sigma = 0.05)
+struct ObservedBody {
+  explicit ObservedBody(const ShapeExponents& shape_exponents, double ratio_log_sigma = 0.05)
       : plane(RandomFloor()),
         truth(RandomUprightBody(plane, shape_exponents)),
         box(*OutlineBox(TestCamera(), truth)),

@@ -50,7 +50,7 @@ struct PointOptions {
   }
 };
 
-// Size (m) of an object for the widths of PointTerm: twice the cubic root of its half axes'
+// Size (m) of an object for the widths of PointCost: twice the cubic root of its half axes'
 // product.
 double SizeForPoints(const Landmark& landmark);
 // One size for all landmarks of an object (at least one), as costs with different sizes cannot be
@@ -79,12 +79,12 @@ struct PointEvidence {
 // landmark, makes the cost zero for a point on the surface with the smallest standard deviation of
 // any normal, and positive otherwise: costs with one size can be compared. Second derivatives are
 // those of expectation maximisation: each point pulls with its posterior probability.
-class PointTerm final : public LandmarkCost {
+class PointCost final : public LandmarkCost {
  public:
   // Widths are those of an object of this size along the normals of `start_in_camera`; the cost is
   // multiplied by `weight`. While `*for_solver` is false, second derivatives are the Fisher
   // information of the points, as covariances need.
-  PointTerm(const std::vector<ObjectPoint>& points, const Landmark& start_in_camera, double size_m,
+  PointCost(const std::vector<ObjectPoint>& points, const Landmark& start_in_camera, double size_m,
             const PointOptions& options, double weight, const bool* for_solver = nullptr);
 
   double Value(const Landmark& landmark_in_camera) const override;

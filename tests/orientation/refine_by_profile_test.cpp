@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "orientation/refine_orientation.h"
+#include "orientation/refine_by_profile.h"
 
 #include <gtest/gtest.h>
 
@@ -63,8 +63,8 @@ class RefineBoxes : public testing::Test {
                                      const std::optional<PointEvidence>& points = std::nullopt) {
     const Eigen::Vector3d half_axes = TrueLandmark(DetectionAt(index)).half_axes;
     const ShapePrior prior{half_axes.head<2>() / half_axes.z(), {0.02, 0.02}, kCuboidExponent};
-    return RefineOrientation(*sequence_, index, maps[DetectionAt(index).frame_index], prior,
-                             options, SymmetryOptions(), points);
+    return RefineByProfile(*sequence_, index, maps[DetectionAt(index).frame_index], prior, options,
+                           SymmetryOptions(), points);
   }
   static RefinedObservation Refine(int index, const ProfileOptions& options) {
     return RefineIn(*edges_, index, options);
@@ -193,8 +193,8 @@ TEST_F(RefineBoxes, RecognisesTheMirrorPlaneOfTheTexture) {
 }
 
 TEST_F(RefineBoxes, NeedsAPrior) {
-  const RefinedObservation refined = RefineOrientation(*sequence_, 0, edges_->front(), std::nullopt,
-                                                       ProfileOptions(), SymmetryOptions());
+  const RefinedObservation refined = RefineByProfile(*sequence_, 0, edges_->front(), std::nullopt,
+                                                     ProfileOptions(), SymmetryOptions());
   EXPECT_EQ(refined.estimate.failure, "no_ratio_for_label");
   EXPECT_TRUE(refined.estimate.hypotheses.empty());
   EXPECT_TRUE(refined.record.true_yaw);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "constraints/point_term.h"
+#include "constraints/point_cost.h"
 
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ std::vector<ObjectPoint> PointsOnFaces(const Landmark& cuboid, int count) {
 TEST(PointTermTest, GradientAgreesWithNumbers) {
   for (int i = 0; i < 20; ++i) {
     const Landmark body = BodyInCamera(RandomUniform(1.2, 2.0));
-    const PointTerm term(RandomPoints(body, 30), body, SizeForPoints(body), {}, 0.3);
+    const PointCost term(RandomPoints(body, 30), body, SizeForPoints(body), {}, 0.3);
     ExpectCorrectGradient(term, Moved(body, 0.02 * LandmarkModel::Vector::Random()));
   }
 }
@@ -50,7 +50,7 @@ TEST(PointTermTest, GradientAgreesWithNumbers) {
 TEST(PointTermTest, ConvergesSlowlyAlsoInAnotherView) {
   const Landmark body = BodyInCamera(kCuboidExponent);
   const auto points = [&] {
-    return std::make_unique<PointTerm>(RandomPoints(body, 3), body, SizeForPoints(body),
+    return std::make_unique<PointCost>(RandomPoints(body, 3), body, SizeForPoints(body),
                                        PointOptions(), 1.0);
   };
   LandmarkCosts costs;
@@ -64,7 +64,7 @@ TEST(PointTermTest, ConvergesSlowlyAlsoInAnotherView) {
 
 TEST(PointTermTest, CostsNothingWherePointsAreOnTheSurfaceAndElsewhereSomething) {
   const Landmark cuboid = BodyInCamera(kCuboidExponent);
-  const PointTerm term(PointsOnFaces(cuboid, 60), cuboid, SizeForPoints(cuboid), {}, 1.0);
+  const PointCost term(PointsOnFaces(cuboid, 60), cuboid, SizeForPoints(cuboid), {}, 1.0);
   EXPECT_NEAR(term.Value(cuboid), 0.0, 1e-9);
   for (int i = 0; i < 50; ++i) {
     const Landmark moved = Moved(cuboid, 0.05 * LandmarkModel::Vector::Random());
@@ -88,7 +88,7 @@ PointAndBody AtDistance(double distance, double prior) {
 // The cost of that point, of an object of this size (m).
 double CostAtDistance(double distance, double prior, double size_m, const PointOptions& options) {
   const auto [point, cuboid] = AtDistance(distance, prior);
-  return PointTerm({point}, cuboid, size_m, options, 1.0).Value(cuboid);
+  return PointCost({point}, cuboid, size_m, options, 1.0).Value(cuboid);
 }
 
 // Where all points inside may be outliers, the background has one density (1 - p) / size
@@ -120,7 +120,7 @@ TEST(PointTermTest, ResponsibilitiesArePosteriorProbabilities) {
     for (const double distance : {-1.0, -0.3, -0.05, 0.0, 0.05, 0.2, 9.0}) {
       auto [point, cuboid] = AtDistance(distance, prior);
       point.index = 7;
-      const auto posteriors = PointTerm({point}, cuboid, 1.0, options, 0.5).Posteriors(cuboid);
+      const auto posteriors = PointCost({point}, cuboid, 1.0, options, 0.5).Posteriors(cuboid);
       ASSERT_EQ(posteriors.size(), 1u);
       EXPECT_EQ(posteriors[0].index, 7);
       EXPECT_NEAR(posteriors[0].distance, distance, 1e-9);
@@ -139,7 +139,7 @@ Derivatives DerivativesAtDistance(double distance, double prior, const PointOpti
                                   bool for_solver) {
   const auto [point, cuboid] = AtDistance(distance, prior);
   LandmarkModel model;
-  PointTerm({point}, cuboid, 1.0, options, 1.0, &for_solver).AddTo(cuboid, &model);
+  PointCost({point}, cuboid, 1.0, options, 1.0, &for_solver).AddTo(cuboid, &model);
   // The parameter is the x of the centre, which moves along the normal.
   return {model.gradient[3], model.information(3, 3)};
 }
@@ -169,7 +169,7 @@ TEST(PointTermTest, CovariancesHaveTheFisherInformation) {
 TEST(PointTermTest, ResponsibilitiesAreContinuousAndVanishFarAway) {
   const auto responsibility = [](double distance) {
     const auto [point, cuboid] = AtDistance(distance, 0.5);
-    return PointTerm({point}, cuboid, 1.0, {}, 1.0).Posteriors(cuboid)[0].responsibility;
+    return PointCost({point}, cuboid, 1.0, {}, 1.0).Posteriors(cuboid)[0].responsibility;
   };
   EXPECT_NEAR(responsibility(-1e-9), responsibility(1e-9), 1e-6);
   EXPECT_GT(responsibility(0.0), 0.5);
@@ -194,10 +194,10 @@ TEST(PointTermTest, CostsWithOneSizeCanBeCompared) {
   Landmark body = BodyInCamera(kCuboidExponent);
   const ObjectPoint far{body.Centre() + Eigen::Vector3d(50.0, 0.0, 0.0),
                         Eigen::Vector3d(1e-4, 1e-2, 1.0).asDiagonal(), 0.5};
-  const double cost = PointTerm({far}, body, 1.0, {}, 1.0).Value(body);
+  const double cost = PointCost({far}, body, 1.0, {}, 1.0).Value(body);
   for (int i = 0; i < 20; ++i) {
     const Landmark other = BodyInCamera(RandomUniform(1.2, 2.0));
-    EXPECT_NEAR(PointTerm({far}, other, 1.0, {}, 1.0).Value(other), cost, 1e-9);
+    EXPECT_NEAR(PointCost({far}, other, 1.0, {}, 1.0).Value(other), cost, 1e-9);
   }
 }
 
@@ -212,7 +212,7 @@ TEST(PointTermTest, PointsDetermineACuboid) {
       if (SurfaceDistance(truth, point, nullptr) > 0.0) points.push_back({point});
     }
     Landmark landmark = Moved(truth, 0.03 * LandmarkModel::Vector::Random());
-    const PointTerm term(points, landmark, SizeForPoints(landmark), {}, 1.0);
+    const PointCost term(points, landmark, SizeForPoints(landmark), {}, 1.0);
     for (int step = 0; step < 50; ++step) {
       LandmarkModel model;
       term.AddTo(landmark, &model);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "constraints/point_term.h"
+#include "constraints/point_cost.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -45,7 +45,7 @@ double SizeForPoints(const std::vector<Landmark>& landmarks) {
   return UpperMedian(std::move(sizes_m));
 }
 
-PointTerm::PointTerm(const std::vector<ObjectPoint>& points, const Landmark& start_in_camera,
+PointCost::PointCost(const std::vector<ObjectPoint>& points, const Landmark& start_in_camera,
                      double size_m, const PointOptions& options, double weight,
                      const bool* for_solver)
     : outlier_probability_(options.point_outlier_probability),
@@ -71,7 +71,7 @@ PointTerm::PointTerm(const std::vector<ObjectPoint>& points, const Landmark& sta
   }
 }
 
-PointTerm::Mixture PointTerm::MixtureAt(const Density& density, double distance) const {
+PointCost::Mixture PointCost::MixtureAt(const Density& density, double distance) const {
   const double near = Bell(distance / density.sigma_m);
   if (!(distance < 0.0)) {
     return {near * density.surface, 0.0, density.background, near * density.surface};
@@ -82,7 +82,7 @@ PointTerm::Mixture PointTerm::MixtureAt(const Density& density, double distance)
           outlier_probability_ * density.background, near * on_surface + rough};
 }
 
-std::pair<double, double> PointTerm::CostAndWeight(const Density& density, double distance) const {
+std::pair<double, double> PointCost::CostAndWeight(const Density& density, double distance) const {
   const Mixture mixture = MixtureAt(density, distance);
   const double weight = (mixture.sharp / (density.sigma_m * density.sigma_m) +
                          mixture.rough / (density.rough_sigma_m * density.rough_sigma_m)) /
@@ -90,7 +90,7 @@ std::pair<double, double> PointTerm::CostAndWeight(const Density& density, doubl
   return {-std::log(mixture.Sum() / density.highest), weight};
 }
 
-double PointTerm::MeanSquaredDerivative(const Density& density, double from, double to,
+double PointCost::MeanSquaredDerivative(const Density& density, double from, double to,
                                         double step) const {
   double mean = 0.0;
   for (double distance = from + 0.5 * step; distance < to; distance += step) {
@@ -100,7 +100,7 @@ double PointTerm::MeanSquaredDerivative(const Density& density, double from, dou
   return mean;
 }
 
-double PointTerm::Information(const Density& density, double distance) const {
+double PointCost::Information(const Density& density, double distance) const {
   const double near = kFarthestSigmas * density.sigma_m;
   const double deep = kFarthestSigmas * density.rough_sigma_m;
   const double information =
@@ -110,7 +110,7 @@ double PointTerm::Information(const Density& density, double distance) const {
   return information * MixtureAt(density, distance).Responsibility() / prior;
 }
 
-double PointTerm::Value(const Landmark& landmark_in_camera) const {
+double PointCost::Value(const Landmark& landmark_in_camera) const {
   double cost = 0.0;
   for (const Density& density : densities_) {
     const double distance = SurfaceDistance(landmark_in_camera, density.position, nullptr);
@@ -119,7 +119,7 @@ double PointTerm::Value(const Landmark& landmark_in_camera) const {
   return weight_ * cost;
 }
 
-void PointTerm::AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) const {
+void PointCost::AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) const {
   LandmarkModel model;
   for (const Density& density : densities_) {
     LandmarkJacobian1 jacobian;
@@ -133,7 +133,7 @@ void PointTerm::AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) co
   sum->Add(model, weight_);
 }
 
-std::vector<PointPosterior> PointTerm::Posteriors(const Landmark& landmark_in_camera) const {
+std::vector<PointPosterior> PointCost::Posteriors(const Landmark& landmark_in_camera) const {
   std::vector<PointPosterior> posteriors;
   for (const Density& density : densities_) {
     const double distance = SurfaceDistance(landmark_in_camera, density.position, nullptr);
