@@ -67,7 +67,8 @@ $(if $(filter-out --allow_outside_paths,$(value OUTSIDE_PATHS)),$(error OUTSIDE_
 # A variable that is misspelt would be ignored without a word. A make above this one has variables of its own.
 ifeq ($(MAKELEVEL),0)
 given-names = $(foreach name,$(.VARIABLES),$(if $(filter command,$(origin $(name))),$(name)))
-KNOWN := $(NAMES) $(NUMBERS) $(PATHS) $(OTHERS) CC CXX SHELL %FLAGS CMAKE_% SOSLAM_% MAKE%
+KNOWN := $(NAMES) $(NUMBERS) $(PATHS) $(OTHERS) CC CXX SHELL %FLAGS CMAKE_% SOSLAM_% MAKE% CTEST_% GTEST_% VERBOSE \
+  %_proxy TMPDIR DEBIAN_FRONTEND
 $(foreach name,$(filter-out $(KNOWN) -%,$(given-names)), \
   $(error $(name)=...: no variable of this Makefile has this name))
 endif
@@ -123,7 +124,7 @@ override DATASET := $(foreach name,$(DATASET),$(call dataset-name,$(name)))
 override DATASETS := $(foreach name,$(DATASETS),$(call dataset-name,$(name)))
 # Before everything is built for a name that does not exist.
 ifneq ($(filter run,$(MAKECMDGOALS)),)
-$(if $(wildcard $(DATA_ROOT)/$(DATASET)/.),,$(error DATASET=$(DATASET): no such folder in DATA_ROOT = $(DATA_ROOT)))
+$(if $(wildcard $(DATA_ROOT)/$(DATASET)/.)$(filter data scenes,$(MAKECMDGOALS)),,$(error DATASET=$(DATASET): no such folder in DATA_ROOT = $(DATA_ROOT)))
 $(foreach name,$(filter-out all,$(VARIANT)),$(if $(wildcard $(PIPELINES)/variants/$(name).json),, \
   $(error VARIANT=$(name): no such variant; known are $(basename $(notdir $(wildcard $(PIPELINES)/variants/*.json))))))
 endif

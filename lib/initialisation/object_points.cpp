@@ -12,7 +12,6 @@ namespace soslam {
 namespace {
 
 constexpr double kHuberPx = 1.0;
-// Reprojection errors are not known better than this.
 constexpr size_t kFewestFramesInBox = 2;
 // Probability that a point which all frames see in the box of an object is of the object.
 constexpr double kObjectShare = 0.7;

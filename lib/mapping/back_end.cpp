@@ -37,6 +37,7 @@ double LargestChange(const std::vector<std::optional<Landmark>>& from,
 bool SolveWithImages(BackEndProblem* problem) {
   const BackEndVariables& variables = problem->variables();
   for (int round = 0; round < kMaxImageRounds; ++round) {
+    if (problem->IterationsLeft() <= 0) return false;
     const std::vector<std::optional<Landmark>> before = variables.LandmarkValues();
     const auto have_converged = [&] {
       return LargestChange(before, variables.LandmarkValues()) < kConvergenceTolerance;

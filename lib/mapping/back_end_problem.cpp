@@ -304,8 +304,7 @@ std::shared_ptr<ceres::ParameterBlockOrdering> BackEndProblem::LandmarkOrdering(
 }
 
 void BackEndProblem::Solve(int max_iterations) {
-  const int iterations_left = options_.max_iterations - summary_.iterations;
-  ceres::Solver::Options options = SolverOptions(std::min(max_iterations, iterations_left));
+  ceres::Solver::Options options = SolverOptions(std::min(max_iterations, IterationsLeft()));
   if (IsTangency() && !image_blocks_.empty()) {
     // The costs of images have kinks at pixels: every step that crosses one may be refused.
     options.use_nonmonotonic_steps = true;

@@ -36,6 +36,9 @@ class BackEndProblem {
   // defined there.
   void Solve(int max_iterations = std::numeric_limits<int>::max());
 
+  // Before max_iterations are reached.
+  int IterationsLeft() const { return options_.max_iterations - summary_.iterations; }
+
   // Makes all later Jacobians those that covariances need: without the curvature rows of
   // TangencyResidual, and with the Fisher information of points.
   void PrepareCovariances() { for_solver_ = false; }

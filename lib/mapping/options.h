@@ -125,7 +125,8 @@ struct OptimiseOptions {
     texture.Describe(visit);
     points.Describe(visit);
     visit.Group("Solver");
-    visit.Integer("max_iterations", &max_iterations, {1, 10000}, "Levenberg-Marquardt iterations");
+    visit.Integer("max_iterations", &max_iterations, {1, 10000},
+                  "Levenberg-Marquardt iterations, of all solves together");
     visit.Flag("covariances", &covariances, "compute the covariance of every landmark");
   }
 };

@@ -116,9 +116,6 @@ std::vector<std::string> SubfoldersOf(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     if (IsFolder(entry.path())) names.push_back(entry.path().filename().string());
   }
-  if (error && error != std::errc::no_such_file_or_directory) {
-    throw InputError(fmt::format("{}: cannot be listed: {}", folder.string(), error.message()));
-  }
   std::ranges::sort(names);
   return names;
 }

@@ -220,11 +220,10 @@ void CheckSectionsAreUsed(const VariantSettings& settings, const json& own_layer
                           const std::string& file) {
   for (const auto& [key, value] : own_layer.items()) {
     const PipelineStage* stage = FindStage(key);
-    if (stage == nullptr || stage->asked_by != nullptr || settings.options.contains(key)) continue;
+    if (stage == nullptr || value.is_null() || settings.options.contains(key)) continue;
+    if (stage->asked_by != nullptr && value.contains(stage->asked_by)) continue;
     throw SettingsError(
-        fmt::format("{}: has settings of stage '{}', which does not run; expected "
-                    "it in 'stages'",
-                    file, key));
+        fmt::format("{}: has settings of stage '{}', which does not run", file, key));
   }
 }
 

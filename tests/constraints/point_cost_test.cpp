@@ -39,7 +39,7 @@ std::vector<ObjectPoint> PointsOnFaces(const Landmark& cuboid, int count) {
   return points;
 }
 
-TEST(PointTermTest, GradientAgreesWithNumbers) {
+TEST(PointCostTest, GradientAgreesWithNumbers) {
   for (int i = 0; i < 20; ++i) {
     const Landmark body = BodyInCamera(RandomUniform(1.2, 2.0));
     const PointCost term(RandomPoints(body, 30), body, SizeForPoints(body), {}, 0.3);
@@ -47,7 +47,7 @@ TEST(PointTermTest, GradientAgreesWithNumbers) {
   }
 }
 
-TEST(PointTermTest, ConvergesSlowlyAlsoInAnotherView) {
+TEST(PointCostTest, ConvergesSlowlyAlsoInAnotherView) {
   const Landmark body = BodyInCamera(kCuboidExponent);
   const auto points = [&] {
     return std::make_unique<PointCost>(RandomPoints(body, 3), body, SizeForPoints(body),
@@ -62,7 +62,7 @@ TEST(PointTermTest, ConvergesSlowlyAlsoInAnotherView) {
   EXPECT_EQ(NegligibleDecrease(costs), with_points);
 }
 
-TEST(PointTermTest, CostsNothingWherePointsAreOnTheSurfaceAndElsewhereSomething) {
+TEST(PointCostTest, CostsNothingWherePointsAreOnTheSurfaceAndElsewhereSomething) {
   const Landmark cuboid = BodyInCamera(kCuboidExponent);
   const PointCost term(PointsOnFaces(cuboid, 60), cuboid, SizeForPoints(cuboid), {}, 1.0);
   EXPECT_NEAR(term.Value(cuboid), 0.0, 1e-9);
@@ -93,7 +93,7 @@ double CostAtDistance(double distance, double prior, double size_m, const PointO
 
 // Where all points inside may be outliers, the background has one density (1 - p) / size
 // everywhere, and what is above it is of the object: p in all.
-TEST(PointTermTest, SurfaceDensityHasTheMassOfThePrior) {
+TEST(PointCostTest, SurfaceDensityHasTheMassOfThePrior) {
   PointOptions options;
   options.point_outlier_probability = 1.0;
   constexpr double kStepM = 1e-3;
@@ -112,7 +112,7 @@ TEST(PointTermTest, SurfaceDensityHasTheMassOfThePrior) {
 
 // Where the background has one density everywhere, costs say how much likelier a point is than one
 // of the background far away: by one over the probability that it is of the background.
-TEST(PointTermTest, ResponsibilitiesArePosteriorProbabilities) {
+TEST(PointCostTest, ResponsibilitiesArePosteriorProbabilities) {
   PointOptions options;
   options.point_outlier_probability = 1.0;
   for (const double prior : {0.05, 0.3, 0.7}) {
@@ -147,7 +147,7 @@ Derivatives DerivativesAtDistance(double distance, double prior, const PointOpti
 // The mean over all points of the object and of what is near it, each as often as its density says,
 // is that of the squares of the derivative, as it is for any density. Steps of the solver take for
 // known which points are of the object, so that theirs is more.
-TEST(PointTermTest, CovariancesHaveTheFisherInformation) {
+TEST(PointCostTest, CovariancesHaveTheFisherInformation) {
   constexpr double kStepM = 2e-3;
   PointOptions options;
   options.point_range_fraction = 0.0;
@@ -166,7 +166,7 @@ TEST(PointTermTest, CovariancesHaveTheFisherInformation) {
 }
 
 // With outliers that are inside.
-TEST(PointTermTest, ResponsibilitiesAreContinuousAndVanishFarAway) {
+TEST(PointCostTest, ResponsibilitiesAreContinuousAndVanishFarAway) {
   const auto responsibility = [](double distance) {
     const auto [point, cuboid] = AtDistance(distance, 0.5);
     return PointCost({point}, cuboid, 1.0, {}, 1.0).Posteriors(cuboid)[0].responsibility;
@@ -179,7 +179,7 @@ TEST(PointTermTest, ResponsibilitiesAreContinuousAndVanishFarAway) {
 
 // With the default options: what is swallowed costs more than what is left outside if it is deep
 // or its prior is low. Points of the rough inside of an object are otherwise as likely there.
-TEST(PointTermTest, SwallowedPointsCostSomethingIfTheyAreDeepOrUnlikely) {
+TEST(PointCostTest, SwallowedPointsCostSomethingIfTheyAreDeepOrUnlikely) {
   const auto excess = [&](double depth, double prior) {
     return CostAtDistance(-depth, prior, 1.0, {}) - CostAtDistance(5.0, prior, 1.0, {});
   };
@@ -190,7 +190,7 @@ TEST(PointTermTest, SwallowedPointsCostSomethingIfTheyAreDeepOrUnlikely) {
 }
 
 // The constant of a point does not depend on the landmark that the term starts at.
-TEST(PointTermTest, CostsWithOneSizeCanBeCompared) {
+TEST(PointCostTest, CostsWithOneSizeCanBeCompared) {
   Landmark body = BodyInCamera(kCuboidExponent);
   const ObjectPoint far{body.Centre() + Eigen::Vector3d(50.0, 0.0, 0.0),
                         Eigen::Vector3d(1e-4, 1e-2, 1.0).asDiagonal(), 0.5};
@@ -203,7 +203,7 @@ TEST(PointTermTest, CostsWithOneSizeCanBeCompared) {
 
 // A fit of points on the faces of a cuboid with as many of the background comes back from a
 // disturbed start.
-TEST(PointTermTest, PointsDetermineACuboid) {
+TEST(PointCostTest, PointsDetermineACuboid) {
   for (int i = 0; i < 5; ++i) {
     const Landmark truth = BodyInCamera(kCuboidExponent);
     std::vector<ObjectPoint> points = PointsOnFaces(truth, 150);

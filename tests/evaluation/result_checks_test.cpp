@@ -103,10 +103,10 @@ TEST(CheckFailuresTest, MovingObjectsAreNoFailures) {
 TEST(CheckCostTest, FarAboveWhatNoiseGives) {
   SolverSummary solver;
   solver.expected_box_cost = 20.0;
-  solver.box_cost = 99.0;
+  solver.box_cost = 199.0;
   EXPECT_THAT(CheckCost(solver), IsEmpty());
-  solver.box_cost = 105.0;
-  EXPECT_THAT(Only(CheckCost(solver)).found, HasSubstr("105, 5.25 times"));
+  solver.box_cost = 210.0;
+  EXPECT_THAT(Only(CheckCost(solver)).found, HasSubstr("210, 10.5 times"));
 }
 
 // Three frames of one segment and one of another: two steps, 12 degrees of freedom, of which the

@@ -67,6 +67,8 @@ TEST_F(NamesTest, OfTheCallerAreNeitherSplitNorOptions) {
   ExpectRefused("run", "DATASET=a b", "expected the name of one folder in DATA_ROOT");
   ExpectRefused("run", "DATASET=-n", "begins with -");
   ExpectRefused("run", "VARIANT=InitP --help", "begins with -");
+  ExpectRefused("run", "DATASET=nowhere", "DATASET=nowhere: no such folder in DATA_ROOT");
+  ExpectRefused("run", "VARIANT=OursX", "VARIANT=OursX: no such variant; known are");
   for (const std::string name : {".", "..", "../data/..", "/"}) {
     ExpectRefused("run-built", "DATASET=" + name, "expected the name of one folder in DATA_ROOT");
   }

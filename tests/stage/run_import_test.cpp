@@ -33,7 +33,8 @@ class RunImportTest : public FolderTest {
 TEST_F(RunImportTest, WritesTheSequenceAndSaysHowMuchIsUsed) {
   options.min_observations = 4;
   EXPECT_THAT(PrintedBy([&] { Run(); }).output,
-              testing::EndsWith("small: 4 frames, 2 objects, 4 detections used, 3 detections "
+              testing::EndsWith("small: 4 of 4 image files are not there\n"
+                                "small: 4 frames, 2 objects, 4 detections used, 3 detections "
                                 "rejected: 3 too_few_observations\n"));
   const Sequence sequence = ReadSequence(files.at("output"));
   EXPECT_EQ(sequence.detections.size(), 4u);

@@ -255,6 +255,9 @@ TEST_F(PlanTest, RefusalsNameTheFile) {
   ExpectRefused("Bad", {"variants/Bad.json", "'extends'", "variants/Nowhere.json"});
   Write("pipelines/variants/Bad.json", R"({"extends": "Plain", "optimise": {"huber_delta": 3}})");
   ExpectRefused("Bad", {"variants/Bad.json", "'optimise', which does not run"});
+  Write("pipelines/variants/Bad.json",
+        R"({"extends": "Plain", "associate": {"min_observations": 5}})");
+  ExpectRefused("Bad", {"variants/Bad.json", "'associate', which does not run"});
   Write("pipelines/datasets/room.json", R"({"extends": "Plain"})");
   ExpectRefused("Full", {"datasets/room.json", "'extends' is for variants only"});
   Write("pipelines/datasets/room.json", R"({"about": {"boxes_of": "hand"}})");
