@@ -23,12 +23,17 @@ namespace {
 void ExpectCorrectTermJacobian(const LandmarkTerm& term, const Landmark& landmark) {
   const LandmarkBlock block = ToParameterBlock(landmark);
   const std::shared_ptr<const LandmarkTerm> not_owned(std::shared_ptr<const void>(), &term);
-  ExpectCorrectJacobians(LandmarkTermResidual(not_owned, landmark.shape_exponents), {block.data()});
+  const LandmarkTermResidual for_ceres(not_owned, landmark.shape_exponents);
+  ExpectCorrectJacobians(for_ceres, {block.data()});
 
   Eigen::VectorXd residuals(term.NumResiduals());
   LandmarkTerm::Jacobian jacobian(term.NumResiduals(), kLandmarkDof);
   jacobian.setConstant(std::numeric_limits<double>::quiet_NaN());  // what is left unwritten shows
   term.Evaluate(landmark, residuals, &jacobian);
+  Eigen::VectorXd residuals_for_ceres(term.NumResiduals());
+  const double* const blocks[] = {block.data()};
+  ASSERT_TRUE(for_ceres.Evaluate(blocks, residuals_for_ceres.data(), nullptr));
+  EXPECT_LT((residuals_for_ceres - residuals).norm(), 1e-9 * (1.0 + residuals.norm()));
   LandmarkModel model;
   term.AddTo(landmark, &model);
   ExpectSameModels(model, {0.5 * residuals.squaredNorm(), jacobian.transpose() * residuals,

@@ -103,7 +103,8 @@ TEST(ReprojectionErrorTest, IsADistanceInPixels) {
 
 TEST(LargestAngleTest, IsThatOfTheOutermostCameras) {
   const Eigen::Vector3d point(0.0, 0.0, 4.0), left(-0.3, 0.0, 0.0), right(0.3, 0.0, 0.0);
-  EXPECT_NEAR(LargestAngle({left, {}, right}, point), 2.0 * std::atan(0.3 / 4.0), 1e-9);
+  EXPECT_NEAR(LargestAngle({left, Eigen::Vector3d::Zero(), right}, point),
+              2.0 * std::atan(0.3 / 4.0), 1e-9);
   EXPECT_EQ(LargestAngle({left}, point), 0.0);
 }
 
