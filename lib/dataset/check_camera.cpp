@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
-#include <utility>
 
 #include "dataset/dataset_checks.h"
 #include "dataset/image_path.h"
@@ -167,7 +167,7 @@ std::vector<Finding> CheckCamera(const ImportView& view) {
 std::vector<Finding> CheckImages(const ImportView& view) {
   const ImageOrientation read_as = view.options.image_orientation;
   const bool are_of_colmap = view.options.folder.trajectory_format == TrajectoryFormat::kColmap;
-  std::map<std::pair<std::int64_t, std::int64_t>, Mismatch> mismatches;
+  std::map<ImageSize, Mismatch> mismatches;
   size_t all = 0;
   size_t turned = 0;
   for (const Frame& frame : view.sequence.frames) {
@@ -176,15 +176,15 @@ std::vector<Finding> CheckImages(const ImportView& view) {
     if (!header) continue;
     ++all;
     const Camera& camera = view.sequence.CameraOf(frame);
+    const ImageSize size_of_camera{camera.width, camera.height};
     const ImageSize size = header->Size(read_as);
-    if (size.width == camera.width && size.height == camera.height) {
+    if (size == size_of_camera) {
       const bool size_tells = header->IsTurnedByAQuarter() && size.width != size.height;
       if (header->orientation != 1 && (!size_tells || are_of_colmap)) ++turned;
       continue;
     }
-    Mismatch& mismatch = mismatches[{size.width, size.height}];
-    const ImageSize stored = header->Size(ImageOrientation::kStored);
-    const bool is_of_stored = stored.width == camera.width && stored.height == camera.height;
+    Mismatch& mismatch = mismatches[size];
+    const bool is_of_stored = header->stored == size_of_camera;
     if (mismatch.images++ == 0) mismatch = {camera, size, is_of_stored, frame.image, 1};
   }
   std::vector<Finding> findings = CheckTurned(turned, all, view.options);

@@ -77,14 +77,6 @@ FilesOfFolder PhotosAndOthersIn(const fs::path& folder) {
   return files;
 }
 
-[[noreturn]] void RefuseFolder(const fs::path& folder, const FilesOfFolder& files) {
-  throw InputError(fmt::format(
-      "{}: has {} image(s); expected at least 2 (JPEG, PNG, WebP, BMP or TIFF) of one scene, "
-      "directly in this folder; a video is given itself{}{}",
-      folder.string(), files.images.size(), files.others.empty() ? "" : ". It also has ",
-      NamesInWords(files.others, 5)));
-}
-
 ImageSize UprightSize(const Photo& photo) { return photo.header.Size(ImageOrientation::kUpright); }
 
 bool HasHeader(const Photo& photo) { return photo.header.stored.width > 0; }
@@ -122,7 +114,13 @@ std::vector<Photo> ListPhotos(const fs::path& folder) {
     throw InputError(folder.string() + ": no such folder; expected a folder of photos");
   }
   const FilesOfFolder files = PhotosAndOthersIn(folder);
-  if (files.images.size() < 2) RefuseFolder(folder, files);
+  if (files.images.size() < 2) {
+    throw InputError(fmt::format(
+        "{}: has {} image(s); expected at least 2 (JPEG, PNG, WebP, BMP or TIFF) of one scene, "
+        "directly in this folder; a video is given itself{}{}",
+        folder.string(), files.images.size(), files.others.empty() ? "" : ". It also has ",
+        NamesInWords(files.others, 5)));
+  }
   if (files.images.size() > kMaxPhotos) {
     throw InputError(fmt::format("{}: has {} images; expected at most {}: give a part of them",
                                  folder.string(), files.images.size(), kMaxPhotos));
@@ -135,10 +133,9 @@ std::vector<Photo> ListPhotos(const fs::path& folder) {
 }
 
 CommonCamera FindCommonCamera(const fs::path& folder, const std::vector<Photo>& photos) {
-  std::map<std::pair<std::int64_t, std::int64_t>, int> counts;
+  std::map<ImageSize, int> counts;
   for (const Photo& photo : photos) {
-    const ImageSize size = UprightSize(photo);
-    if (HasHeader(photo)) ++counts[{size.width, size.height}];
+    if (HasHeader(photo)) ++counts[UprightSize(photo)];
   }
   if (counts.empty()) {
     const bool are_heif = std::ranges::any_of(
@@ -150,7 +147,7 @@ CommonCamera FindCommonCamera(const fs::path& folder, const std::vector<Photo>& 
   }
   const auto most =
       std::ranges::max_element(counts, {}, [](const auto& entry) { return entry.second; });
-  CommonCamera common{{most->first.first, most->first.second}, std::nullopt};
+  CommonCamera common{most->first, std::nullopt};
   std::vector<double> focal_lengths;
   for (const Photo& photo : photos) {
     const auto& focal = photo.header.focal_over_diagonal;
@@ -163,7 +160,7 @@ CommonCamera FindCommonCamera(const fs::path& folder, const std::vector<Photo>& 
 std::optional<OtherCamera> FindOtherCamera(const Photo& photo, const CommonCamera& common) {
   if (!HasHeader(photo)) return std::nullopt;
   const ImageSize size = UprightSize(photo);
-  if (size.width != common.size.width || size.height != common.size.height) {
+  if (size != common.size) {
     return OtherCamera{FrameRejection::kOtherSize,
                        fmt::format("{} x {} px, not {} x {}", size.width, size.height,
                                    common.size.width, common.size.height)};
@@ -173,8 +170,7 @@ std::optional<OtherCamera> FindOtherCamera(const Photo& photo, const CommonCamer
       IsSameFocalLength(*focal, *common.focal_over_diagonal)) {
     return std::nullopt;
   }
-  const double diagonal =
-      std::hypot(static_cast<double>(size.width), static_cast<double>(size.height));
+  const double diagonal = std::hypot(size.width, size.height);
   return OtherCamera{FrameRejection::kOtherFocalLength,
                      fmt::format("{:.0f} px, not {:.0f}", *focal * diagonal,
                                  *common.focal_over_diagonal * diagonal)};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -17,6 +18,8 @@ namespace soslam {
 struct ImageSize {
   std::int64_t width = 0;
   std::int64_t height = 0;
+
+  auto operator<=>(const ImageSize&) const = default;
 };
 
 // Properties that an image file states before any pixel is decoded.
