@@ -25,12 +25,6 @@ namespace fs = std::filesystem;
 // Poses per image; none where there is no pose near enough in time.
 using ImagePoses = std::vector<std::optional<Rigid3d>>;
 
-void CheckFrameNumber(double number, const std::string& place) {
-  if (number >= 0.0 && number == std::floor(number)) return;
-  throw InputError(fmt::format(
-      "{}: timestamp is {}; expected the number of a frame, as ICL-NUIM has it", place, number));
-}
-
 // Timestamp in an image's name, with or without extension: "12.5" has none.
 double TimestampOf(const std::string& name, const std::string& place) {
   const fs::path file = fs::path(name).filename();
@@ -60,41 +54,31 @@ std::vector<ListedImage> ImagesOfBoxes(const std::vector<LabelledBox>& boxes) {
   return listed;
 }
 
-std::vector<TimedPose> ReadTimedPoses(const fs::path& path, TrajectoryFormat format,
-                                      const ImportOptions& options,
-                                      const std::optional<Rigid3d>& body_from_camera) {
-  const bool is_euroc = format == TrajectoryFormat::kEuroc;
-  std::vector<TimedPose> trajectory = is_euroc ? ReadEurocTrajectory(path) : ReadTrajectory(path);
-  for (TimedPose& pose : trajectory) {
-    if (is_euroc && body_from_camera) {
-      pose.world_from_camera = pose.world_from_camera * *body_from_camera;
-    }
-    if (options.format != DatasetFormat::kIclNuim) continue;
-    CheckFrameNumber(pose.timestamp, path.string());
-    pose.timestamp /= kIclNuimFramesPerSecond;
-    pose.world_from_camera = MirroredInY(pose.world_from_camera);
-  }
-  return trajectory;
+// Seconds of an ICL-NUIM frame number.
+double SecondsOfFrameNumber(double number, const std::string& place) {
+  if (number >= 0.0 && number == std::floor(number)) return number / kIclNuimFramesPerSecond;
+  throw InputError(fmt::format(
+      "{}: timestamp is {}; expected the number of a frame, as ICL-NUIM has it", place, number));
 }
 
-ImagePoses PosesInOrder(const fs::path& path, const ImportOptions& options, size_t images) {
+ImagePoses PosesInOrder(const fs::path& path, size_t images) {
   const std::vector<Rigid3d> trajectory = ReadKittiTrajectory(path);
   if (trajectory.size() != images) {
     throw InputError(fmt::format("{}: has {} poses; expected {}, one for each listed image",
                                  path.string(), trajectory.size(), images));
   }
-  ImagePoses poses;
-  for (const Rigid3d& pose : trajectory) {
-    poses.push_back(options.format == DatasetFormat::kIclNuim ? MirroredInY(pose) : pose);
-  }
-  return poses;
+  return {trajectory.begin(), trajectory.end()};
 }
 
 ImagePoses PosesByTime(const fs::path& path, TrajectoryFormat format, const ImportOptions& options,
-                       const std::vector<ListedImage>& images,
-                       const std::optional<Rigid3d>& body_from_camera,
-                       std::vector<Finding>* findings) {
-  const std::vector<TimedPose> trajectory = ReadTimedPoses(path, format, options, body_from_camera);
+                       const std::vector<ListedImage>& images, std::vector<Finding>* findings) {
+  std::vector<TimedPose> trajectory =
+      format == TrajectoryFormat::kEuroc ? ReadEurocTrajectory(path) : ReadTrajectory(path);
+  if (options.format == DatasetFormat::kIclNuim) {
+    for (TimedPose& pose : trajectory) {
+      pose.timestamp = SecondsOfFrameNumber(pose.timestamp, path.string());
+    }
+  }
   std::ranges::move(
       CheckTimestamps(images, trajectory, path.filename().string(), options.max_time_difference_s),
       std::back_inserter(*findings));
@@ -128,25 +112,37 @@ ImagePoses PosesByName(const fs::path& path, const std::vector<NamedPose>& named
   return poses;
 }
 
-ImagePoses ReadPoses(const fs::path& path, TrajectoryFormat format, const ImportOptions& options,
-                     const std::vector<ListedImage>& images,
-                     const std::optional<Rigid3d>& body_from_camera,
-                     std::vector<Finding>* findings) {
-  const bool is_mirrored = options.format == DatasetFormat::kIclNuim;
-  if (is_mirrored && format != TrajectoryFormat::kTum && format != TrajectoryFormat::kKitti) {
+// Poses as the file has them: those of a mirrored world (ICL-NUIM), or of a body (EuRoC).
+ImagePoses PosesOfFile(const fs::path& path, TrajectoryFormat format, const ImportOptions& options,
+                       const std::vector<ListedImage>& images, std::vector<Finding>* findings) {
+  if (options.format == DatasetFormat::kIclNuim && format != TrajectoryFormat::kTum &&
+      format != TrajectoryFormat::kKitti) {
     throw SettingsError(
         "trajectory_format, groundtruth_format: expected tum or kitti for format icl_nuim");
   }
   switch (format) {
     case TrajectoryFormat::kKitti:
-      return PosesInOrder(path, options, images.size());
+      return PosesInOrder(path, images.size());
     case TrajectoryFormat::kColmap:
       return PosesByName(path, ReadColmapPoses(path), images);
     case TrajectoryFormat::kNerfstudio:
       return PosesByName(path, ReadNerfstudioPoses(path, findings), images);
     default:
-      return PosesByTime(path, format, options, images, body_from_camera, findings);
+      return PosesByTime(path, format, options, images, findings);
   }
+}
+
+ImagePoses ReadPoses(const fs::path& path, TrajectoryFormat format, const ImportOptions& options,
+                     const std::vector<ListedImage>& images,
+                     const std::optional<Rigid3d>& body_from_camera,
+                     std::vector<Finding>* findings) {
+  ImagePoses poses = PosesOfFile(path, format, options, images, findings);
+  for (auto& pose : poses) {
+    if (!pose) continue;
+    if (options.format == DatasetFormat::kIclNuim) pose = MirroredInY(*pose);
+    if (format == TrajectoryFormat::kEuroc && body_from_camera) pose = *pose * *body_from_camera;
+  }
+  return poses;
 }
 
 // EuRoC's images are in the folder "data" beside their list, which has only file names.
@@ -181,8 +177,7 @@ std::string ImageOfFrame(const fs::path& folder, const DatasetFiles& files,
   const fs::path path =
       ImagePath(folder, image.image, files.images.value_or(files.detections).string());
   const bool has_to_be_there = options.format == DatasetFormat::kSoslam && files.images;
-  std::error_code ignored;  // a name that no file can have
-  return has_to_be_there || fs::exists(path, ignored) ? image.image : "";
+  return has_to_be_there || Exists(path) ? image.image : "";
 }
 
 }  // namespace
@@ -206,8 +201,8 @@ std::vector<ListedImage> ListImages(const fs::path& folder, const DatasetFiles& 
   for (ListedImage& image : images) image.image = NameInDataset(folder, image.image);
   if (!is_icl_nuim) return images;
   for (ListedImage& image : images) {
-    CheckFrameNumber(image.timestamp, files.images.value_or(files.detections).string());
-    image.timestamp /= kIclNuimFramesPerSecond;
+    image.timestamp =
+        SecondsOfFrameNumber(image.timestamp, files.images.value_or(files.detections).string());
   }
   return images;
 }
@@ -240,8 +235,7 @@ std::vector<ListedFrame> ReadFolderFrames(const fs::path& folder, const DatasetF
     frame.image = ImageOfFrame(folder, files, images[i], options);
     frame.world_from_camera = estimates[i].value_or(Rigid3d());
     frame.true_world_from_camera = truth[i];
-    std::error_code ignored;
-    if (frame.image.empty() || !fs::exists(folder / frame.image, ignored)) ++absent;
+    if (frame.image.empty() || !Exists(folder / frame.image)) ++absent;
     frames.push_back({frame, estimates[i].has_value()});
   }
   if (absent > 0) {
