@@ -194,10 +194,9 @@ bool IsUpright(const std::vector<const Detection*>& detections) {
 std::vector<Eigen::Vector3d> PointsOnPlane(const ImportView& view, int plane_index) {
   const bool has_true_planes =
       view.options.camera_planes == PlanePoses::kGroundTruth && view.content.has_true_poses;
-  const auto pose = [&](size_t frame) -> std::optional<Rigid3d> {
+  const auto pose = [&](size_t frame) {
     const ListedFrame& listed = view.content.frames[frame];
-    if (has_true_planes) return listed.frame.true_world_from_camera;
-    return listed.has_pose ? std::optional(listed.frame.world_from_camera) : std::nullopt;
+    return has_true_planes ? listed.frame.true_world_from_camera : listed.Pose();
   };
   std::set<int> on_plane;
   for (const Object& object : view.sequence.objects) {

@@ -141,18 +141,13 @@ const std::array kReadings = {
                 "translations with y and z swapped, beside rotations that are not",
                 "swap y and z of the translations", &WithCentreSwapped}};
 
-std::optional<Rigid3d> PoseAt(const ImportView& view, size_t frame) {
-  const ListedFrame& listed = view.content.frames[frame];
-  return listed.has_pose ? std::optional(listed.frame.world_from_camera) : std::nullopt;
-}
-
 // Pose of the frame `shift` places later in the list, if it is of the same segment.
 std::optional<Rigid3d> PoseBeside(const ImportView& view, size_t frame, int shift) {
   const std::vector<ListedFrame>& frames = view.content.frames;
   const size_t beside = frame + static_cast<size_t>(shift);  // wraps before the first frame
   if (beside >= frames.size()) return std::nullopt;
   if (frames[beside].frame.segment != frames[frame].frame.segment) return std::nullopt;
-  return PoseAt(view, beside);
+  return frames[beside].Pose();
 }
 
 // True if an error is from about the same number of rays.
@@ -165,13 +160,12 @@ bool IsComparable(const std::optional<RayError>& error, const RayError& as_read)
 // of the poses.
 bool DoCamerasTurn(const ImportView& view) {
   constexpr double kFarDeg = 10.0;
-  const Frame* first = nullptr;
+  std::optional<Rigid3d> first;
   for (const ListedFrame& listed : view.content.frames) {
-    if (!listed.has_pose) continue;
-    if (first == nullptr) first = &listed.frame;
-    const Eigen::Quaterniond& rotation = listed.frame.world_from_camera.rotation;
-    const double angle = rotation.angularDistance(first->world_from_camera.rotation);
-    if (kDegPerRad * angle > kFarDeg) return true;
+    const auto pose = listed.Pose();
+    if (!pose) continue;
+    if (!first) first = pose;
+    if (kDegPerRad * pose->rotation.angularDistance(first->rotation) > kFarDeg) return true;
   }
   return false;
 }
@@ -210,12 +204,13 @@ std::vector<size_t> Inverse(const std::vector<size_t>& order) {
 // be triangulated.
 std::vector<Explanation> Explanations(const ImportView& view,
                                       const std::vector<TrackedObject>& objects) {
+  const std::vector<ListedFrame>& frames = view.content.frames;
   const std::vector<TrackedObject> mirrored = Mirrored(objects);
   std::vector<Explanation> explanations;
   for (const PoseReading& reading : kReadings) {
     if (reading.is_turned_in_body && view.content.may_have_poses_of_body) continue;
     const auto pose_as_meant = [&](size_t frame) -> std::optional<Rigid3d> {
-      const auto pose = PoseAt(view, frame);
+      const auto pose = frames[frame].Pose();
       return pose ? std::optional(reading.WorldFromCamera(*pose)) : std::nullopt;
     };
     const auto error =
@@ -223,14 +218,13 @@ std::vector<Explanation> Explanations(const ImportView& view,
     if (!error) continue;
     explanations.push_back({reading.name, reading.cause, reading.remedy, false, *error});
   }
-  const std::vector<ListedFrame>& frames = view.content.frames;
   // `frame_meant`: for each frame, that whose pose belongs to its boxes.
   const auto add_order = [&](const char* name, const char* cause, const char* remedy,
                              const std::vector<size_t>& frame_meant) {
     const auto error = MedianRayError(objects, [&](size_t frame) -> std::optional<Rigid3d> {
       const size_t meant = frame_meant[frame];
       if (frames[meant].frame.segment != frames[frame].frame.segment) return std::nullopt;
-      return PoseAt(view, meant);
+      return frames[meant].Pose();
     });
     if (error) explanations.push_back({name, cause, remedy, true, *error});
   };
@@ -418,7 +412,8 @@ Advice AdviceOnTrajectory(const std::vector<PosePair>& pairs, double extent_m) {
 std::vector<Finding> CheckPoses(const ImportView& view) {
   constexpr size_t kFewestRays = 15;
   const std::vector<TrackedObject> objects = TrackedObjects(view);
-  auto as_read = MedianRayError(objects, [&](size_t frame) { return PoseAt(view, frame); });
+  auto as_read =
+      MedianRayError(objects, [&](size_t frame) { return view.content.frames[frame].Pose(); });
   if (as_read && as_read->rays < kFewestRays) as_read.reset();
   std::vector<Finding> findings;
   if (as_read) findings = CheckReadings(view, objects, *as_read);

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <iterator>
 #include <map>
 #include <set>
+#include <span>
 
 #include "dataset/gate.h"
 
@@ -17,45 +19,32 @@ namespace {
 
 using Check = std::vector<Finding> (*)(const ImportView&);
 
-void Append(const Check& check, const ImportView& view, std::vector<Finding>* findings) {
-  std::ranges::move(check(view), std::back_inserter(*findings));
-}
-
-// Findings on objects and planes when poses or frame order are wrong: they get that as their cause.
-void AppendThroughWrongPoses(const ImportView& view, std::vector<Finding>* findings) {
-  for (const Check check : {&CheckObjects, &CheckPlanes}) {
-    for (Finding finding : check(view)) {
-      finding.cause = "what contradicts the boxes, rather than objects or planes";
-      finding.remedy = "mend poses, order of frames or ids first";
-      findings->push_back(std::move(finding));
-    }
-  }
-}
-
 }  // namespace
 
 std::vector<Finding> CheckDataset(const ImportView& view) {
   std::vector<Finding> findings;
-  for (const Check check : {&CheckCamera, &CheckImages, &CheckBoxes})
-    Append(check, view, &findings);
-  // Boxes with a wrong camera, and wrong boxes, contradict even the best poses; wrong poses
-  // contradict objects and planes.
+  const auto add = [&](std::initializer_list<Check> checks) {
+    for (const Check check : checks) std::ranges::move(check(view), std::back_inserter(findings));
+  };
   const auto has = [&](auto field, const auto& value) {
     return std::ranges::find(findings, value, field) != findings.end();
   };
-  if (!has(&Finding::severity, Severity::kError)) Append(&CheckPoses, view, &findings);
+  add({&CheckCamera, &CheckImages, &CheckBoxes});
+  // Boxes with a wrong camera, and wrong boxes, contradict even the best poses; wrong poses
+  // contradict objects and planes.
+  if (!has(&Finding::severity, Severity::kError)) add({&CheckPoses});
   if (!has(&Finding::severity, Severity::kError) && !has(&Finding::check, kPoseConvention)) {
+    const size_t before = findings.size();
+    add({&CheckObjects, &CheckPlanes});
     if (has(&Finding::check, kBoxesAgainstPoses) || has(&Finding::check, kFrameOrder)) {
-      AppendThroughWrongPoses(view, &findings);
-    } else {
-      for (const Check check : {&CheckObjects, &CheckPlanes}) Append(check, view, &findings);
+      for (Finding& finding : std::span(findings).subspan(before)) {
+        finding.cause = "what contradicts the boxes, rather than objects or planes";
+        finding.remedy = "mend poses, order of frames or ids first";
+      }
     }
-    Append(&CheckObjectAxes, view, &findings);
+    add({&CheckObjectAxes});
   }
-  for (const Check check :
-       {&CheckTruth, &CheckScores, &CheckClassNumbers, &CheckBlankLines, &CheckRejections}) {
-    Append(check, view, &findings);
-  }
+  add({&CheckTruth, &CheckScores, &CheckClassNumbers, &CheckBlankLines, &CheckRejections});
   findings.insert(findings.begin(), view.content.findings.begin(), view.content.findings.end());
   return WorstFirst(std::move(findings));
 }
@@ -104,24 +93,19 @@ const TimeUnit* UnitOfClock(double time) {
   return nullptr;
 }
 
-std::string InUnit(const std::string& what, const TimeUnit& unit) {
-  return fmt::format("{} in {}, which are taken for seconds", what, unit.name);
-}
-
-std::string DivideBy(const std::string& file, const TimeUnit& unit) {
-  return fmt::format("divide the time stamps of {} by {:.0e}", file, unit.per_second);
+Advice AdviceOnUnit(const char* what, const TimeUnit& unit, const std::string& file) {
+  return {fmt::format("{} in {}, which are taken for seconds", what, unit.name),
+          fmt::format("divide the time stamps of {} by {:.0e}", file, unit.per_second)};
 }
 
 // For time stamps that do not overlap.
 Advice AdviceOnTimes(const TimeRange& images, const TimeRange& poses, const std::string& file) {
-  if (const TimeUnit* unit = UnitBetween(images, poses)) {
-    return {InUnit("poses", *unit), DivideBy(file, *unit)};
+  if (const auto* unit = UnitBetween(images, poses)) return AdviceOnUnit("poses", *unit, file);
+  if (const auto* unit = UnitBetween(poses, images)) {
+    return AdviceOnUnit("images", *unit, "the list of images");
   }
-  if (const TimeUnit* unit = UnitBetween(poses, images)) {
-    return {InUnit("images", *unit), DivideBy("the list of images", *unit)};
-  }
-  if (const TimeUnit* unit = UnitOfClock(images.first); unit && UnitOfClock(poses.first)) {
-    return {InUnit("images and poses", *unit), DivideBy("both files", *unit)};
+  if (const auto* unit = UnitOfClock(images.first); unit && UnitOfClock(poses.first)) {
+    return AdviceOnUnit("images and poses", *unit, "both files");
   }
   if (images.last < poses.first || poses.last < images.first) {
     return {"other clocks, or another recording",

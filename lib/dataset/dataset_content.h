@@ -15,6 +15,10 @@ namespace soslam {
 struct ListedFrame {
   Frame frame;
   bool has_pose = true;  // false: frame.world_from_camera is undefined
+
+  std::optional<Rigid3d> Pose() const {
+    return has_pose ? std::optional(frame.world_from_camera) : std::nullopt;
+  }
 };
 
 // Content of a dataset as its reader finds it, before anything is left out.
