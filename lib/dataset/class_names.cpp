@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <utility>
 
 #include "base/error.h"
@@ -124,20 +125,19 @@ const std::vector<std::string>& CocoLabels() {
   return labels;
 }
 
-std::optional<int> CocoClassIndex(int category_id) {
-  constexpr int kLastId = 90;
-  if (category_id < 1 || category_id > kLastId) return std::nullopt;
-  const auto unused_from = std::ranges::lower_bound(kUnusedIds, category_id);
-  if (unused_from != kUnusedIds.end() && *unused_from == category_id) return std::nullopt;
-  return category_id - 1 - static_cast<int>(unused_from - kUnusedIds.begin());
-}
-
 int CocoCategoryId(int class_index) {
   int category_id = class_index + 1;
   for (const int unused_id : kUnusedIds) {
     if (category_id >= unused_id) ++category_id;
   }
   return category_id;
+}
+
+std::optional<int> CocoClassIndex(int category_id) {
+  for (int i = 0; i < std::ssize(CocoLabels()); ++i) {
+    if (CocoCategoryId(i) == category_id) return i;
+  }
+  return std::nullopt;
 }
 
 }  // namespace soslam

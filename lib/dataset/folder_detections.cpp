@@ -56,12 +56,6 @@ std::vector<std::string> YoloLabels(const YoloTexts& texts, const fs::path& fold
   return names;
 }
 
-[[noreturn]] void RefuseRow(const LabelledBox& box, const DatasetFiles& files, size_t images) {
-  throw InputError(fmt::format(
-      "{}: frame is {}; expected a row of {}, 0 to {}", box.place, std::get<int>(box.frame),
-      files.images.value_or(files.detections).filename().string(), images - 1));
-}
-
 }  // namespace
 
 FolderBoxes ReadFolderBoxes(const fs::path& folder, const ImportOptions& options,
@@ -109,6 +103,7 @@ std::vector<DetectionRow> RowsOfBoxes(const std::vector<LabelledBox>& boxes,
                                       const std::vector<ListedImage>& images, int first_free_id,
                                       RejectionCounts* rejected) {
   FrameLookup lookup(images);
+  const std::string list = files.images.value_or(files.detections).filename().string();
   const int max_boxes = std::numeric_limits<int>::max() - std::max(first_free_id, 0);
   if (boxes.size() > static_cast<size_t>(max_boxes)) {
     throw InputError(fmt::format("{}: has {} boxes; expected at most {}", files.detections.string(),
@@ -118,7 +113,10 @@ std::vector<DetectionRow> RowsOfBoxes(const std::vector<LabelledBox>& boxes,
   for (size_t i = 0; i < boxes.size(); ++i) {
     const LabelledBox& box = boxes[i];
     const auto frame = lookup.Find(box.frame, box.place);
-    if (!frame && std::holds_alternative<int>(box.frame)) RefuseRow(box, files, images.size());
+    if (const int* row = std::get_if<int>(&box.frame); row != nullptr && !frame) {
+      throw InputError(fmt::format("{}: frame is {}; expected a row of {}, 0 to {}", box.place,
+                                   *row, list, images.size() - 1));
+    }
     if (!frame) continue;
     const int object_id = box.object_id.value_or(first_free_id + static_cast<int>(i));
     rows.push_back({box.place, *frame, object_id, box.label, box.score, box.box});
@@ -129,8 +127,7 @@ std::vector<DetectionRow> RowsOfBoxes(const std::vector<LabelledBox>& boxes,
     throw InputError(
         fmt::format("{}: image '{}' is not listed, nor that of any other box; "
                     "expected images of {}",
-                    boxes.front().place, std::get<std::string>(boxes.front().frame),
-                    files.images.value_or(files.detections).filename().string()));
+                    boxes.front().place, std::get<std::string>(boxes.front().frame), list));
   }
   (*rejected)[RejectReasonName(RejectReason::kFrameNotListed)] += static_cast<int>(unlisted);
   fmt::print("{}: {} of {} detections are of listed images\n", files.detections.filename().string(),

@@ -142,13 +142,11 @@ std::array<bool, 4> EdgesCutByBorder(const Box& box, const Camera& camera) {
 // probably lost its base. Sides and tops are less certain: the box of a tall object full of gaps (a
 // chair) covers much that is visible past its back and between its legs, and the edge of the object
 // behind is then measured as well as any.
-void MarkHiddenEdges(const ImportOptions& options, Sequence* sequence) {
+void MarkHiddenEdges(double hidden_edge_fraction, Sequence* sequence) {
   for (Detection& detection : sequence->detections) {
     const double hidden_share =
         CoveredShareOfLowerEdge(detection.box, BoxesInFront(*sequence, detection));
-    if (hidden_share >= options.hidden_edge_fraction - kShareTolerance) {
-      detection.is_one_sided[3] = true;
-    }
+    if (hidden_share >= hidden_edge_fraction - kShareTolerance) detection.is_one_sided[3] = true;
   }
 }
 

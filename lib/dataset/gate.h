@@ -95,7 +95,7 @@ std::vector<DetectionRow> WithEnoughObservations(std::vector<DetectionRow> rows,
 std::array<bool, 4> EdgesCutByBorder(const Box& box, const Camera& camera);
 
 // Marks lower edges that BoxesInFront cover (hidden_edge_fraction).
-void MarkHiddenEdges(const ImportOptions& options, Sequence* sequence);
+void MarkHiddenEdges(double hidden_edge_fraction, Sequence* sequence);
 
 // Moves the held-out frames and their detections to Sequence::held_out, where no estimate uses
 // them. Positions of frames are counted from 0 in each segment.

@@ -22,18 +22,15 @@ namespace {
 
 DatasetContent ReadContent(const std::filesystem::path& folder, const ImportOptions& options) {
   switch (options.format) {
-    case DatasetFormat::kSoslam:
-    case DatasetFormat::kTumRgbd:
-    case DatasetFormat::kIclNuim:
-      return ReadSoslamFolder(folder, options);
     case DatasetFormat::kKittiTracking:
       return ReadKittiTracking(folder, options);
     case DatasetFormat::kKittiObject:
       return ReadKittiObject(folder, options);
     case DatasetFormat::kSlamSynthetic:
       return ReadSlamSynthetic(folder, options);
+    default:
+      return ReadSoslamFolder(folder, options);
   }
-  throw std::logic_error("format without a reader");
 }
 
 // Position of a dataset frame in Sequence::frames, or the reason why it is not used.
@@ -79,8 +76,6 @@ class Importer {
   void Import() {
     Rejections rejected;
     std::vector<DetectionRow> usable, in_view;
-    usable.reserve(content_.rows.size());
-    in_view.reserve(content_.rows.size());
     for (const DetectionRow& row : content_.rows) {
       const auto reason = Gate(row);
       if (!reason) usable.push_back(row);
@@ -97,7 +92,7 @@ class Importer {
     Rejections not_reported;
     all_in_view.detections = Detections(WithoutDuplicates(std::move(in_view), &not_reported));
     ListBoxesInView(all_in_view, sequence_);
-    MarkHiddenEdges(options_, sequence_);
+    MarkHiddenEdges(options_.hidden_edge_fraction, sequence_);
     Keep(rejected);
     Keep(content_.rejected);
     ListTruthInFrames();
@@ -152,7 +147,6 @@ class Importer {
 
   std::vector<Detection> Detections(const std::vector<DetectionRow>& rows) const {
     std::vector<Detection> detections;
-    detections.reserve(rows.size());
     for (const DetectionRow& row : rows) {
       Detection detection;
       detection.frame_index = std::get<int>(slots_.at(row.frame_id));

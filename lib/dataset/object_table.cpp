@@ -173,20 +173,18 @@ int PlaneIndex(const ListedObject& object, const std::vector<SupportPlane>& plan
 std::vector<Object> ListObjects(const DatasetFiles& files, const std::vector<ListedObject>& given,
                                 const std::vector<DetectionRow>& rows,
                                 const std::vector<SupportPlane>& planes, bool has_object_ids) {
-  std::map<int, std::pair<ListedObject, std::string>> listed;  // with the file that has it
-  for (const ListedObject& object : given) {
-    listed[object.id] = {object, files.objects.value_or(files.detections).string()};
-  }
-  for (const DetectionRow& row : rows) {
-    const ListedObject only_detected{row.object_id, row.label, std::nullopt, std::nullopt};
-    listed.try_emplace(row.object_id, only_detected, files.detections.string());
-  }
   std::vector<Object> objects;
-  for (const auto& [id, object_and_file] : listed) {
-    const auto& [object, file] = object_and_file;
-    objects.push_back(
-        {id, object.label, PlaneIndex(object, planes, file, !has_object_ids), object.ground_truth});
+  std::set<int> ids;
+  const auto add = [&](const ListedObject& object, const std::filesystem::path& file) {
+    if (!ids.insert(object.id).second) return;
+    const int plane = PlaneIndex(object, planes, file.string(), !has_object_ids);
+    objects.push_back({object.id, object.label, plane, object.ground_truth});
+  };
+  for (const ListedObject& object : given) add(object, files.objects.value_or(files.detections));
+  for (const DetectionRow& row : rows) {
+    add({row.object_id, row.label, std::nullopt, std::nullopt}, files.detections);
   }
+  std::ranges::sort(objects, {}, &Object::id);
   return objects;
 }
 

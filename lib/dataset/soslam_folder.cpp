@@ -70,12 +70,6 @@ Calibration ReadFolderCamera(const std::optional<std::filesystem::path>& camera_
   return read;
 }
 
-int FirstFreeId(const std::vector<ListedObject>& objects) {
-  int id = 0;
-  for (const ListedObject& object : objects) id = std::max(id, object.id + 1);
-  return id;
-}
-
 const Finding kCut = {"boxes_cut",
                       Severity::kWarning,
                       "reach a little beyond the image and are cut to it",
@@ -157,7 +151,8 @@ DatasetContent ReadSoslamFolder(const std::filesystem::path& folder, const Impor
   if (files.planes) content.sequence.planes = ReadPlanes(*files.planes);
   content.frames = ReadFolderFrames(folder, files, options, images, calibration.body_from_camera,
                                     &content.findings);
-  content.rows = RowsOfBoxes(boxes, files, images, FirstFreeId(listed), &content.rejected.counts);
+  const int first_free_id = listed.empty() ? 0 : std::max(0, listed.back().id + 1);
+  content.rows = RowsOfBoxes(boxes, files, images, first_free_id, &content.rejected.counts);
   content.has_object_ids = HaveObjectIds(boxes);
   if (content.has_object_ids) {
     ReportMended(files, UnifyLabels(listed, &content.rows), boxes.size(), kRelabelled,

@@ -348,9 +348,7 @@ std::vector<Bounds> BoundsOfAll(Sequence sequence, double hidden_edge_fraction =
   for (Detection& detection : sequence.detections) {
     detection.is_one_sided = EdgesCutByBorder(detection.box, sequence.CameraOf(detection));
   }
-  ImportOptions options;
-  options.hidden_edge_fraction = hidden_edge_fraction;
-  MarkHiddenEdges(options, &sequence);
+  MarkHiddenEdges(hidden_edge_fraction, &sequence);
   return Fields(sequence.detections, &Detection::is_one_sided);
 }
 
