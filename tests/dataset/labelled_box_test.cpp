@@ -143,14 +143,10 @@ TEST_F(CocoResultsTest, NamesOfImagesAreTakenAlsoWithADataset) {
 TEST_F(CocoResultsTest, BadResultsAreNamed) {
   const BadTexts cases = {
       {R"({"image_id": 0})", {"results.json", "not a list", "annotations"}},
-      {R"([3])", {"results.json#/0", "not an object"}},
-      {R"([{"category_id": 1, "bbox": [1, 2, 3, 4], "score": 1}])", {"#/0", "image_id is missing"}},
       {R"([{"image_id": 0.5, "category_id": 1, "bbox": [1, 2, 3, 4], "score": 1}])",
        {"#/0", "image_id is 0.5"}},
       {R"([{"image_id": 0, "category_id": 12, "bbox": [1, 2, 3, 4], "score": 1}])",
        {"#/0", "category_id is 12", "1 to 90"}},
-      {R"([{"image_id": 0, "category_id": 1, "bbox": [1, 2, 3], "score": 1}])",
-       {"#/0", "bbox is [1,2,3]", "4 numbers"}},
       {R"([{"image_id": 0, "category_id": 1, "bbox": [1, 2, -3, 4], "score": 1}])",
        {"#/0", "[x, y, width, height]"}},
       {R"([{"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4], "score": "1"}])",
@@ -163,9 +159,6 @@ TEST_F(CocoResultsTest, BadDatasetsAreNamed) {
       R"([{"image_id": 7, "category_id": 2, "bbox": [1, 2, 3, 4], "score": 1}])";
   const BadTexts cases = {
       {R"({"images": []})", {"dataset.json", "categories is missing"}},
-      {R"({"images": {}, "categories": []})", {"dataset.json", "images is {}", "a list"}},
-      {R"({"images": [{"id": 7}], "categories": []})",
-       {"dataset.json#/images/0", "file_name is missing"}},
       {R"({"images": [], "categories": [{"id": 2, "name": "cup"}]})",
        {"results.json#/0", "image_id is 7"}},
       {R"({"images": [{"id": 7, "file_name": "a"}], "categories": [{"id": 1, "name": "cup"}]})",
@@ -177,26 +170,17 @@ TEST_F(CocoResultsTest, BadDatasetsAreNamed) {
 
 TEST(OaSlamBoxesTest, BadFilesAreNamed) {
   const TemporaryFolder folder;
-  const auto detection = [](const std::string& fields) {
-    return R"([{"file_name": "a.png", "detections": []},
-               {"file_name": "b.png", "detections": [{)" +
-           fields + "}]}]";
+  const auto detection = [](const std::string& category, const std::string& box) {
+    return R"([{"file_name": "a.png", "detections": []}, {"file_name": "b.png", "detections": [
+               {"detection_score": 1, "category_id": )" +
+           category + R"(, "bbox": )" + box + "}]}]";
   };
   const std::string where = "boxes.json#/1/detections/0";
   const BadTexts cases = {
       {"{}", {"boxes.json", "not a list"}},
-      {R"([{"detections": []}])", {"boxes.json#/0", "file_name is missing"}},
-      {R"([{"file_name": "a.png", "detections": 3}])", {"boxes.json#/0", "detections is 3"}},
-      {detection(R"("category_id": 80, "detection_score": 1, "bbox": [1, 2, 3, 4])"),
-       {where, "category_id is 80", "0 to 79"}},
-      {detection(R"("category_id": -1, "detection_score": 1, "bbox": [1, 2, 3, 4])"),
-       {where, "category_id is -1"}},
-      {detection(R"("category_id": 1, "bbox": [1, 2, 3, 4])"),
-       {where, "detection_score is missing"}},
-      {detection(R"("category_id": 1, "detection_score": 1, "bbox": [1, 2, "3", 4])"),
-       {where, "bbox is [1,2,\"3\",4]"}},
-      {detection(R"("category_id": 1, "detection_score": 1, "bbox": [300, 68, 59, 97])"),
-       {where, "x1 <= x2"}}};
+      {detection("80", "[1, 2, 3, 4]"), {where, "category_id is 80", "0 to 79"}},
+      {detection("-1", "[1, 2, 3, 4]"), {where, "category_id is -1"}},
+      {detection("1", "[300, 68, 59, 97]"), {where, "x1 <= x2"}}};
   ExpectBadTexts(cases, "boxes.json", [&](const std::string& text) {
     ReadOaSlamBoxes(WriteBytes(folder / "boxes.json", text), CocoLabels());
   });

@@ -63,12 +63,7 @@ TEST_F(PhotoFolderTest, RefusesFoldersWithoutPhotos) {
 }
 
 TEST_F(PhotoFolderTest, NamesTheConversionOfOtherFormats) {
-  Write("IMG_1.HEIC", std::string("\0\0\0\x18"
-                                  "ftypheic",
-                                  12));
-  Write("IMG_2.HEIC", std::string("\0\0\0\x18"
-                                  "ftypheic",
-                                  12));
+  for (const char* name : {"IMG_1.HEIC", "IMG_2.HEIC"}) Write(name, "an image of HEIF");
   const auto find = [&] { FindCommonCamera(folder_.path(), ListPhotos(folder_.path())); };
   ExpectError<InputError>(find, {folder_.path().string(), "none of its 2 images", "heif-convert"});
 }
