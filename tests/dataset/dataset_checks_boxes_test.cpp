@@ -86,11 +86,6 @@ TEST_F(DatasetChecksTest, BoxesThatTheBorderGateDrops) {
 
 // Objects that boxes are of.
 
-TEST_F(DatasetChecksTest, NoBoxOfATrack) {
-  dataset.first_object_id = -5;
-  ExpectWarning({"object_ids: detections.csv: all 115 boxes", "let association be estimated"});
-}
-
 TEST_F(DatasetChecksTest, HalfOfTheBoxesOfNoTrack) {
   dataset.first_object_id = -2;
   dataset.label = [](size_t) { return "ball"; };

@@ -12,6 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 // While a camera looks at the middle of all things, a half turn hardly shows.
 TEST_F(DatasetChecksTest, CamerasTurnedByHalfATurn) {
@@ -26,25 +27,14 @@ TEST_F(DatasetChecksTest, PosesInReversedOrder) {
   ExpectAmongWarnings({"frame_order: ", "reversed order"});
 }
 
-class OrderOfStringsTest : public DatasetChecksTest {
- protected:
-  // 0, 1, 10, 11, ..., 2, ...
-  static std::vector<int> Order() {
-    std::vector<int> order(PlausibleDataset::kFrames);
-    std::iota(order.begin(), order.end(), 0);
-    std::ranges::sort(order, {}, [](int frame) { return std::to_string(frame); });
-    return order;
-  }
-};
-
-TEST_F(OrderOfStringsTest, OfPoses) {
-  dataset.pose_of_frame = [](int frame) { return Order()[frame]; };
+// 0, 1, 10, 11, ..., 2, ...
+TEST_F(DatasetChecksTest, PosesOrBoxesInTheOrderOfStrings) {
+  std::vector<int> order(PlausibleDataset::kFrames);
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::sort(order, {}, [](int frame) { return std::to_string(frame); });
+  dataset.pose_of_frame = [&](int frame) { return order[frame]; };
   ExpectAmongWarnings({"frame_order: ", "the poses are in the order of strings"});
-}
-
-TEST_F(OrderOfStringsTest, OfBoxes) {
-  dataset.pose_of_frame = [](int frame) {
-    const std::vector<int> order = Order();
+  dataset.pose_of_frame = [&](int frame) {
     return static_cast<int>(std::ranges::find(order, frame) - order.begin());
   };
   ExpectAmongWarnings({"frame_order: ", "boxes are in the order of strings"});
@@ -56,12 +46,6 @@ TEST_F(DatasetChecksTest, PosesThatContradictTheBoxes) {
   dataset.objects = dataset.TrueObjects(/*first_id=*/1, /*unit_m=*/1.0);
   ExpectWarning(
       {"boxes_against_poses: 5 things are", "poses, the order of frames, or ids contradict"});
-}
-
-TEST_F(DatasetChecksTest, PosesThatContradictTheBoxesAndTheTruth) {
-  dataset.pose_of_frame = [](int frame) { return frame * 7 % PlausibleDataset::kFrames; };
-  dataset.has_truth = true;
-  ExpectWarning({"trajectory_against_truth"});
 }
 
 // It turns about z while the camera goes around.
@@ -79,26 +63,20 @@ TEST_F(DatasetChecksTest, PosesThatDrift) {
 TEST_F(DatasetChecksTest, PlanesThroughPosesThatContradictTheBoxes) {
   dataset.pose_of_frame = [](int frame) { return frame * 7 % PlausibleDataset::kFrames; };
   dataset.plane = R"([{"id": 0, "normal": [0, 0, -1], "d": 0}])";
-  ExpectRefusedWithout("sign of the normal", {"from below", "mend poses"});
+  EXPECT_THAT(Refusal(), testing::AllOf(HasSubstr("from below"), HasSubstr("mend poses"),
+                                        Not(HasSubstr("sign of the normal"))));
 }
 
-TEST_F(DatasetChecksTest, FramesFromOne) {
+TEST_F(DatasetChecksTest, FramesFromOneAndFramesThatBeginOneImageLate) {
   dataset.first_row = 1;
   ExpectWarning({"frame_numbers", "counted from 1", "subtract 1"});
-}
-
-TEST_F(DatasetChecksTest, FramesThatBeginOneImageLate) {
   dataset.first_row = -1;
   ExpectWarning({"frame_numbers", "begin one image late", "add 1"});
 }
 
-TEST_F(DatasetChecksTest, EurocsPosesOfTheCamera) {
+TEST_F(DatasetChecksTest, EurocsPosesOfTheCameraWithAndWithoutBoxesThatTell) {
   WriteEuroc();
   EXPECT_THAT(Warnings(), IsEmpty());
-}
-
-TEST_F(DatasetChecksTest, EurocsPosesThatNoBoxesTellOf) {
-  WriteEuroc();
   dataset.has_object_ids = false;
   dataset.label = [](size_t) { return "ball"; };
   ExpectWarning(
@@ -108,7 +86,7 @@ TEST_F(DatasetChecksTest, EurocsPosesThatNoBoxesTellOf) {
 // Other mistakes than those of an IMU are told as in any format.
 TEST_F(DatasetChecksTest, EurocsPosesTheOtherWayRound) {
   WriteEuroc([](const Rigid3d& pose) { return pose.Inverse(); });
-  ExpectRefusedWithout("T_BS", {"if the poses are"});
+  EXPECT_THAT(Refusal(), testing::AllOf(HasSubstr("if the poses are"), Not(HasSubstr("T_BS"))));
 }
 
 // An IMU that is turned by a quarter against the camera about its optical axis.
@@ -129,7 +107,7 @@ TEST_F(DatasetChecksTest, ThingsThatMoveAreNoOtherConvention) {
   dataset.drive = true;
   dataset.ball_moves = 2.0;
   for (const std::string& warning : Warnings()) {
-    EXPECT_THAT(warning, testing::Not(HasSubstr("error")));
+    EXPECT_THAT(warning, Not(HasSubstr("error")));
   }
 }
 

@@ -100,16 +100,12 @@ TEST_F(DatasetChecksTest, CameraOfLargerImagesThanTheBoxes) {
 
 // Planes.
 
+// Boxes of one label and without ids do not tell where the balls are.
 TEST_F(DatasetChecksTest, NormalThatPointsDown) {
   dataset.plane = R"([{"id": 0, "normal": [0, 0, -1], "d": 0}])";
   ExpectRefused({"from below", "sign of the normal"});
-}
-
-// Boxes of one label and without ids do not tell where the balls are.
-TEST_F(DatasetChecksTest, NormalThatPointsDownWhereBoxesDoNotTell) {
   dataset.has_object_ids = false;
   dataset.label = [](size_t) { return "ball"; };
-  dataset.plane = R"([{"id": 0, "normal": [0, 0, -1], "d": 0}])";
   ExpectWarning({"plane_side", "may be the objects"});
 }
 

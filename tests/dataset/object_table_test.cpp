@@ -90,18 +90,19 @@ DetectionRow Row(int object, const std::string& label, double score = 1.0) {
 }
 
 // The labels of the rows after a unification that changes so many.
-std::vector<std::string> Labels(std::vector<DetectionRow> rows, int changed) {
+std::vector<std::string> UnifiedLabels(std::vector<DetectionRow> rows, int changed) {
   EXPECT_EQ(UnifyLabels({}, &rows), changed);
   return Fields(rows, &DetectionRow::label);
 }
 
 TEST(TrackLabelsTest, MostRowsThenScoresThenNamesDecide) {
-  EXPECT_THAT(
-      Labels({Row(1, "sofa", 0.1), Row(1, "couch"), Row(1, "sofa", 0.1), Row(2, "couch")}, 1),
-      ElementsAre("sofa", "sofa", "sofa", "couch"));
-  EXPECT_THAT(Labels({Row(1, "couch", 0.4), Row(1, "sofa", 0.5)}, 1), ElementsAre("sofa", "sofa"));
-  EXPECT_THAT(Labels({Row(1, "sofa"), Row(1, "couch")}, 1), ElementsAre("couch", "couch"));
-  EXPECT_THAT(Labels({Row(1, "sofa"), Row(2, "couch")}, 0), ElementsAre("sofa", "couch"));
+  EXPECT_THAT(UnifiedLabels(
+                  {Row(1, "sofa", 0.1), Row(1, "couch"), Row(1, "sofa", 0.1), Row(2, "couch")}, 1),
+              ElementsAre("sofa", "sofa", "sofa", "couch"));
+  EXPECT_THAT(UnifiedLabels({Row(1, "couch", 0.4), Row(1, "sofa", 0.5)}, 1),
+              ElementsAre("sofa", "sofa"));
+  EXPECT_THAT(UnifiedLabels({Row(1, "sofa"), Row(1, "couch")}, 1), ElementsAre("couch", "couch"));
+  EXPECT_THAT(UnifiedLabels({Row(1, "sofa"), Row(2, "couch")}, 0), ElementsAre("sofa", "couch"));
 }
 
 }  // namespace
