@@ -141,13 +141,12 @@ const std::array kReadings = {
                 "translations with y and z swapped, beside rotations that are not",
                 "swap y and z of the translations", &WithCentreSwapped}};
 
-// Pose of the frame `shift` places later in the list, if it is of the same segment.
-std::optional<Rigid3d> PoseBeside(const ImportView& view, size_t frame, int shift) {
+// Pose of another frame in the list, if there is one of the same segment.
+std::optional<Rigid3d> PoseOfOther(const ImportView& view, size_t frame, size_t other) {
   const std::vector<ListedFrame>& frames = view.content.frames;
-  const size_t beside = frame + static_cast<size_t>(shift);  // wraps before the first frame
-  if (beside >= frames.size()) return std::nullopt;
-  if (frames[beside].frame.segment != frames[frame].frame.segment) return std::nullopt;
-  return frames[beside].Pose();
+  if (other >= frames.size()) return std::nullopt;
+  if (frames[other].frame.segment != frames[frame].frame.segment) return std::nullopt;
+  return frames[other].Pose();
 }
 
 // True if an error is from about the same number of rays.
@@ -172,11 +171,11 @@ bool DoCamerasTurn(const ImportView& view) {
 
 // A possible mistake in the input that explains why objects are not where they are seen.
 struct Explanation {
-  std::string name;
-  std::string cause;
-  std::string remedy;
-  bool is_order = false;  // a mistake in the order of frames
-  RayError error;         // remaining error once it is corrected
+  const char* name;
+  const char* cause;
+  const char* remedy;
+  bool is_order;   // a mistake in the order of frames
+  RayError error;  // remaining error once it is corrected
 };
 
 std::vector<TrackedObject> Mirrored(std::vector<TrackedObject> objects) {
@@ -200,49 +199,7 @@ std::vector<size_t> Inverse(const std::vector<size_t>& order) {
   return inverse;
 }
 
-// An explanation for each reading of the poses and each order of the frames with which objects can
-// be triangulated.
-std::vector<Explanation> Explanations(const ImportView& view,
-                                      const std::vector<TrackedObject>& objects) {
-  const std::vector<ListedFrame>& frames = view.content.frames;
-  const std::vector<TrackedObject> mirrored = Mirrored(objects);
-  std::vector<Explanation> explanations;
-  for (const PoseReading& reading : kReadings) {
-    if (reading.is_turned_in_body && view.content.may_have_poses_of_body) continue;
-    const auto pose_as_meant = [&](size_t frame) -> std::optional<Rigid3d> {
-      const auto pose = frames[frame].Pose();
-      return pose ? std::optional(reading.WorldFromCamera(*pose)) : std::nullopt;
-    };
-    const auto error =
-        MedianRayError(reading.are_boxes_mirrored ? mirrored : objects, pose_as_meant);
-    if (!error) continue;
-    explanations.push_back({reading.name, reading.cause, reading.remedy, false, *error});
-  }
-  // `frame_meant`: for each frame, that whose pose belongs to its boxes.
-  const auto add_order = [&](const char* name, const char* cause, const char* remedy,
-                             const std::vector<size_t>& frame_meant) {
-    const auto error = MedianRayError(objects, [&](size_t frame) -> std::optional<Rigid3d> {
-      const size_t meant = frame_meant[frame];
-      if (frames[meant].frame.segment != frames[frame].frame.segment) return std::nullopt;
-      return frames[meant].Pose();
-    });
-    if (error) explanations.push_back({name, cause, remedy, true, *error});
-  };
-  std::vector<size_t> reversed(frames.size());
-  std::iota(reversed.rbegin(), reversed.rend(), size_t{0});
-  const std::vector<size_t> of_strings = OrderOfStrings(frames.size());
-  constexpr const char* kAsStrings = "numbers that were sorted as strings, 10 before 2";
-  add_order("the poses are in reversed order", "poses or boxes from the last image to the first",
-            "reverse the poses or the frames of the detections", reversed);
-  add_order("boxes are in the order of strings", kAsStrings,
-            "sort the images or boxes by number, or write numbers with leading zeros", of_strings);
-  add_order("the poses are in the order of strings", kAsStrings,
-            "sort the images or poses by number, or write numbers with leading zeros",
-            Inverse(of_strings));
-  return explanations;
-}
-
-// Searches for the best explanation. Under a wrong convention of poses or frame order the rays to
+// Searches for the best reading of the poses or order of the frames. Under a wrong one the rays to
 // objects diverge; under the right one they meet to within a degree.
 std::optional<Explanation> BestExplanation(const ImportView& view,
                                            const std::vector<TrackedObject>& objects,
@@ -252,12 +209,42 @@ std::optional<Explanation> BestExplanation(const ImportView& view,
   if (as_read.median_deg <= kFitsDeg) return std::nullopt;
   std::optional<Explanation> best;
   double best_deg = std::min(kFitsDeg, kMuchBetter * as_read.median_deg);
-  for (Explanation& explanation : Explanations(view, objects)) {
-    const RayError& error = explanation.error;
-    if (!IsComparable(error, as_read) || error.median_deg >= best_deg) continue;
-    best_deg = error.median_deg;
-    best = std::move(explanation);
+  const auto consider = [&](const char* name, const char* cause, const char* remedy, bool is_order,
+                            const std::optional<RayError>& error) {
+    if (!IsComparable(error, as_read) || error->median_deg >= best_deg) return;
+    best_deg = error->median_deg;
+    best = Explanation{name, cause, remedy, is_order, *error};
+  };
+  const std::vector<TrackedObject> mirrored = Mirrored(objects);
+  for (const PoseReading& reading : kReadings) {
+    if (reading.is_turned_in_body && view.content.may_have_poses_of_body) continue;
+    const auto pose_as_meant = [&](size_t frame) -> std::optional<Rigid3d> {
+      const auto pose = view.content.frames[frame].Pose();
+      return pose ? std::optional(reading.WorldFromCamera(*pose)) : std::nullopt;
+    };
+    consider(reading.name, reading.cause, reading.remedy, false,
+             MedianRayError(reading.are_boxes_mirrored ? mirrored : objects, pose_as_meant));
   }
+  // `frame_meant`: for each frame, that whose pose belongs to its boxes.
+  const auto consider_order = [&](const char* name, const char* cause, const char* remedy,
+                                  const std::vector<size_t>& frame_meant) {
+    consider(name, cause, remedy, true, MedianRayError(objects, [&](size_t frame) {
+               return PoseOfOther(view, frame, frame_meant[frame]);
+             }));
+  };
+  std::vector<size_t> reversed(view.content.frames.size());
+  std::iota(reversed.rbegin(), reversed.rend(), size_t{0});
+  const std::vector<size_t> of_strings = OrderOfStrings(reversed.size());
+  constexpr const char* kAsStrings = "numbers that were sorted as strings, 10 before 2";
+  consider_order("the poses are in reversed order",
+                 "poses or boxes from the last image to the first",
+                 "reverse the poses or the frames of the detections", reversed);
+  consider_order("boxes are in the order of strings", kAsStrings,
+                 "sort the images or boxes by number, or write numbers with leading zeros",
+                 of_strings);
+  consider_order("the poses are in the order of strings", kAsStrings,
+                 "sort the images or poses by number, or write numbers with leading zeros",
+                 Inverse(of_strings));
   return best;
 }
 
@@ -289,7 +276,9 @@ std::vector<Finding> CheckFrameNumbers(const ImportView& view,
   constexpr double kLeastDeg = 0.02;
   constexpr double kFitsDeg = 2.0;
   const auto error_at = [&](int shift) {
-    return MedianRayError(objects, [&](size_t frame) { return PoseBeside(view, frame, shift); });
+    return MedianRayError(objects, [&](size_t frame) {
+      return PoseOfOther(view, frame, frame + static_cast<size_t>(shift));  // wraps before 0
+    });
   };
   const int first_id = view.content.frames.front().frame.id;
   const bool is_first_empty = std::ranges::none_of(

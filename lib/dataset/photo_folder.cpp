@@ -87,18 +87,12 @@ bool IsSameFocalLength(double one, double other) {
 
 // The focal length that most others are close to; of several the smallest.
 std::optional<double> CommonFocalLength(std::vector<double> focal_lengths) {
+  if (focal_lengths.empty()) return std::nullopt;
   std::ranges::sort(focal_lengths);
-  std::optional<double> common;
-  std::ptrdiff_t most = 0;
-  for (const double focal : focal_lengths) {
-    const auto count = std::ranges::count_if(
-        focal_lengths, [&](double other) { return IsSameFocalLength(other, focal); });
-    if (count > most) {
-      most = count;
-      common = focal;
-    }
-  }
-  return common;
+  return *std::ranges::max_element(focal_lengths, {}, [&](double focal) {
+    return std::ranges::count_if(focal_lengths,
+                                 [&](double other) { return IsSameFocalLength(other, focal); });
+  });
 }
 
 }  // namespace

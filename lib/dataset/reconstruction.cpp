@@ -12,6 +12,7 @@
 #include "evaluation/statistics.h"
 #include "geometry/angles.h"
 #include "geometry/triangulation.h"
+#include "model/sequence.h"
 
 namespace soslam {
 namespace {
@@ -35,11 +36,12 @@ MapPoint PointOf(const ColmapPoint& point, const ColmapModel& model,
 double TriangulationAngle(const MapPoint& point,
                           const std::vector<std::optional<Rigid3d>>& world_from_camera) {
   constexpr size_t kMostViews = 50;
-  const size_t views = point.observations.size();
-  const size_t used = std::min(views, kMostViews);
+  std::vector<int> frames;
+  for (const PointObservation& observation : point.observations) {
+    frames.push_back(observation.frame_id);
+  }
   std::vector<Eigen::Vector3d> centres;
-  for (size_t i = 0; i < used; ++i) {
-    const auto frame = static_cast<size_t>(point.observations[i * views / used].frame_id);
+  for (const int frame : SpreadOver(frames, kMostViews)) {
     centres.push_back(world_from_camera[frame]->translation);
   }
   return LargestAngle(centres, point.position_in_world);
@@ -91,34 +93,23 @@ void Summarise(const Reconstruction& reconstruction, const std::vector<ListedIma
   summary->median_triangulation_angle_deg = MedianOf(angles);
 }
 
-namespace {
-
-// The likely causes of images without a pose. They may be renamed if the model has at least as many
-// that are not listed.
-std::string WhyNotRegistered(const ReconstructionSummary& summary,
-                             const std::vector<std::string>& unlisted) {
-  std::string causes = "images that are blurred, show little texture, or overlap too little";
-  if (!summary.images_without_pose.empty() &&
-      unlisted.size() >= summary.images_without_pose.size()) {
-    causes += "; or other names than in the model, which has images that are not listed: " +
-              NamesInWords(unlisted);
-  }
-  return causes;
-}
-
-}  // namespace
-
 std::vector<Finding> CheckReconstruction(const ReconstructionSummary& summary,
                                          const std::vector<std::string>& unlisted) {
   constexpr double kRegistered = 0.8;
   constexpr double kAngleDeg = 2.0;
   std::vector<Finding> findings;
   if (summary.registered < kRegistered * summary.images) {
+    std::string causes = "images that are blurred, show little texture, or overlap too little";
+    // They may be renamed if the model has at least as many that are not listed.
+    if (unlisted.size() >= summary.images_without_pose.size()) {
+      causes += "; or other names than in the model, which has images that are not listed: " +
+                NamesInWords(unlisted);
+    }
     findings.push_back(
         {"images_registered", Severity::kWarning,
          fmt::format("{} of {} images are registered; the others have no pose: {}",
                      summary.registered, summary.images, NamesInWords(summary.images_without_pose)),
-         "80 % of the images at least", WhyNotRegistered(summary, unlisted),
+         "80 % of the images at least", causes,
          "take more images between those that are far apart, or give the poses"});
   }
   if (summary.components.size() > 1) {

@@ -32,7 +32,7 @@ struct PublishedDataset {
 
 void PrintTo(const PublishedDataset& dataset, std::ostream* stream) { *stream << dataset.name; }
 
-// Of 2893 images of fr2_desk 2225 have a pose: motion capture has gaps. KITTI's README counts 263
+// 2225 of fr2_desk's 2893 images have a pose, as motion capture has gaps. KITTI's README counts 263
 // static cars in another way.
 const std::vector<PublishedDataset> kPublishedDatasets = {
     {"fr2_desk", 2225, 0, 23969, 34331, ""},
