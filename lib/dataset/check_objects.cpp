@@ -43,7 +43,7 @@ std::vector<BoxAndTruth> BoxesAndTruth(const ImportView& view, int shift) {
     const auto landmark = landmarks.find(std::int64_t{row.object_id} + shift);
     const auto frame = frames.find(row.frame_id);
     if (landmark == landmarks.end() || frame == frames.end()) continue;
-    const Camera camera = frame->second->camera.value_or(view.sequence.camera);
+    const Camera& camera = view.sequence.CameraOf(*frame->second);
     const Box in_image = row.box_in_image_file.value_or(row.box);
     if (DistanceToBorder(in_image, camera.width, camera.height) <= kCutPx) continue;
     const Rigid3d world_from_camera =

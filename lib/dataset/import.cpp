@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 #include <utility>
 #include <variant>
 
@@ -69,9 +68,7 @@ class Importer {
         slots_(ChooseFrames(content.frames, options, &sequence->frames)),
         object_ids_("object", sequence->objects),
         planes_from_truth_(options.camera_planes == PlanePoses::kGroundTruth &&
-                           content.has_true_poses) {
-    for (const TrueObject& object : sequence->true_objects) true_object_ids_.insert(object.id);
-  }
+                           content.has_true_poses) {}
 
   void Import() {
     Rejections rejected;
@@ -141,7 +138,9 @@ class Importer {
   }
 
   std::optional<int> TrueObjectId(int object_id) const {
-    const bool is_known = content_.has_object_ids && true_object_ids_.contains(object_id);
+    const bool is_known =
+        content_.has_object_ids &&
+        std::ranges::binary_search(sequence_->true_objects, object_id, {}, &TrueObject::id);
     return is_known ? std::optional(object_id) : std::nullopt;
   }
 
@@ -179,7 +178,6 @@ class Importer {
   Sequence* sequence_;
   std::map<int, FrameSlot> slots_;
   IdTable<Object> object_ids_;
-  std::set<int> true_object_ids_;
   bool planes_from_truth_;
 };
 

@@ -50,7 +50,7 @@ std::vector<TrackedObject> TrackedObjects(const ImportView& view) {
   std::map<std::string, TrackedObject> by_name;
   for (const DetectionRow& row : content.rows) {
     const size_t frame = frame_index.at(row.frame_id);
-    const Camera camera = content.frames[frame].frame.camera.value_or(view.sequence.camera);
+    const Camera& camera = view.sequence.CameraOf(content.frames[frame].frame);
     if (!IsWhole(row.box_in_image_file.value_or(row.box), camera)) continue;
     if (row.score < view.options.min_score || moving.contains(row.object_id)) continue;
     if (!content.has_object_ids && repeated.contains(row.label)) continue;
