@@ -11,6 +11,7 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "base/error.h"
 #include "base/paths.h"
@@ -37,35 +38,19 @@ void CheckEncoding(std::string_view text, const std::string& place) {
   if (!IsUtf8(std::string(text))) throw InputError(place + ": is not UTF-8 text");
 }
 
-// Calls `use` with each line and its number from 1.
-template <typename Use>
-void ForEachLine(const std::string& text, const std::string& name, const Use& use) {
-  if (!text.empty()) CheckIsNotUtf16(static_cast<unsigned char>(text.front()), name);
-  std::string_view rest = text;
-  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
-  const char line_end = rest.find('\n') == rest.npos ? '\r' : '\n';
-  for (size_t number = 1; !rest.empty(); ++number) {
-    const std::string_view line = rest.substr(0, rest.find(line_end));
-    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
-    const size_t end = line.find_last_not_of('\r');
-    use(line.substr(0, end == line.npos ? 0 : end + 1), number);
-  }
-}
-
 bool IsComment(std::string_view line) { return Trimmed(line).starts_with('#'); }
 
-// Lines without the characters of `blanks` at both ends.
+// Lines without the characters of `blanks` at both ends; neither blank lines nor comments.
 std::vector<TextLine> LinesWithout(std::string_view blanks, const std::string& text,
                                    const std::string& name) {
-  std::vector<TextLine> lines;
-  ForEachLine(text, name, [&](std::string_view line, size_t number) {
-    if (Trimmed(line).empty() || IsComment(line)) return;
-    const size_t begin = line.find_first_not_of(blanks);
-    const size_t end = line.find_last_not_of(blanks);
-    lines.push_back(
-        {fmt::format("{}:{}", name, number), std::string(line.substr(begin, end - begin + 1))});
-    CheckEncoding(line, lines.back().place);
+  std::vector<TextLine> lines = RawLines(text, name);
+  std::erase_if(lines, [](const TextLine& line) {
+    return Trimmed(line.text).empty() || IsComment(line.text);
   });
+  for (TextLine& line : lines) {
+    line.text.erase(line.text.find_last_not_of(blanks) + 1);
+    line.text.erase(0, line.text.find_first_not_of(blanks));
+  }
   return lines;
 }
 
@@ -91,13 +76,12 @@ bool HasDecimalComma(std::string_view text) {
 std::string ReadWholeFile(const std::filesystem::path& path, const char* kind) {
   constexpr std::uintmax_t kMaxBytes = 1 << 30;
   RecordInput(path);
-  std::error_code error;
-  const std::uintmax_t bytes = IsFile(path) ? std::filesystem::file_size(path, error) : 0;
   std::ifstream stream;
-  if (IsFile(path) && !error) stream.open(path, std::ios::binary);  // opening a pipe would block
+  if (IsFile(path)) stream.open(path, std::ios::binary);  // opening a pipe would block
   if (!stream.is_open()) {
     throw InputError(fmt::format("{}: cannot be read; expected a {}", path.string(), kind));
   }
+  const std::uintmax_t bytes = std::filesystem::file_size(path);
   if (bytes > kMaxBytes) {
     throw InputError(fmt::format("{}: has {} bytes; expected a {} of at most {}", path.string(),
                                  bytes, kind, kMaxBytes));
@@ -113,20 +97,23 @@ std::vector<TextLine> TextLines(const std::string& text, const std::string& name
   return LinesWithout(kBlanks, text, name);
 }
 
-std::vector<TextLine> ReadTableLines(const std::filesystem::path& path) {
-  return LinesWithout(" \r", ReadWholeFile(path), path.string());
-}
-
 std::vector<TextLine> RawLines(const std::string& text, const std::string& name) {
-  constexpr size_t kMaxLines = 4'000'000;
+  constexpr size_t kMaxLines = 20'000'000;
+  if (!text.empty()) CheckIsNotUtf16(static_cast<unsigned char>(text.front()), name);
+  std::string_view rest = text;
+  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
+  const char line_end = rest.find('\n') == rest.npos ? '\r' : '\n';
   std::vector<TextLine> lines;
-  ForEachLine(text, name, [&](std::string_view line, size_t number) {
-    if (number > kMaxLines) {
+  while (!rest.empty()) {
+    if (lines.size() == kMaxLines) {
       throw InputError(fmt::format("{}: has more than {} lines", name, kMaxLines));
     }
-    lines.push_back({fmt::format("{}:{}", name, number), std::string(line)});
-    if (!IsComment(line)) CheckEncoding(line, lines.back().place);
-  });
+    std::string line(rest.substr(0, rest.find(line_end)));
+    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+    line.erase(line.find_last_not_of('\r') + 1);
+    lines.push_back({fmt::format("{}:{}", name, lines.size() + 1), std::move(line)});
+    if (!IsComment(lines.back().text)) CheckEncoding(lines.back().text, lines.back().place);
+  }
   return lines;
 }
 
@@ -241,7 +228,8 @@ double CsvRow::Real(const std::string& column) const {
 
 void ForEachCsvRow(const std::filesystem::path& path, const CsvColumns& columns,
                    const std::function<void(const CsvRow&)>& use) {
-  const std::vector<TextLine> lines = ReadTableLines(path);
+  // Tabs at both ends of a line separate fields, which may be empty.
+  const std::vector<TextLine> lines = LinesWithout(" \r", ReadWholeFile(path), path.string());
   if (lines.empty()) {
     throw InputError(fmt::format("{}: is empty; expected a header {}", path.string(),
                                  fmt::join(columns.required, ",")));

@@ -45,10 +45,7 @@ auto ParseTextLines(const std::filesystem::path& path, const Parse& parse) {
 // ReadTextLines for a text that is not a file of its own; `name` stands for it in error messages.
 std::vector<TextLine> TextLines(const std::string& text, const std::string& name);
 
-// ReadTextLines for a table: tabs at both ends of a line are kept, as fields may be empty.
-std::vector<TextLine> ReadTableLines(const std::filesystem::path& path);
-
-// All lines unchanged, including blank ones and comments; at most 4 million. Comments need not be
+// All lines unchanged, including blank ones and comments; at most 20 million. Comments need not be
 // UTF-8.
 std::vector<TextLine> RawLines(const std::string& text, const std::string& name);
 
