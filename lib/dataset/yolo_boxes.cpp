@@ -5,8 +5,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <set>
 #include <span>
@@ -108,15 +110,15 @@ const YoloRow* FirstOther(const Rows& rows, size_t extra, bool (*is_it)(double))
 }
 
 void SetScores(const Rows& rows, size_t extra) {
-  for (YoloRow* row : rows) row->score = row->extras[extra];
+  for (YoloRow* row : rows) row->box.score = row->extras[extra];
 }
 
 void SetTracks(const Rows& rows, size_t extra) {
-  for (YoloRow* row : rows) row->track = static_cast<int>(row->extras[extra]);
+  for (YoloRow* row : rows) row->box.object_id = static_cast<int>(row->extras[extra]);
 }
 
 [[noreturn]] void Refuse(const YoloRow& row, const std::string& what) {
-  throw InputError(fmt::format("{}: {}", row.place, what));
+  throw InputError(fmt::format("{}: {}", row.box.place, what));
 }
 
 void ReadPairs(const Rows& rows) {
@@ -139,10 +141,10 @@ void ReadPairs(const Rows& rows) {
 }
 
 void RefuseTracksTwice(const Rows& rows) {
-  std::set<std::pair<std::string, double>> seen;
+  std::set<std::pair<FrameKey, double>> seen;
   for (const YoloRow* row : rows) {
     const double track = row->extras[0];
-    if (track <= 0.0 || seen.emplace(row->image, track).second) continue;
+    if (track <= 0.0 || seen.emplace(row->box.frame, track).second) continue;
     Refuse(*row, fmt::format("has the sixth number {} twice in one image; expected a confidence "
                              "from 0 to 1, or the integer of a track, which no image has twice",
                              track));
@@ -166,28 +168,6 @@ void ReadSingles(const Rows& rows, bool are_beside_pairs) {
 constexpr double kRounding = 1e-3;  // files round to three digits at least
 // Largest overhang of boxes by annotators and detectors, fraction.
 constexpr double kMostBeyond = 0.05;
-
-YoloRow ParseLine(const TextLine& line, const std::string& image,
-                  const std::array<const char*, 4>& names) {
-  const auto words = SplitWords(line.text);
-  if (words.size() < 5 || words.size() > 7) {
-    throw InputError(fmt::format(
-        "{}: has {} numbers; expected class {} [score] [track]{}", line.place, words.size(),
-        fmt::join(names, " "),
-        words.size() > 7 ? ": labels of segmentation (polygons), poses and oriented boxes are not "
-                           "read, save boxes"
-                         : ""));
-  }
-  YoloRow row{line.place,
-              image,
-              ParseInteger(words[0], line.place, "class"),
-              ParseReals(std::span(words).subspan(1), line.place, names),
-              {}};
-  for (size_t i = 5; i < words.size(); ++i) {
-    row.extras.push_back(ParseReal(words[i], line.place, fmt::format("number {}", i + 1)));
-  }
-  return row;
-}
 
 // Box with corners in fractions of the image.
 Box FractionsBox(const std::array<double, 4>& values, const std::string& place) {
@@ -224,24 +204,6 @@ Box PixelBox(const std::array<double, 4>& values, const std::string& place) {
   return FromCornerOrigin({x, y, x + w, y + h});
 }
 
-std::vector<YoloRow> ReadRows(const YoloTexts& texts, const std::array<const char*, 4>& names) {
-  std::vector<YoloRow> rows;
-  for (const YoloText& text : texts.images) {
-    for (const TextLine& line : text.lines) rows.push_back(ParseLine(line, text.image, names));
-  }
-  ReadYoloExtras(&rows);
-  return rows;
-}
-
-LabelledBox LabelledBoxOf(const YoloRow& row, const Box& box,
-                          const std::vector<std::string>& labels) {
-  if (row.class_index < 0 || row.class_index >= static_cast<int>(labels.size())) {
-    throw InputError(fmt::format("{}: class is {}; expected 0 to {}, one of {} labels", row.place,
-                                 row.class_index, labels.size() - 1, labels.size()));
-  }
-  return {row.place, row.image, labels[row.class_index], row.score, box, row.track};
-}
-
 }  // namespace
 
 void ReadYoloExtras(std::vector<YoloRow>* rows) {
@@ -254,32 +216,70 @@ void ReadYoloExtras(std::vector<YoloRow>* rows) {
   if (!singles.empty()) ReadSingles(singles, !pairs.empty());
 }
 
+namespace {
+
+// What a convention makes of the four numbers of a box. Throws InputError naming `place`.
+using ToBox = std::function<Box(const std::array<double, 4>&, const std::string& place)>;
+
+YoloRow ParseLine(const TextLine& line, const std::string& image,
+                  const std::vector<std::string>& labels, const std::array<const char*, 4>& names,
+                  const ToBox& to_box) {
+  const auto words = SplitWords(line.text);
+  if (words.size() < 5 || words.size() > 7) {
+    throw InputError(fmt::format(
+        "{}: has {} numbers; expected class {} [score] [track]{}", line.place, words.size(),
+        fmt::join(names, " "),
+        words.size() > 7 ? ": labels of segmentation (polygons), poses and oriented boxes are not "
+                           "read, save boxes"
+                         : ""));
+  }
+  const int index = ParseInteger(words[0], line.place, "class");
+  if (index < 0 || index >= static_cast<int>(labels.size())) {
+    throw InputError(fmt::format("{}: class is {}; expected 0 to {}, one of {} labels", line.place,
+                                 index, labels.size() - 1, labels.size()));
+  }
+  const auto numbers = ParseReals(std::span(words).subspan(1), line.place, names);
+  YoloRow row{{line.place, image, labels[index], 1.0, to_box(numbers, line.place)}, {}};
+  for (size_t i = 5; i < words.size(); ++i) {
+    row.extras.push_back(ParseReal(words[i], line.place, fmt::format("number {}", i + 1)));
+  }
+  return row;
+}
+
+std::vector<LabelledBox> ReadBoxes(const YoloTexts& texts, const std::vector<std::string>& labels,
+                                   const std::array<const char*, 4>& names, const ToBox& to_box) {
+  std::vector<YoloRow> rows;
+  for (const YoloText& text : texts.images) {
+    for (const TextLine& line : text.lines) {
+      rows.push_back(ParseLine(line, text.image, labels, names, to_box));
+    }
+  }
+  ReadYoloExtras(&rows);
+  std::vector<LabelledBox> boxes;
+  for (YoloRow& row : rows) boxes.push_back(std::move(row.box));
+  return boxes;
+}
+
+}  // namespace
+
 std::vector<LabelledBox> ReadNormalisedYoloBoxes(const YoloTexts& texts,
                                                  const std::vector<std::string>& labels,
                                                  int image_width, int image_height,
                                                  RejectionCounts* corrected) {
-  std::vector<LabelledBox> boxes;
-  for (const YoloRow& row : ReadRows(texts, {"cx", "cy", "w", "h"})) {
-    Box box = FractionsBox(row.box, row.place);
+  const auto to_box = [&](const std::array<double, 4>& numbers, const std::string& place) {
+    Box box = FractionsBox(numbers, place);
     const double beyond = Beyond(box);
     if (beyond <= kMostBeyond) box = CutToImage(box);
     if (beyond > kRounding && beyond <= kMostBeyond) ++(*corrected)["cut_to_image"];
-    boxes.push_back(
-        LabelledBoxOf(row,
-                      FromCornerOrigin({box.x_min * image_width, box.y_min * image_height,
-                                        box.x_max * image_width, box.y_max * image_height}),
-                      labels));
-  }
-  return boxes;
+    return FromCornerOrigin({box.x_min * image_width, box.y_min * image_height,
+                             box.x_max * image_width, box.y_max * image_height});
+  };
+  return ReadBoxes(texts, labels, {"cx", "cy", "w", "h"}, to_box);
 }
 
 std::vector<LabelledBox> ReadPixelYoloBoxes(const YoloTexts& texts,
                                             const std::vector<std::string>& labels) {
-  std::vector<LabelledBox> boxes;
-  for (const YoloRow& row : ReadRows(texts, {"x", "y", "w", "h"})) {
-    boxes.push_back(LabelledBoxOf(row, PixelBox(row.box, row.place), labels));
-  }
-  return boxes;
+  return ReadBoxes(texts, labels, {"x", "y", "w", "h"}, &PixelBox);
 }
 
 }  // namespace soslam

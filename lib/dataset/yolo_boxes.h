@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -32,20 +31,15 @@ struct YoloTexts {
 // there is nothing to read, and for two files of one name.
 YoloTexts ReadYoloTexts(const std::filesystem::path& path);
 
-// A line of YOLO's labels, in numbers.
+// A line of YOLO's labels.
 struct YoloRow {
-  std::string place;  // "<file>:<line>"
-  std::string image;
-  int class_index;
-  std::array<double, 4> box;
-  std::vector<double> extras;  // further values: none, one or two
-  double score = 1.0;
-  std::optional<int> track = std::nullopt;
+  LabelledBox box;
+  std::vector<double> extras;  // values after the box: none, one or two
 };
 
 // Determines from all rows together which of the extras are confidences and which tracks, as tools
-// write both in either order, and fills `score` and `track`. Confidences are in [0, 1]; tracks are
-// integers from -1 (none).
+// write both in either order, and fills `score` and `object_id`. Confidences are in [0, 1]; tracks
+// are integers from -1 (none).
 //
 //   one extra   confidences if all values allow it (also if all are 1), otherwise tracks, each
 //               at most once per image; only confidences if other rows have two extras

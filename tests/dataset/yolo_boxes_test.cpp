@@ -64,70 +64,57 @@ TEST_F(YoloTextsTest, NothingToReadAndTwoOfOneNameAreNamed) {
   ExpectError<InputError>([&] { ReadYoloTexts(Pack()); }, {"labels.tar.gz", "several files 1.txt"});
 }
 
+using Extras = std::vector<std::vector<double>>;
+
 // Rows of an image each, with these extras.
-std::vector<YoloRow> Rows(const std::vector<std::vector<double>>& extras) {
+std::vector<YoloRow> Rows(const Extras& extras) {
   std::vector<YoloRow> rows;
   for (const auto& numbers : extras) {
     const std::string name = std::to_string(rows.size());
-    rows.push_back({name + ".txt:1", name, 0, {}, numbers});
+    rows.push_back({{name + ".txt:1", name, "cup", 1.0, {}}, numbers});
   }
   return rows;
 }
 
-std::vector<YoloRow> Read(const std::vector<std::vector<double>>& extras) {
+// Scores and tracks of rows with these extras.
+auto Read(const Extras& extras) {
   std::vector<YoloRow> rows = Rows(extras);
   ReadYoloExtras(&rows);
-  return rows;
+  return Fields(rows,
+                [](const YoloRow& row) { return std::pair(row.box.score, row.box.object_id); });
 }
 
-void ExpectRefused(const std::vector<std::vector<double>>& extras,
-                   const std::vector<std::string>& words) {
-  ExpectError<InputError>([&] { Read(extras); }, words);
-}
-
-TEST(YoloColumnsTest, OneExtraIsAConfidenceIfAllCanBe) {
-  const auto rows = Read({{0.5}, {1}, {}, {0}});
-  EXPECT_EQ(rows[0].score, 0.5);
-  EXPECT_EQ(rows[2].score, 1.0);
-  EXPECT_FALSE(rows[0].track);
-  EXPECT_FALSE(Read({{1}, {1}})[0].track);
-}
-
-TEST(YoloColumnsTest, OrElseATrack) {
-  const auto rows = Read({{1}, {-1}, {2}, {}, {1}});
-  EXPECT_EQ(rows[0].track, 1);
-  EXPECT_EQ(rows[1].track, -1);
-  EXPECT_EQ(rows[0].score, 1.0);
-  EXPECT_FALSE(rows[3].track);
-}
-
-TEST(YoloColumnsTest, TwoExtrasInEitherOrder) {
-  const auto ultralytics = Read({{0.5, 3}, {1, 2}, {0.25}, {}});
-  EXPECT_EQ(ultralytics[0].track, 3);
-  EXPECT_EQ(ultralytics[0].score, 0.5);
-  EXPECT_EQ(ultralytics[1].track, 2);
-  EXPECT_EQ(ultralytics[2].score, 0.25);
-  EXPECT_FALSE(ultralytics[2].track);
-  const auto others = Read({{3, 0.5}, {2, 1}});
-  EXPECT_EQ(others[0].track, 3);
-  EXPECT_EQ(others[1].score, 1.0);
-  const auto either = Read({{1, 0}, {0, 1}});
-  EXPECT_EQ(either[1].track, 1);
-  EXPECT_EQ(either[1].score, 0.0);
+TEST(YoloColumnsTest, ExtrasAreConfidencesOrTracks) {
+  using ScoresAndTracks = std::vector<std::pair<double, std::optional<int>>>;
+  constexpr std::optional<int> kNoTrack;
+  for (const auto& [extras, expected] : std::vector<std::pair<Extras, ScoresAndTracks>>{
+           // One extra is a confidence if all can be, or else a track.
+           {{{0.5}, {1}, {}, {0}}, {{0.5, kNoTrack}, {1, kNoTrack}, {1, kNoTrack}, {0, kNoTrack}}},
+           {{{1}, {1}}, {{1, kNoTrack}, {1, kNoTrack}}},
+           {{{1}, {-1}, {2}, {}, {1}}, {{1, 1}, {1, -1}, {1, 2}, {1, kNoTrack}, {1, 1}}},
+           // Two extras are in either order, Ultralytics' where both can be.
+           {{{0.5, 3}, {1, 2}, {0.25}, {}}, {{0.5, 3}, {1, 2}, {0.25, kNoTrack}, {1, kNoTrack}}},
+           {{{3, 0.5}, {2, 1}}, {{0.5, 3}, {1, 2}}},
+           {{{1, 0}, {0, 1}}, {{1, 0}, {0, 1}}}}) {
+    EXPECT_EQ(Read(extras), expected) << testing::PrintToString(extras);
+  }
 }
 
 TEST(YoloColumnsTest, ContradictionsAreNamed) {
-  ExpectRefused({{0.5}, {3}}, {"1.txt:1", "sixth number 3", "confidence from 0 to 1"});
-  ExpectRefused({{0.5}, {1.5}}, {"1.txt:1", "1.5"});
-  ExpectRefused({{3}, {-2}}, {"0.txt:1", "3"});
-  ExpectRefused({{0.5, 3}, {2, 0.5}}, {"1.txt:1", "2 0.5", "one order"});
-  ExpectRefused({{0.2, 0.3}, {0.4, 0.5}}, {"0.txt:1", "0.2 0.3", "segmentation"});
-  ExpectRefused({{0.5, 3}, {4}}, {"1.txt:1", "sixth number 4", "beside a track"});
+  const auto refused = [](const Extras& extras, const std::vector<std::string>& words) {
+    ExpectError<InputError>([&] { Read(extras); }, words);
+  };
+  refused({{0.5}, {3}}, {"1.txt:1", "sixth number 3", "confidence from 0 to 1"});
+  refused({{0.5}, {1.5}}, {"1.txt:1", "1.5"});
+  refused({{3}, {-2}}, {"0.txt:1", "3"});
+  refused({{0.5, 3}, {2, 0.5}}, {"1.txt:1", "2 0.5", "one order"});
+  refused({{0.2, 0.3}, {0.4, 0.5}}, {"0.txt:1", "0.2 0.3", "segmentation"});
+  refused({{0.5, 3}, {4}}, {"1.txt:1", "sixth number 4", "beside a track"});
 }
 
 TEST(YoloColumnsTest, NoImageHasATrackTwice) {
   auto rows = Rows({{97}, {88}, {97}});
-  rows[2].image = rows[0].image;
+  rows[2].box.frame = rows[0].box.frame;
   ExpectError<InputError>([&] { ReadYoloExtras(&rows); }, {"2.txt:1", "97 twice in one image"});
 }
 
@@ -137,9 +124,6 @@ class YoloBoxesTest : public FolderTest {
  protected:
   std::vector<LabelledBox> Normalised() {
     return ReadNormalisedYoloBoxes(ReadYoloTexts(folder_.path()), kLabels, 640, 480, &mended_);
-  }
-  std::vector<LabelledBox> Pixels() {
-    return ReadPixelYoloBoxes(ReadYoloTexts(folder_.path()), kLabels);
   }
   RejectionCounts mended_;
 };
@@ -168,7 +152,7 @@ TEST_F(YoloBoxesTest, BadPixelLinesAreNamed) {
                           {"0 0.5 0.25 0.125 0.5", {"at most 1", "pixels"}}};
   ExpectBadTexts(cases, "a.txt:1", [&](const std::string& line) {
     Write("a.txt", line);
-    Pixels();
+    ReadPixelYoloBoxes(ReadYoloTexts(folder_.path()), kLabels);
   });
 }
 
