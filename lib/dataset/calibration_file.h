@@ -16,6 +16,8 @@ namespace soslam {
 struct LensCamera {
   Camera camera;
   std::optional<Distortion> distortion;  // none: no distortion
+
+  bool operator==(const LensCamera&) const = default;
 };
 
 // Distortion from the name of a model and its coefficients, in OpenCV's order: 4, 5, 8, 12 or 14 of

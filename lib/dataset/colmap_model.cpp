@@ -9,7 +9,6 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <map>
 #include <utility>
 
@@ -26,7 +25,7 @@ namespace {
 struct ColmapCameraModel {
   int id;  // in binary files
   const char* name;
-  std::vector<const char*> parameters;
+  std::vector<const char*> parameters;  // none where OpenCV's lens model does not include it
 };
 
 const std::vector<ColmapCameraModel> kModels = {
@@ -35,54 +34,42 @@ const std::vector<ColmapCameraModel> kModels = {
     {2, "SIMPLE_RADIAL", {"f", "cx", "cy", "k1"}},
     {3, "RADIAL", {"f", "cx", "cy", "k1", "k2"}},
     {4, "OPENCV", {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2"}},
-    {6, "FULL_OPENCV", {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"}}};
+    {5, "OPENCV_FISHEYE", {}},
+    {6, "FULL_OPENCV", {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"}},
+    {7, "FOV", {}},
+    {8, "SIMPLE_RADIAL_FISHEYE", {}},
+    {9, "RADIAL_FISHEYE", {}},
+    {10, "THIN_PRISM_FISHEYE", {}},
+    {11, "RAD_TAN_THIN_PRISM_FISHEYE", {}}};
 
-[[noreturn]] void RefuseColmapModel(const std::string& model, const std::string& place) {
+using FoundModel = std::vector<ColmapCameraModel>::const_iterator;
+
+// Throws InputError, naming `place`, for a model that OpenCV's lens model does not include; `other`
+// stands for one that is not among kModels.
+const ColmapCameraModel& SupportedModel(FoundModel found, const std::string& other,
+                                        const std::string& place) {
+  if (found != kModels.end() && !found->parameters.empty()) return *found;
   std::vector<std::string> names;
-  for (const ColmapCameraModel& known : kModels) names.emplace_back(known.name);
+  for (const ColmapCameraModel& model : kModels) {
+    if (!model.parameters.empty()) names.emplace_back(model.name);
+  }
   throw InputError(fmt::format(
       "{}: camera model {} is not supported; expected one of {}; undistort the images first: "
       "colmap image_undistorter writes them with a model of PINHOLE cameras",
-      place, model, fmt::join(names, ", ")));
-}
-
-// The value of a parameter; 0 if the model has none of this name.
-double ValueOf(const char* name, const ColmapCameraModel& model, std::span<const double> values) {
-  for (size_t i = 0; i < values.size(); ++i) {
-    if (std::string_view(model.parameters[i]) == name) return values[i];
-  }
-  return 0.0;
-}
-
-// Throws InputError, naming `place`, for a model that OpenCV's lens model does not include.
-const ColmapCameraModel& FindColmapCameraModel(std::string_view name, const std::string& place) {
-  const auto found = std::ranges::find(kModels, name, &ColmapCameraModel::name);
-  if (found == kModels.end()) RefuseColmapModel(fmt::format("'{}'", name), place);
-  return *found;
-}
-
-const ColmapCameraModel& FindColmapCameraModel(int id, const std::string& place) {
-  const auto found = std::ranges::find(kModels, id, &ColmapCameraModel::id);
-  if (found != kModels.end()) return *found;
-  const std::vector<std::pair<int, const char*>> others = {
-      {5, "OPENCV_FISHEYE"},        {7, "FOV"},
-      {8, "SIMPLE_RADIAL_FISHEYE"}, {9, "RADIAL_FISHEYE"},
-      {10, "THIN_PRISM_FISHEYE"},   {11, "RAD_TAN_THIN_PRISM_FISHEYE"}};
-  const auto other = std::ranges::find(others, id, &std::pair<int, const char*>::first);
-  RefuseColmapModel(other != others.end() ? fmt::format("'{}'", other->second) : std::to_string(id),
-                    place);
+      place, found == kModels.end() ? other : fmt::format("'{}'", found->name),
+      fmt::join(names, ", ")));
 }
 
 // The camera with these parameters, one per name. Throws InputError, naming `place`, for a size or
 // a focal length that no camera has.
 LensCamera CameraOfColmap(const ColmapCameraModel& model, std::int64_t width, std::int64_t height,
                           std::span<const double> parameters, const std::string& place) {
-  const auto value = [&](const char* name) { return ValueOf(name, model, parameters); };
+  const auto value = [&](std::string_view name) {
+    const auto found = std::ranges::find(model.parameters, name);
+    return found == model.parameters.end() ? 0.0 : parameters[found - model.parameters.begin()];
+  };
   const double fx = value("f") + value("fx"), fy = value("f") + value("fy");
-  constexpr std::int64_t kMax = std::numeric_limits<int>::max();
-  const bool is_size = width > 0 && width <= kMax && height > 0 && height <= kMax &&
-                       IsImageSize(static_cast<int>(width), static_cast<int>(height));
-  if (!is_size || !(fx > 0.0) || !(fy > 0.0)) {
+  if (!IsImageSize(width, height) || !(fx > 0.0) || !(fy > 0.0)) {
     throw InputError(place + ": expected width, height and focal length above 0");
   }
   LensCamera read;
@@ -94,11 +81,12 @@ LensCamera CameraOfColmap(const ColmapCameraModel& model, std::int64_t width, st
   return read;
 }
 
-// The pose of an image from a quaternion and a translation of camera_from_world. Throws InputError,
-// naming `place`, for a quaternion that is not of unit length.
-NamedPose PoseOfColmapImage(const Eigen::Vector4d& xyzw, const Eigen::Vector3d& translation,
-                            std::string name, const std::string& place) {
-  const Rigid3d camera_from_world{UnitQuaternion(xyzw, place), translation};
+// The pose of an image from the numbers QW QX QY QZ TX TY TZ of camera_from_world. Throws
+// InputError, naming `place`, for a quaternion that is not of unit length.
+NamedPose PoseOfColmapImage(const std::array<double, 7>& v, std::string name,
+                            const std::string& place) {
+  const Rigid3d camera_from_world{UnitQuaternion({v[1], v[2], v[3], v[0]}, place),
+                                  {v[4], v[5], v[6]}};
   return {place, std::move(name), camera_from_world.Inverse()};
 }
 
@@ -168,7 +156,9 @@ class BinaryReader {
 
 LensCamera TakeCamera(BinaryReader* reader, const std::string& place) {
   reader->Take<std::uint32_t>();  // id
-  const ColmapCameraModel& model = FindColmapCameraModel(reader->Take<std::int32_t>(), place);
+  const auto id = reader->Take<std::int32_t>();
+  const ColmapCameraModel& model = SupportedModel(
+      std::ranges::find(kModels, id, &ColmapCameraModel::id), std::to_string(id), place);
   const auto width = reader->Take<std::int64_t>(), height = reader->Take<std::int64_t>();
   std::vector<double> parameters(model.parameters.size());
   for (double& value : parameters) value = reader->TakeReal(place);
@@ -179,12 +169,10 @@ ColmapImage TakeImage(BinaryReader* reader, const std::string& place) {
   constexpr size_t kBytesOfPixel = 24;
   ColmapImage image;
   image.id = reader->Take<std::uint32_t>();
-  double q[4], t[3];
-  for (double& value : q) value = reader->TakeReal(place);
-  for (double& value : t) value = reader->TakeReal(place);
+  std::array<double, 7> numbers;
+  for (double& value : numbers) value = reader->TakeReal(place);
   reader->Take<std::uint32_t>();  // id of its camera; all are the same
-  const std::string name = reader->TakeText();
-  image.pose = PoseOfColmapImage({q[1], q[2], q[3], q[0]}, {t[0], t[1], t[2]}, name, place);
+  image.pose = PoseOfColmapImage(numbers, reader->TakeText(), place);
   const size_t count = reader->TakeCount(kBytesOfPixel, "image points");
   image.pixels.reserve(count);
   for (size_t i = 0; i < count; ++i) {
@@ -233,7 +221,9 @@ LensCamera ParseColmapCamera(const TextLine& line) {
   if (words.size() < 4) {
     throw InputError(line.place + ": expected CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]");
   }
-  const ColmapCameraModel& model = FindColmapCameraModel(words[1], line.place);
+  const ColmapCameraModel& model =
+      SupportedModel(std::ranges::find(kModels, words[1], &ColmapCameraModel::name),
+                     fmt::format("'{}'", words[1]), line.place);
   if (words.size() != 4 + model.parameters.size()) {
     throw InputError(fmt::format("{}: has {} parameters; expected {} of {}", line.place,
                                  words.size() - 4, model.parameters.size(), model.name));
@@ -256,15 +246,13 @@ ColmapImage ParseImage(const TextLine& line) {
                     "CAMERA_ID NAME, and a line of points below it",
                     line.place, words.size()));
   }
-  const auto v = ParseReals(std::span(words).subspan(1), line.place, kFields);
+  const auto numbers = ParseReals(std::span(words).subspan(1), line.place, kFields);
   ColmapImage image;
   image.id = ParseInteger(words[0], line.place, "IMAGE_ID");
   ParseInteger(words[8], line.place, "CAMERA_ID");
   // The name may contain blanks: it is the rest of the line.
   const auto name = static_cast<size_t>(words[9].data() - line.text.data());
-  image.pose =
-      PoseOfColmapImage({v[1], v[2], v[3], v[0]}, {v[4], v[5], v[6]},
-                        std::string(Trimmed(std::string_view(line.text).substr(name))), line.place);
+  image.pose = PoseOfColmapImage(numbers, line.text.substr(name), line.place);
   return image;
 }
 
@@ -378,9 +366,7 @@ LensCamera ReadColmapCamera(const std::filesystem::path& path) {
     }
   }
   for (size_t i = 1; i < cameras.size(); ++i) {
-    if (cameras[i].camera == cameras[0].camera && cameras[i].distortion == cameras[0].distortion) {
-      continue;
-    }
+    if (cameras[i] == cameras[0]) continue;
     throw InputError(
         fmt::format("{}: camera {} is another camera than the first; expected one for "
                     "all images (COLMAP's --ImageReader.single_camera 1)",
@@ -434,7 +420,7 @@ ColmapCameraText ToColmap(const LensCamera& camera) {
         "has a model of: at most k1 k2 p1 p2 k3 k4 k5 k6");
   }
   const bool is_short = std::all_of(lens.begin() + 4, lens.end(), [](double k) { return k == 0; });
-  values.insert(values.end(), lens.begin(), lens.begin() + (is_short ? 4 : lens.size()));
+  values.insert(values.end(), lens.begin(), lens.end());
   values.resize(is_short ? 8 : 12);
   return {is_short ? "OPENCV" : "FULL_OPENCV", fmt::format("{}", fmt::join(values, ","))};
 }

@@ -21,9 +21,6 @@ class ColmapModelTest : public FolderTest {
   LensCamera Cameras(const std::string& lines) {
     return ReadColmapCamera(Write("cameras.txt", "# Camera list\n" + lines));
   }
-  std::vector<NamedPose> Images(const std::string& lines) {
-    return ReadColmapPoses(Write("images.txt", "# Image list\n" + lines));
-  }
 };
 
 // COLMAP's principal point counts from the corner of the top-left pixel.
@@ -47,59 +44,38 @@ TEST_F(ColmapModelTest, ModelsOfCameras) {
 }
 
 TEST_F(ColmapModelTest, CamerasThatAreNotReadAreNamed) {
-  const auto refused = [&](const std::string& lines, const std::vector<std::string>& words) {
-    ExpectError<InputError>([&] { Cameras(lines); }, words);
-  };
   const std::string first = "1 PINHOLE 640 480 500 510 320 240\n";
   EXPECT_EQ(Cameras(first + "2" + first.substr(1)).camera.fy, 510);
-  refused(first + "2 PINHOLE 640 480 500 511 320 240\n",
-          {"cameras.txt:3", "another camera", "single_camera"});
-  refused("1 OPENCV_FISHEYE 640 480 500 500 320 240 0 0 0 0\n",
-          {"cameras.txt:2", "'OPENCV_FISHEYE' is not supported", "image_undistorter"});
-  refused("1 CUBIC 640 480 500 500 320 240\n", {"'CUBIC'"});
-  refused("1 PINHOLE 640 480 500 320 240\n", {"3 parameters; expected 4 of PINHOLE"});
-  refused("1 PINHOLE 640 0 500 500 320 240\n", {"above 0"});
-  refused("", {"cameras.txt", "no camera"});
-}
-
-// A camera at (1, 2, 3) that looks along the world's x axis: its z is the world's x, its x the
-// world's -y, its y the world's -z. camera_from_world is the quaternion of the inverse turn, and
-// moves the camera's place to the origin.
-TEST_F(ColmapModelTest, PosesAreInvertedAndPointsSkipped) {
-  const auto poses = Images(
-      "1 0.5 0.5 -0.5 0.5 2 3 -1 1 photos/a b.jpg\n"
-      "10.5 20.5 -1 1.5 2.5 7\n"
-      "2 1 0 0 0 -4 0 0 1 c.jpg\n"
-      "\n"
-      "3 1 0 0 0 0 0 0 1 d.jpg\n");
-  ASSERT_EQ(poses.size(), 3u);
-  EXPECT_EQ(poses[0].image, "photos/a b.jpg");
-  EXPECT_EQ(poses[0].place, (folder_ / "images.txt").string() + ":2");
-  const Rigid3d& pose = poses[0].world_from_camera;
-  EXPECT_TRUE(pose.translation.isApprox(Eigen::Vector3d(1, 2, 3)));
-  EXPECT_TRUE((pose * Eigen::Vector3d(0, 0, 5)).isApprox(Eigen::Vector3d(6, 2, 3)));
-  EXPECT_TRUE((pose * Eigen::Vector3d(5, 0, 0)).isApprox(Eigen::Vector3d(1, -3, 3)));
-  EXPECT_EQ(poses[1].image, "c.jpg");
-  EXPECT_EQ(poses[1].world_from_camera.translation.x(), 4.0);
-  EXPECT_EQ(poses[2].image, "d.jpg");
+  ExpectBadTexts(
+      {{first + "2 PINHOLE 640 480 500 511 320 240\n", {":3", "another camera", "single_camera"}},
+       {"1 OPENCV_FISHEYE 640 480 500 500 320 240 0 0 0 0\n",
+        {":2", "'OPENCV_FISHEYE' is not supported", "image_undistorter"}},
+       {"1 CUBIC 640 480 500 500 320 240\n", {"'CUBIC'"}},
+       {"1 PINHOLE 640 480 500 320 240\n", {"3 parameters; expected 4 of PINHOLE"}},
+       {"1 PINHOLE 640 0 500 500 320 240\n", {"above 0"}},
+       {"", {"no camera"}}},
+      "cameras.txt", [&](const std::string& lines) { Cameras(lines); });
 }
 
 TEST_F(ColmapModelTest, BadPosesAreNamed) {
-  const auto refused = [&](const std::string& lines, const std::vector<std::string>& words) {
-    ExpectError<InputError>([&] { Images(lines); }, words);
-  };
-  refused("1 0.5 0.5 0.5 0.5 3 -1 2 a.jpg\n", {"images.txt:2", "9 words", "NAME"});
-  refused("1 0.5 0.5 0.5 0.6 3 -1 2 1 a.jpg\n", {"images.txt:2", "norm"});
-  refused("1 0.5 x 0.5 0.5 3 -1 2 1 a.jpg\n", {"images.txt:2", "QX is 'x'"});
-  refused("a 1 0 0 0 0 0 0 1 a.jpg\n", {"IMAGE_ID"});
-  refused("", {"images.txt", "no pose"});
+  ExpectBadTexts({{"1 0.5 0.5 0.5 0.5 3 -1 2 a.jpg\n", {":2", "9 words", "NAME"}},
+                  {"1 0.5 0.5 0.5 0.6 3 -1 2 1 a.jpg\n", {":2", "norm"}},
+                  {"1 0.5 x 0.5 0.5 3 -1 2 1 a.jpg\n", {":2", "QX is 'x'"}},
+                  {"a 1 0 0 0 0 0 0 1 a.jpg\n", {"IMAGE_ID"}},
+                  {"", {"no pose"}}},
+                 "images.txt", [&](const std::string& lines) {
+                   ReadColmapPoses(Write("images.txt", "# Image list\n" + lines));
+                 });
 }
 
 // Bytes before numbers of the first camera and of the first point.
 constexpr size_t kModelOfCamera = 12, kFocalLengthOfCamera = 32;
 constexpr size_t kZOfPoint = 32, kImageOfPoint = 59;
 
-// Two images and two points, in both formats; the second point comes first.
+// Two images and two points, in both formats; the second point comes first. The first image is that
+// of a camera at (1, 2, 3) that looks along the world's x axis: its z is the world's x, its x the
+// world's -y, its y the world's -z. camera_from_world is the quaternion of the inverse turn, and
+// moves the camera's place to the origin.
 class WholeModelTest : public FolderTest {
  protected:
   WholeModelTest() {
@@ -136,8 +112,11 @@ class WholeModelTest : public FolderTest {
     ASSERT_EQ(model.images.size(), 2u);
     EXPECT_EQ(model.images[0].id, 3);
     EXPECT_EQ(model.images[0].pose.image, "rgb/a b.jpg");
-    EXPECT_TRUE(
-        model.images[0].pose.world_from_camera.translation.isApprox(Eigen::Vector3d(1, 2, 3)));
+    const Rigid3d& pose = model.images[0].pose.world_from_camera;
+    EXPECT_TRUE(pose.translation.isApprox(Eigen::Vector3d(1, 2, 3)));
+    EXPECT_TRUE((pose * Eigen::Vector3d(0, 0, 5)).isApprox(Eigen::Vector3d(6, 2, 3)));
+    EXPECT_TRUE((pose * Eigen::Vector3d(5, 0, 0)).isApprox(Eigen::Vector3d(1, -3, 3)));
+    EXPECT_EQ(model.images[1].pose.world_from_camera.translation.x(), 4.0);
     ASSERT_EQ(model.images[0].pixels.size(), 2u);
     EXPECT_EQ(model.images[0].pixels[1], Eigen::Vector2d(1, 2)) << "from the centre of a pixel";
     ASSERT_EQ(model.points.size(), 2u);
