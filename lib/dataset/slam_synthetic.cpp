@@ -46,7 +46,7 @@ class Problem {
   }
 
  private:
-  int Id(size_t number) const { return number_ * kIdsPerProblem + static_cast<int>(number); }
+  int Id(int number) const { return number_ * kIdsPerProblem + number; }
   std::string Place(const char* list) const { return fmt::format("{}#/{}", file_.string(), list); }
 
   const json& ShortList(const char* name) const {
@@ -73,16 +73,16 @@ class Problem {
     if (content_->frames.empty()) content_->sequence.camera = camera;
     const auto truth = Poses("T_wc");
     const auto odometry = Poses("init_T_wc");
-    frames_ = truth.size();
-    if (odometry.size() != frames_) {
+    frames_ = static_cast<int>(truth.size());
+    if (odometry.size() != truth.size()) {
       throw InputError(fmt::format("{}: init_T_wc has {} poses; expected {}, as many as T_wc",
                                    file_.string(), odometry.size(), frames_));
     }
     const bool wants_odometry = options_.trajectory == TrajectorySource::kOdometry;
-    for (size_t i = 0; i < frames_; ++i) {
+    for (int i = 0; i < frames_; ++i) {
       Frame frame;
       frame.id = Id(i);
-      frame.timestamp = static_cast<double>(i);
+      frame.timestamp = i;
       frame.world_from_camera = wants_odometry ? odometry[i] : truth[i];
       frame.true_world_from_camera = truth[i];
       frame.segment = number_;
@@ -116,12 +116,10 @@ class Problem {
   }
 
   // An index in a list of this size.
-  static size_t Index(const JsonEntry& entry, const char* field, size_t size) {
+  static int Index(const JsonEntry& entry, const char* field, int size) {
     const int index = entry.Integer(field);
-    if (index < 0 || index >= static_cast<int>(size)) {
-      entry.Refuse(field, fmt::format("0 to {}", static_cast<int>(size) - 1));
-    }
-    return static_cast<size_t>(index);
+    if (index < 0 || index >= size) entry.Refuse(field, fmt::format("0 to {}", size - 1));
+    return index;
   }
 
   void AddRows() {
@@ -139,15 +137,13 @@ class Problem {
   DatasetContent* content_;
   json document_;
   JsonEntry entry_;
-  size_t frames_ = 0;
-  size_t objects_ = 0;
+  int frames_ = 0;
+  int objects_ = 0;
 };
 
 std::vector<fs::path> ProblemFiles(const fs::path& folder) {
-  std::vector<fs::path> files;
-  for (const fs::path& entry : FolderEntries(folder)) {
-    if (entry.extension() == ".json") files.push_back(entry);
-  }
+  std::vector<fs::path> files = FolderEntries(folder);
+  std::erase_if(files, [](const fs::path& file) { return file.extension() != ".json"; });
   if (files.empty()) {
     throw InputError(folder.string() + ": has no *.json; expected one for each problem");
   }
@@ -158,8 +154,7 @@ std::vector<fs::path> ProblemFiles(const fs::path& folder) {
 
 DatasetContent ReadSlamSynthetic(const fs::path& folder, const ImportOptions& options) {
   const std::vector<fs::path> files = ProblemFiles(folder);
-  const std::string& names = options.kitti.sequences;
-  const auto chosen = SplitWords(names);
+  const auto chosen = SplitWords(options.kitti.sequences);
   for (const std::string_view name : chosen) {
     if (std::ranges::find(files, name, [](const fs::path& file) { return file.stem(); }) !=
         files.end()) {
@@ -171,7 +166,7 @@ DatasetContent ReadSlamSynthetic(const fs::path& folder, const ImportOptions& op
   content.has_true_poses = true;
   for (size_t i = 0; i < files.size(); ++i) {
     const bool is_chosen =
-        chosen.empty() || std::ranges::find(chosen, files[i].stem().string()) != chosen.end();
+        chosen.empty() || std::ranges::find(chosen, files[i].stem()) != chosen.end();
     if (is_chosen) Problem(files[i], static_cast<int>(i), options, &content).Add();
   }
   return content;

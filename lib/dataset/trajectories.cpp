@@ -102,11 +102,8 @@ std::vector<TimedPose> SortedTrajectory(std::vector<TimedPose> trajectory,
     throw InputError(fmt::format("{}: timestamp {} twice with different poses; expected one pose",
                                  path.string(), twice->timestamp));
   }
-  const auto is_repeated = [](const TimedPose& a, const TimedPose& b) {
-    return a.timestamp == b.timestamp;
-  };
-  trajectory.erase(std::unique(trajectory.begin(), trajectory.end(), is_repeated),
-                   trajectory.end());
+  const auto repeated = std::ranges::unique(trajectory, {}, &TimedPose::timestamp);
+  trajectory.erase(repeated.begin(), repeated.end());
   return trajectory;
 }
 
@@ -164,13 +161,10 @@ std::optional<TimedPose> NearestPose(const std::vector<TimedPose>& trajectory, d
     return std::abs(pose.timestamp - timestamp);
   };
   const auto after = std::ranges::lower_bound(trajectory, timestamp, {}, &TimedPose::timestamp);
-  auto nearest = after;
-  if (after == trajectory.end() ||
-      (after != trajectory.begin() && difference(*std::prev(after)) <= difference(*after))) {
-    if (after == trajectory.begin()) return std::nullopt;
-    nearest = std::prev(after);
-  }
-  if (difference(*nearest) > max_difference_s) return std::nullopt;
+  const auto from = after == trajectory.begin() ? after : after - 1;
+  const auto to = after == trajectory.end() ? after : after + 1;
+  const auto nearest = std::ranges::min_element(from, to, {}, difference);
+  if (nearest == to || difference(*nearest) > max_difference_s) return std::nullopt;
   return *nearest;
 }
 
