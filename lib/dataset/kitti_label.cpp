@@ -248,15 +248,19 @@ Camera WithImageSize(Camera camera, const std::optional<fs::path>& image,
   return camera;
 }
 
+Eigen::Quaterniond UprightRotation(const Eigen::Vector3d& front, const Eigen::Vector3d& up) {
+  Eigen::Matrix3d rotation;
+  rotation << front, up.cross(front), up;
+  return Eigen::Quaterniond(rotation).normalized();
+}
+
 Landmark LandmarkInCamera(const KittiLabel& label, const KittiCalibration& calibration) {
   const Eigen::Vector3d up = -Eigen::Vector3d::UnitY();
   const Eigen::Vector3d front(std::cos(label.rotation_y), 0.0, -std::sin(label.rotation_y));
-  Eigen::Matrix3d rotation;
-  rotation << front, up.cross(front), up;
   Landmark landmark;
   landmark.half_axes = 0.5 * Eigen::Vector3d(label.size[2], label.size[1], label.size[0]);
   landmark.frame_from_object = {
-      Eigen::Quaterniond(rotation).normalized(),
+      UprightRotation(front, up),
       label.bottom_centre + calibration.camera2_from_camera0 + landmark.half_axes.z() * up};
   landmark.shape_exponents = kCuboidExponent;
   return landmark;

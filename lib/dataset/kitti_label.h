@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -108,6 +109,9 @@ std::filesystem::path RequiredFile(const std::filesystem::path& path);
 Camera WithImageSize(Camera camera, const std::optional<std::filesystem::path>& image,
                      ImageOrientation orientation, const RecordingValues& image_size,
                      int recording);
+
+// Rotation from an object frame with these directions of its front (x) and of up (z).
+Eigen::Quaterniond UprightRotation(const Eigen::Vector3d& front, const Eigen::Vector3d& up);
 
 // The labelled cuboid in the frame of camera 2: x along the length, z up.
 Landmark LandmarkInCamera(const KittiLabel& label, const KittiCalibration& calibration);

@@ -41,11 +41,8 @@ Landmark MedianLandmark(const std::vector<Landmark>& landmarks) {
   }
   up.normalize();
   front = (front - front.dot(up) * up).normalized();
-  Eigen::Matrix3d rotation;
-  rotation << front, up.cross(front), up;
   Landmark median = landmarks.front();
-  median.frame_from_object = {Eigen::Quaterniond(rotation).normalized(),
-                              Median(landmarks, &Landmark::Centre)};
+  median.frame_from_object = {UprightRotation(front, up), Median(landmarks, &Landmark::Centre)};
   median.half_axes = Median(landmarks, &Landmark::half_axes);
   return median;
 }
@@ -198,39 +195,37 @@ class Recording {
   }
 
   void AddFoundBoxes(const fs::path& folder_of_type) {
-    const std::string type = folder_of_type.filename().string();
     std::map<int, std::vector<LabelledBox>> found_by_frame;
     for (LabelledBox& found : ReadKittiBoxes(Read(folder_of_type / file_))) {
       found_by_frame[std::get<int>(found.frame)].push_back(std::move(found));
     }
-    std::map<int, std::vector<const KittiLabel*>> labels_by_frame;
-    for (const KittiLabel& label : labels_) {
-      if (label.type == type) labels_by_frame[label.frame].push_back(&label);
-    }
-    for (const auto& [frame, found] : found_by_frame) {
-      AddMatches(LowerCase(type), found, labels_by_frame[frame]);
-    }
+    for (const auto& [frame, found] : found_by_frame) AddMatches(frame, found);
   }
 
-  void AddMatches(const std::string& label_of_type, const std::vector<LabelledBox>& found,
-                  const std::vector<const KittiLabel*>& labels) {
+  // `found`: the boxes of one type in this frame.
+  void AddMatches(int frame, const std::vector<LabelledBox>& found) {
+    std::vector<const KittiLabel*> labels;
     std::vector<Box> given;
-    for (const KittiLabel* label : labels) given.push_back(label->box);
+    for (const KittiLabel& label : labels_) {
+      if (label.frame != frame || label.type != found.front().label) continue;
+      labels.push_back(&label);
+      given.push_back(label.box);
+    }
     const auto matches = MatchBoxes(found, given, options_.kitti.match_min_iou);
     for (size_t i = 0; i < matches.size(); ++i) {
       if (matches[i]) {
         AddRow(*labels[*matches[i]], found[i].box, found[i].score);
       } else {
-        Reject(label_of_type, found[i]);
+        Reject(frame, found[i]);
       }
     }
   }
 
-  void Reject(const std::string& label, const LabelledBox& found) {
-    const int frame = std::get<int>(found.frame);
+  void Reject(int frame, const LabelledBox& found) {
     if (frame < static_cast<int>(poses_.size())) {
-      content_->rejected.Add({found.place, Id(frame), kNoObject, label, found.score, found.box},
-                             RejectReason::kMatchesNoLabel);
+      content_->rejected.Add(
+          {found.place, Id(frame), kNoObject, LowerCase(found.label), found.score, found.box},
+          RejectReason::kMatchesNoLabel);
     } else {
       ++content_->rejected.counts[RejectReasonName(RejectReason::kMatchesNoLabel)];
     }

@@ -46,6 +46,7 @@ TEST_F(KittiTrackingTest, EachRecordingIsASegment) {
   const Sequence sequence = Import();
   EXPECT_EQ(sequence.name, folder_.path().filename());
   EXPECT_EQ(sequence.camera.width, 1242);
+  EXPECT_EQ(sequence.camera.height, 375);
   EXPECT_EQ(sequence.camera.fx, kKittiFocal);
   ASSERT_EQ(sequence.frames.size(), 8u);
   EXPECT_EQ(sequence.frames[2].id, 30002);
@@ -118,8 +119,10 @@ TEST_F(KittiTrackingTest, WhatIsTrueDoesNotDependOnWhatIsDetected) {
 TEST_F(KittiTrackingTest, SomeRecordingsOnly) {
   options_.kitti.sequences = "0005-0009";
   EXPECT_EQ(Import().frames.size(), 4u);
-  options_.kitti.sequences = "0003 0003-0007";
+  options_.kitti.sequences = " 0003-0007";
   EXPECT_EQ(Import().frames.size(), 8u);
+  options_.kitti.sequences = "0003  0003-0006 ";
+  EXPECT_EQ(Import().frames.size(), 4u);
   options_.kitti.sequences = "0004";
   ExpectRefused<SettingsError>({"sequences", "0004"});
 }
