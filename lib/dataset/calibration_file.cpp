@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <initializer_list>
-#include <iterator>
 #include <map>
 #include <set>
 #include <vector>
@@ -39,9 +38,8 @@ const std::map<std::vector<size_t>, std::set<std::string>> kLensModels = {
 
 // Normalised model name: lower case, without word separators.
 std::string PlainName(const std::string& model) {
-  std::string name;
-  std::ranges::copy_if(LowerCase(model), std::back_inserter(name),
-                       [](char c) { return c != '_' && c != '-' && c != ' '; });
+  std::string name = LowerCase(model);
+  std::erase_if(name, [](char c) { return c == '_' || c == '-' || c == ' '; });
   return name;
 }
 
@@ -55,17 +53,14 @@ bool IsWideAngle(const std::string& plain_name) {
 }
 
 [[noreturn]] void RefuseModel(const std::string& model, const std::string& place) {
-  if (IsWideAngle(PlainName(model))) {
-    throw InputError(fmt::format(
-        "{}: lens model '{}' is not supported; expected OpenCV's for pinhole cameras: undistort "
-        "the images first (cv::fisheye::undistortImage, COLMAP's image_undistorter) and give the "
-        "camera of the undistorted ones",
-        place, model));
-  }
-  throw InputError(
-      fmt::format("{}: lens model '{}' is not known; expected pinhole, opencv, plumb_bob, radtan, "
-                  "rational_polynomial or none: OpenCV's for pinhole cameras",
-                  place, model));
+  throw InputError(fmt::format(
+      "{}: lens model '{}' is not {}", place, model,
+      IsWideAngle(PlainName(model))
+          ? "supported; expected OpenCV's for pinhole cameras: undistort the images first "
+            "(cv::fisheye::undistortImage, COLMAP's image_undistorter) and give the camera of the "
+            "undistorted ones"
+          : "known; expected pinhole, opencv, plumb_bob, radtan, rational_polynomial or none: "
+            "OpenCV's for pinhole cameras"));
 }
 
 }  // namespace
@@ -191,6 +186,7 @@ class CalibrationReader {
     if (values == nullptr) Refuse(fmt::format("{} is missing", key));
     return Numbers(*values, key, 1).front();
   }
+  double NumberOrZero(const char* key) const { return Find({key}) == nullptr ? 0.0 : Number(key); }
 
   std::array<int, 2> Size() const {
     Values size;
@@ -235,14 +231,13 @@ class CalibrationReader {
   // Refuses ROS' region of interest and binning, with which the camera differs from that of the
   // whole image.
   void RefusePartsOfImages(int width, int height) const {
-    const auto number = [&](const char* key) { return Find({key}) == nullptr ? 0.0 : Number(key); };
     for (const char* key : {"binningx", "binningy"}) {
-      if (number(key) <= 1.0) continue;
+      if (NumberOrZero(key) <= 1.0) continue;
       Refuse(fmt::format("{} is {}; expected 0 or 1: no binning of pixels", names_.at(key),
-                         number(key)));
+                         NumberOrZero(key)));
     }
-    const std::array roi = {number("roi.xoffset"), number("roi.yoffset"), number("roi.width"),
-                            number("roi.height")};
+    const std::array roi = {NumberOrZero("roi.xoffset"), NumberOrZero("roi.yoffset"),
+                            NumberOrZero("roi.width"), NumberOrZero("roi.height")};
     if (roi[2] == 0.0 && roi[3] == 0.0) return;
     if (roi != std::array{0.0, 0.0, 1.0 * width, 1.0 * height}) {
       Refuse(fmt::format("roi is {}; expected the whole image, 0 0 {} {} or 0 0 0 0",
@@ -280,7 +275,7 @@ class CalibrationReader {
     if (values != nullptr) return Numbers(*values, "distortion coefficients");
     std::vector<double> coefficients;
     for (const char* key : {"camera.k1", "camera.k2", "camera.p1", "camera.p2", "camera.k3"}) {
-      coefficients.push_back(Find({key}) == nullptr ? 0.0 : Number(key));
+      coefficients.push_back(NumberOrZero(key));
     }
     return coefficients;
   }
@@ -303,26 +298,17 @@ class CalibrationReader {
 
 }  // namespace
 
-Calibration ReadCalibration(const std::filesystem::path& path) {
-  const std::string text = ReadWholeFile(path), name = path.string();
-  return CalibrationReader(
-             path.extension() == ".xml" ? XmlFields(text, name) : YamlFields(text, name), name)
-      .Read();
-}
-
 Calibration ReadCameraFile(const std::filesystem::path& path) {
-  const std::string extension = path.extension().string();
-  if (extension == ".yaml" || extension == ".yml" || extension == ".xml") {
-    return ReadCalibration(path);
+  const std::string extension = path.extension().string(), name = path.string();
+  if (extension == ".xml") {
+    return CalibrationReader(XmlFields(ReadWholeFile(path), name), name).Read();
   }
-  Calibration read;
-  if (extension == ".txt" || extension == ".bin") {
-    read.camera = ReadColmapCamera(path);
-  } else {
-    const auto of_nerfstudio = ReadNerfstudioCamera(path);
-    read.camera = of_nerfstudio ? *of_nerfstudio : ReadCamera(path);
+  if (extension == ".yaml" || extension == ".yml") {
+    return CalibrationReader(YamlFields(ReadWholeFile(path), name), name).Read();
   }
-  return read;
+  if (extension == ".txt" || extension == ".bin") return {ReadColmapCamera(path), std::nullopt};
+  const auto of_nerfstudio = ReadNerfstudioCamera(path);
+  return {of_nerfstudio ? *of_nerfstudio : ReadCamera(path), std::nullopt};
 }
 
 }  // namespace soslam

@@ -37,8 +37,9 @@ struct Calibration {
   std::optional<Rigid3d> body_from_camera;
 };
 
-// Reads a camera from YAML (.yaml, .yml) or XML (.xml). Field names are matched without capitals
-// and underscores:
+// Reads a camera file; the format follows from its name: .txt or .bin (ReadColmapCamera), .yaml,
+// .yml or .xml, otherwise JSON: nerfstudio's if it has "frames" or "fl_x", or a camera.json
+// (ReadCamera). Field names of YAML and XML are matched without capitals and underscores:
 //
 //   size        image_width and image_height (ROS, OpenCV), width and height, resolution (EuRoC,
 //               Kalibr)
@@ -52,11 +53,6 @@ struct Calibration {
 // settings. Other fields are ignored. Throws InputError, naming the field, for a missing field, a
 // skew or a transposed matrix, a fisheye_model, distortion coefficients by other names, and ROS'
 // binning and roi.
-Calibration ReadCalibration(const std::filesystem::path& path);
-
-// Reads a camera file; the format follows from its name: .yaml, .yml, .xml (ReadCalibration), .txt
-// or .bin (ReadColmapCamera), otherwise JSON: nerfstudio's if it has "frames"
-// or "fl_x", or a camera.json (ReadCamera). Throws InputError.
 Calibration ReadCameraFile(const std::filesystem::path& path);
 
 }  // namespace soslam
