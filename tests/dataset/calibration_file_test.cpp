@@ -57,63 +57,6 @@ TEST(LensCameraTest, NumbersOfCoefficientsAreThoseOfTheModel) {
   ExpectLensRefused("none", kFour, {"'none'", "none but 0"});
 }
 
-// A CameraInfo in the format of `ros2 topic echo`.
-constexpr const char* kRosMessage = R"(header:
-  stamp:
-    sec: 1
-  frame_id: camera
-height: 480
-width: 640
-distortion_model: rational_polynomial
-d: [1, 2, 3, 4, 5, 6, 7, 8]
-k:
-- 500.0
-- 0.0
-- 319.5
-- 0.0
-- 510.0
-- 239.5
-- 0.0
-- 0.0
-- 1.0
----
-)";
-
-constexpr const char* kOpenCv = R"(%YAML:1.0
----
-calibration_time: "Wed 25 Nov 2026"
-image_width: 640
-image_height: 480
-camera_matrix: !!opencv-matrix
-   rows: 3
-   cols: 3
-   dt: d
-   data: [ 500., 0., 3.195e+02, 0., 510.,
-       239.5, 0., 0., 1. ]
-distortion_coefficients: !!opencv-matrix
-   rows: 5
-   cols: 1
-   dt: d
-   data: [ 0.1, -0.2, 0.003, -0.004, 0.5 ]
-)";
-
-constexpr const char* kEuroc = R"(sensor_type: camera
-comment: VI-Sensor cam0
-T_BS:
-  cols: 4
-  rows: 4
-  data: [0.0, -1.0, 0.0, -0.02,
-         1.0, 0.0, 0.0, -0.06,
-         0.0, 0.0, 1.0, 0.01,
-         0.0, 0.0, 0.0, 1.0]
-rate_hz: 20
-resolution: [640, 480]
-camera_model: pinhole
-intrinsics: [500, 510, 319.5, 239.5] #fu, fv, cu, cv
-distortion_model: radial-tangential
-distortion_coefficients: [0.1, -0.2, 0.003, -0.004]
-)";
-
 constexpr const char* kOrbSlam = R"(%YAML:1.0
 Camera.type: "PinHole"
 Camera1.fx: 500
@@ -133,19 +76,6 @@ constexpr const char* kDistCoeff = R"(width: 640
 height: 480
 K: [500, 0, 319.5, 0, 510, 239.5, 0, 0, 1]
 dist_coeff: [[0.1, -0.2, 0.003, -0.004]]
-)";
-
-constexpr const char* kOpenCvXml = R"(<?xml version="1.0"?>
-<opencv_storage>
-<image_Width>640</image_Width>
-<image_Height>480</image_Height>
-<Camera_Matrix type_id="opencv-matrix">
-  <rows>3</rows><cols>3</cols><dt>d</dt>
-  <data>500. 0. 319.5 0. 510. 239.5 0. 0. 1.</data></Camera_Matrix>
-<Distortion_Coefficients type_id="opencv-matrix">
-  <rows>5</rows><cols>1</cols><dt>d</dt>
-  <data>0.1 -0.2 0.003 -0.004 0.5</data></Distortion_Coefficients>
-</opencv_storage>
 )";
 
 const Camera kCamera = {640, 480, 500, 510, 319.5, 239.5};
@@ -175,11 +105,10 @@ TEST_F(CalibrationFileTest, AllToolsSayTheSameCamera) {
   for (const auto& [text, name, distortion] :
        std::vector<std::tuple<std::string, const char*, Distortion>>{
            {ros_, "ros.yaml", lens},
-           {kRosMessage, "info.yml", {1, 2, 3, 4, 5, 6, 7, 8}},
-           {kOpenCv, "opencv.yml", lens},
-           {kOpenCvXml, "opencv.xml", lens},
+           {InCorpus("ros_message.yaml"), "info.yml", {0.1, -0.2}},
+           {InCorpus("opencv.xml"), "opencv.xml", lens},
            {kalibr_, "camchain.yaml", lens_of_four},
-           {kEuroc, "sensor.yaml", lens_of_four},
+           {InCorpus("euroc.yaml"), "sensor.yaml", lens_of_four},
            {kOrbSlam, "orb.yaml", lens_of_four},
            {kDistCoeff, "dist_coeff.yaml", lens_of_four}}) {
     const LensCamera read = Read(text, name).camera;
@@ -190,7 +119,7 @@ TEST_F(CalibrationFileTest, AllToolsSayTheSameCamera) {
 
 TEST_F(CalibrationFileTest, EurocAndKalibrSayWhereTheCameraIs) {
   EXPECT_FALSE(Read(ros_).body_from_camera);
-  for (const std::string& text : {std::string(kEuroc), kalibr_}) {
+  for (const std::string& text : {InCorpus("euroc.yaml"), kalibr_}) {
     const auto body_from_camera = Read(text).body_from_camera;
     ASSERT_TRUE(body_from_camera) << text;
     EXPECT_TRUE(
