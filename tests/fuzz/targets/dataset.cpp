@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <nlohmann/json.hpp>
+
 #include "artefact/files.h"
+#include "base/options.h"
 #include "dataset/calibration_file.h"
 #include "dataset/class_names.h"
 #include "dataset/colmap_model.h"
@@ -15,9 +18,13 @@
 namespace soslam {
 namespace {
 
-// What is imported can be written, and what is written can be read.
-FuzzTarget::Read Import(const ImportOptions& options) {
+// An import with these settings. What is imported can be written, and what is written can be read.
+FuzzTarget::Read Import(const char* settings) {
   return [=](const HostileInput& input) {
+    ImportOptions options;
+    options.border_px = 0.0;
+    options.min_observations = 1;
+    OptionsFromJson(nlohmann::json::parse(settings), "import", &options);
     const auto folder = input.AsFolder();
     Sequence sequence;
     if (!IsAccepted(folder, [&] { sequence = ImportDataset(folder, options); })) return;
@@ -27,54 +34,20 @@ FuzzTarget::Read Import(const ImportOptions& options) {
   };
 }
 
-ImportOptions OfFormat(DatasetFormat format) {
-  ImportOptions options;
-  options.format = format;
-  options.border_px = 0.0;
-  options.min_observations = 1;
-  return options;
-}
-
-ImportOptions OfTumRgbd() {
-  ImportOptions options = OfFormat(DatasetFormat::kTumRgbd);
-  options.folder.align_odometry = true;
-  return options;
-}
-
-ImportOptions OfKittiDetector() {
-  ImportOptions options = OfFormat(DatasetFormat::kKittiTracking);
-  options.detections = "detector";
-  return options;
-}
-
-ImportOptions OfDetections(DetectionsFormat format, const std::string& detections,
-                           const std::string& class_names = "") {
-  ImportOptions options = OfFormat(DatasetFormat::kSoslam);
-  options.detections = detections;
-  options.folder.detections_format = format;
-  options.folder.class_names = class_names;
-  return options;
-}
-
-ImportOptions OfNerfstudio() {
-  ImportOptions options = OfFormat(DatasetFormat::kSoslam);
-  options.folder.images = options.folder.odometry = options.folder.camera_file = "transforms.json";
-  options.folder.trajectory_format = TrajectoryFormat::kNerfstudio;
-  return options;
-}
-
 const FuzzTarget kImports[] = {
-    {"import_soslam", Import(OfFormat(DatasetFormat::kSoslam))},
-    {"import_tum_rgbd", Import(OfTumRgbd())},
-    {"import_icl_nuim", Import(OfFormat(DatasetFormat::kIclNuim))},
-    {"import_kitti_tracking", Import(OfFormat(DatasetFormat::kKittiTracking))},
-    {"import_kitti_detector", Import(OfKittiDetector())},
-    {"import_kitti_object", Import(OfFormat(DatasetFormat::kKittiObject))},
-    {"import_slam_synthetic", Import(OfFormat(DatasetFormat::kSlamSynthetic))},
-    {"import_yolo", Import(OfDetections(DetectionsFormat::kYolo, "boxes"))},
-    {"import_coco", Import(OfDetections(DetectionsFormat::kCoco, "boxes.json", "names.json"))},
-    {"import_kitti_classes", Import(OfDetections(DetectionsFormat::kKitti, "boxes"))},
-    {"import_nerfstudio", Import(OfNerfstudio())}};
+    {"import_soslam", Import("{}")},
+    {"import_tum_rgbd", Import(R"({"format": "tum_rgbd", "align_odometry": true})")},
+    {"import_icl_nuim", Import(R"({"format": "icl_nuim"})")},
+    {"import_kitti_tracking", Import(R"({"format": "kitti_tracking"})")},
+    {"import_kitti_detector", Import(R"({"format": "kitti_tracking", "detections": "detector"})")},
+    {"import_kitti_object", Import(R"({"format": "kitti_object"})")},
+    {"import_slam_synthetic", Import(R"({"format": "slam_synthetic"})")},
+    {"import_yolo", Import(R"({"detections_format": "yolo", "detections": "boxes"})")},
+    {"import_coco", Import(R"({"detections_format": "coco", "detections": "boxes.json",
+                               "class_names": "names.json"})")},
+    {"import_kitti_classes", Import(R"({"detections_format": "kitti", "detections": "boxes"})")},
+    {"import_nerfstudio", Import(R"({"images": "transforms.json", "odometry": "transforms.json",
+                "camera_file": "transforms.json", "trajectory_format": "nerfstudio"})")}};
 
 const FuzzTarget kBoxArchives("box_archives", [](const HostileInput& input) {
   const auto archive = input.AsFile("boxes.zip");
