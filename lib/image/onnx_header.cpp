@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <limits>
 #include <optional>
@@ -25,82 +24,62 @@ struct ProtobufField {
   std::uint64_t integer;   // kVarint
   std::string_view bytes;  // otherwise
 };
+using Kind = ProtobufField::Kind;
 
-// Reads the fields of a message of protobuf's wire format (protobuf.dev, "Encoding") in turn.
-// Returned bytes are views into the message.
-class ProtobufReader {
- public:
-  explicit ProtobufReader(std::string_view message) : rest_(message) {}
-  // None at the end. Throws InputError, without the file's name, for a malformed message.
-  std::optional<ProtobufField> Next();
-  // The next integer of a packed field; none at the end. Throws likewise.
-  std::optional<std::uint64_t> NextVarint();
-
- private:
-  std::string_view Take(std::uint64_t count);
-
-  std::string_view rest_;
-};
-
-std::string_view ProtobufReader::Take(std::uint64_t count) {
-  if (count > rest_.size()) {
-    throw InputError(fmt::format("a field of {} bytes has only {}", count, rest_.size()));
+// Readers of protobuf's wire format (protobuf.dev, "Encoding"): each takes what it returns from the
+// beginning of `rest`, and throws InputError, without the file's name, where that is malformed.
+std::string_view TakeBytes(std::uint64_t count, std::string_view* rest) {
+  if (count > rest->size()) {
+    throw InputError(fmt::format("a field of {} bytes has only {}", count, rest->size()));
   }
-  const std::string_view taken = rest_.substr(0, count);
-  rest_.remove_prefix(count);
+  const std::string_view taken = rest->substr(0, count);
+  rest->remove_prefix(count);
   return taken;
 }
 
-std::optional<std::uint64_t> ProtobufReader::NextVarint() {
-  if (rest_.empty()) return std::nullopt;
+std::uint64_t TakeVarint(std::string_view* rest) {
+  if (rest->empty()) throw InputError("its last field is cut short");
   constexpr int kBits = 64;
   std::uint64_t number = 0;
   for (int shift = 0; shift < kBits; shift += 7) {
-    const auto byte = static_cast<unsigned char>(Take(1).front());
+    const auto byte = static_cast<unsigned char>(TakeBytes(1, rest).front());
     number |= std::uint64_t{byte & 0x7fU} << shift;
     if (byte < 0x80) return number;
   }
   throw InputError("an integer has more than 64 bits");
 }
 
-std::optional<ProtobufField> ProtobufReader::Next() {
-  const auto tag = NextVarint();
-  if (!tag) return std::nullopt;
+ProtobufField TakeField(std::string_view* rest) {
   constexpr std::uint64_t kMaxTag = 0xffffffff;
-  if (*tag > kMaxTag || *tag >> 3 == 0) throw InputError(fmt::format("a field has tag {}", *tag));
-  ProtobufField field{*tag >> 3, static_cast<ProtobufField::Kind>(*tag & 7), 0, {}};
-  const auto varint = [&] {
-    const auto number = NextVarint();
-    if (!number) throw InputError("its last field is cut short");
-    return *number;
-  };
+  const std::uint64_t tag = TakeVarint(rest);
+  if (tag > kMaxTag || tag >> 3 == 0) throw InputError(fmt::format("a field has tag {}", tag));
+  ProtobufField field{tag >> 3, static_cast<Kind>(tag & 7), 0, {}};
   switch (field.kind) {
-    case ProtobufField::Kind::kVarint:
-      field.integer = varint();
+    case Kind::kVarint:
+      field.integer = TakeVarint(rest);
       return field;
-    case ProtobufField::Kind::kEightBytes:
-      field.bytes = Take(8);
+    case Kind::kEightBytes:
+      field.bytes = TakeBytes(8, rest);
       return field;
-    case ProtobufField::Kind::kBytes:
-      field.bytes = Take(varint());
+    case Kind::kBytes:
+      field.bytes = TakeBytes(TakeVarint(rest), rest);
       return field;
-    case ProtobufField::Kind::kFourBytes:
-      field.bytes = Take(4);
+    case Kind::kFourBytes:
+      field.bytes = TakeBytes(4, rest);
       return field;
   }
-  throw InputError(fmt::format("a field is of kind {}", *tag & 7));
+  throw InputError(fmt::format("a field is of kind {}", tag & 7));
+}
+
+// Calls visit(field) for each field of a message. Bytes are views into the message.
+template <typename Visit>
+void ForEachField(std::string_view message, const Visit& visit) {
+  while (!message.empty()) visit(TakeField(&message));
 }
 
 constexpr int kHalfType = OnnxValue::kHalf;
 constexpr size_t kMostValues = 1000;  // inputs or outputs
 constexpr size_t kMostSides = 32;
-
-// Calls visit(field) for each field of a message.
-template <typename Visit>
-void ForEachField(std::string_view message, const Visit& visit) {
-  ProtobufReader reader(message);
-  while (const auto field = reader.Next()) visit(*field);
-}
 
 // The last of the fields with this number, as protobuf has it; 0 and empty without one.
 ProtobufField Last(std::string_view message, std::uint64_t number) {
@@ -118,22 +97,17 @@ std::int64_t Side(std::string_view dimension) {
   return side < kLargest ? static_cast<std::int64_t>(side) : 0;
 }
 
-// ValueInfoProto: name, then type.tensor_type with elem_type and shape.dim.
-OnnxValue ReadValue(std::string_view message) {
+// ValueInfoProto: type.tensor_type with elem_type and shape.dim.
+void AddValue(std::string_view message, std::vector<OnnxValue>* values) {
+  if (values->size() >= kMostValues) throw InputError("has too many inputs or outputs");
   const std::string_view tensor = Last(Last(message, 2).bytes, 1).bytes;
-  OnnxValue value{
-      std::string(Last(message, 1).bytes), static_cast<int>(Last(tensor, 1).integer), {}};
+  OnnxValue value{static_cast<int>(Last(tensor, 1).integer), {}};
   ForEachField(Last(tensor, 2).bytes, [&](const ProtobufField& field) {
     if (field.number != 1) return;
     if (value.shape.size() >= kMostSides) throw InputError("a shape has too many sides");
     value.shape.push_back(Side(field.bytes));
   });
-  return value;
-}
-
-void AddValue(std::string_view message, std::vector<OnnxValue>* values) {
-  if (values->size() >= kMostValues) throw InputError("has too many inputs or outputs");
-  values->push_back(ReadValue(message));
+  values->push_back(std::move(value));
 }
 
 // TensorProto.data_type of the tensor of a Constant's attribute.
@@ -171,8 +145,6 @@ void ReadGraph(std::string_view graph, OnnxHeader* header) {
     }
   });
 }
-
-using Kind = ProtobufField::Kind;
 
 // Fields of TensorProto in onnx.proto.
 constexpr std::uint64_t kDims = 1, kDataType = 2, kName = 8, kRawData = 9;
@@ -218,25 +190,25 @@ std::uint64_t CountPacked(std::string_view bytes, Kind kind) {
 class Tensor {
  public:
   explicit Tensor(std::string_view message) {
-    ProtobufReader reader(message);
-    while (const auto field = reader.Next()) Add(*field);
+    ForEachField(message, [&](const ProtobufField& field) { Add(field); });
   }
 
   void Check() const {
     const auto type = std::ranges::find(kDataTypes, type_.value_or(0), &DataType::type);
-    if (type == std::end(kDataTypes)) Refuse(fmt::format("is of type {}", type_.value_or(0)), "");
+    if (type == std::end(kDataTypes)) Refuse(fmt::format("is of type {}", type_.value_or(0)));
     std::uint64_t found = 0;
     for (const auto& [field, count] : numbers_) {
-      if (field != type->field && count > 0) Refuse("has numbers of another type", "");
+      if (field != type->field && count > 0) Refuse("has numbers of another type");
       found += count;
     }
     const std::uint64_t raw = raw_bytes_.value_or(0);
-    if (raw > 0 && found > 0) Refuse("has its numbers twice", "");
-    if (raw % type->raw_bytes != 0) Refuse(fmt::format("has {} bytes", raw), "whole numbers");
+    if (raw > 0 && found > 0) Refuse("has its numbers twice");
+    if (raw % type->raw_bytes != 0)
+      Refuse(fmt::format("has {} bytes; expected whole numbers", raw));
     found += raw / type->raw_bytes;
     if (found != count_) {
-      Refuse(fmt::format("has {} numbers in the file", found),
-             fmt::format("the {} that its shape needs", count_));
+      Refuse(fmt::format("has {} numbers in the file; expected the {} that its shape needs", found,
+                         count_));
     }
   }
 
@@ -246,24 +218,23 @@ class Tensor {
     if (field.number == kDims) AddSides(field);
     if (field.number == kDataType) SetOnce(field, Kind::kVarint, field.integer, &type_);
     if (field.number == kRawData) SetOnce(field, Kind::kBytes, field.bytes.size(), &raw_bytes_);
-    constexpr std::array kNumbers = {kFloatData, kInt32Data, kInt64Data, kDoubleData, kUint64Data};
-    if (std::ranges::find(kNumbers, field.number) == kNumbers.end()) return;
+    if (std::ranges::find(kDataTypes, field.number, &DataType::field) == std::end(kDataTypes))
+      return;
     const Kind kind = KindOfNumbers(field.number);
-    if (field.kind != kind && field.kind != Kind::kBytes) Refuse("is not as ONNX has it", "");
+    if (field.kind != kind && field.kind != Kind::kBytes) Refuse("is not as ONNX has it");
     numbers_[field.number] += field.kind == kind ? 1 : CountPacked(field.bytes, kind);
   }
 
   void AddSides(const ProtobufField& field) {
     if (field.kind == Kind::kVarint) return AddSide(field.integer);
-    if (field.kind != Kind::kBytes) Refuse("is not as ONNX has it", "");
-    ProtobufReader packed(field.bytes);
-    while (const auto side = packed.NextVarint()) AddSide(*side);
+    if (field.kind != Kind::kBytes) Refuse("is not as ONNX has it");
+    for (std::string_view packed = field.bytes; !packed.empty();) AddSide(TakeVarint(&packed));
   }
 
   void AddSide(std::uint64_t side) {
     constexpr std::uint64_t kMax = std::numeric_limits<std::int32_t>::max();
     if (side > kMax || (side > 0 && count_ > kMax / side)) {
-      Refuse("is absurdly large", fmt::format("at most {} numbers", kMax));
+      Refuse(fmt::format("is absurdly large; expected at most {} numbers", kMax));
     }
     count_ *= side;
   }
@@ -271,13 +242,12 @@ class Tensor {
   // Sets a value that may be there only once: readers differ in which of two they take.
   void SetOnce(const ProtobufField& field, Kind kind, std::uint64_t number,
                std::optional<std::uint64_t>* value) const {
-    if (field.kind != kind || *value) Refuse("is not as ONNX has it", "");
+    if (field.kind != kind || *value) Refuse("is not as ONNX has it");
     *value = number;
   }
 
-  [[noreturn]] void Refuse(const std::string& what, const std::string& expected) const {
-    throw InputError(fmt::format("tensor '{}' {}{}{}", name_, what,
-                                 expected.empty() ? "" : "; expected ", expected));
+  [[noreturn]] void Refuse(const std::string& what) const {
+    throw InputError(fmt::format("tensor '{}' {}", name_, what));
   }
 
   std::string_view name_;
@@ -306,20 +276,19 @@ void Check(Message message, std::string_view bytes, int depth) {
   if (depth > kMaxDepth) throw InputError("is nested too deep");
   if (message == Message::kTensor) return Tensor(bytes).Check();
   bool has_tensor = false;
-  ProtobufReader reader(bytes);
-  while (const auto field = reader.Next()) {
+  ForEachField(bytes, [&](const ProtobufField& field) {
     const auto member = std::ranges::find_if(kMembers, [&](const Member& candidate) {
-      return candidate.of == message && candidate.field == field->number;
+      return candidate.of == message && candidate.field == field.number;
     });
-    if (member == std::end(kMembers)) continue;
-    if (field->kind != Kind::kBytes)
-      throw InputError(fmt::format("field {} is not a message", field->number));
+    if (member == std::end(kMembers)) return;
+    if (field.kind != Kind::kBytes)
+      throw InputError(fmt::format("field {} is not a message", field.number));
     const bool is_only_tensor = message == Message::kAttribute && member->field == 5;
     if (is_only_tensor && std::exchange(has_tensor, true)) {  // readers would merge the two
       throw InputError("an attribute has two tensors");
     }
-    Check(member->is, field->bytes, depth + 1);
-  }
+    Check(member->is, field.bytes, depth + 1);
+  });
 }
 
 }  // namespace
