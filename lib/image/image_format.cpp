@@ -2,6 +2,7 @@
 #include "image/image_format.h"
 
 #include <fstream>
+#include <memory>
 
 #include "base/paths.h"
 
@@ -9,15 +10,7 @@ namespace soslam {
 
 std::optional<ImageHeader> ReadImageHeader(const std::filesystem::path& path) {
   if (!IsFile(path)) return std::nullopt;
-  std::ifstream stream(path, std::ios::binary);
-  const ImageBytes file([&](std::uint64_t begin, size_t count) {
-    std::string bytes(count, '\0');
-    stream.clear();  // clears an earlier end of file
-    stream.seekg(static_cast<std::streamoff>(begin));
-    stream.read(bytes.data(), static_cast<std::streamsize>(count));
-    bytes.resize(static_cast<size_t>(std::max<std::streamsize>(0, stream.gcount())));
-    return bytes;
-  });
+  const ImageBytes file = ImageBytes::OfFile(path);
   const ImageFormat* format = FindImageFormat(file.UpTo(0, kSignatureSize));
   return format != nullptr ? format->header(file) : std::nullopt;
 }
@@ -35,6 +28,18 @@ ImageBytes::ImageBytes(std::string_view bytes)
     : read_([bytes](std::uint64_t begin, size_t count) {
         return begin < bytes.size() ? std::string(bytes.substr(begin, count)) : std::string();
       }) {}
+
+ImageBytes ImageBytes::OfFile(const std::filesystem::path& path) {
+  const auto stream = std::make_shared<std::ifstream>(path, std::ios::binary);
+  return ImageBytes([stream](std::uint64_t begin, size_t count) {
+    std::string bytes(count, '\0');
+    stream->clear();  // clears an earlier end of file
+    stream->seekg(static_cast<std::streamoff>(begin));
+    stream->read(bytes.data(), static_cast<std::streamsize>(count));
+    bytes.resize(static_cast<size_t>(std::max<std::streamsize>(0, stream->gcount())));
+    return bytes;
+  });
+}
 
 std::optional<std::string> ImageBytes::At(std::uint64_t begin, size_t count) const {
   std::string bytes = read_(begin, count);

@@ -54,6 +54,8 @@ class ImageBytes {
   explicit ImageBytes(ReadAt read) : read_(std::move(read)) {}
   // Reads from `bytes`, which must outlive this object.
   explicit ImageBytes(std::string_view bytes);
+  // Reads from a file on disk; one that cannot be opened has no bytes.
+  static ImageBytes OfFile(const std::filesystem::path& path);
 
   // Up to `count` bytes from `begin` on, fewer at the end of the file.
   std::string UpTo(std::uint64_t begin, size_t count) const { return read_(begin, count); }

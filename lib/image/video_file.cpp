@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <opencv2/videoio.hpp>
 #include <string>
 
@@ -23,14 +22,6 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr const char* kFormats = "a video: MP4, MOV, AVI, MKV or WebM";
-
-std::string FirstBytes(const std::filesystem::path& path) {
-  std::string bytes(kSignatureSize, '\0');
-  std::ifstream stream(path, std::ios::binary);
-  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<size_t>(std::max<std::streamsize>(0, stream.gcount())));
-  return bytes;
-}
 
 // While this lives, nothing appears on stderr: FFmpeg says there what our own error says.
 class SilentStderr {
@@ -67,7 +58,7 @@ VideoReader::VideoReader(const std::filesystem::path& path) : path_(path) {
     throw InputError(fmt::format("{}: no such file; expected {}", path.string(), kFormats));
   }
   RecordInput(path);
-  if (!IsVideo(FirstBytes(path))) {
+  if (!IsVideo(ImageBytes::OfFile(path).UpTo(0, kSignatureSize))) {
     throw InputError(
         fmt::format("{}: is no video that can be read; expected {}", path.string(), kFormats));
   }
