@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "image/video_file.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <opencv2/videoio.hpp>
 #include <string>
 
@@ -22,27 +21,6 @@ namespace {
 using namespace std::string_view_literals;
 
 constexpr const char* kFormats = "a video: MP4, MOV, AVI, MKV or WebM";
-
-// While this lives, nothing appears on stderr: FFmpeg says there what our own error says.
-class SilentStderr {
- public:
-  SilentStderr() : stderr_(::dup(STDERR_FILENO)) {
-    const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
-    if (nowhere < 0) return;
-    ::dup2(nowhere, STDERR_FILENO);
-    ::close(nowhere);
-  }
-  ~SilentStderr() {
-    if (stderr_ < 0) return;
-    ::dup2(stderr_, STDERR_FILENO);
-    ::close(stderr_);
-  }
-  SilentStderr(const SilentStderr&) = delete;
-  SilentStderr& operator=(const SilentStderr&) = delete;
-
- private:
-  int stderr_;
-};
 
 }  // namespace
 
@@ -62,11 +40,10 @@ VideoReader::VideoReader(const std::filesystem::path& path) : path_(path) {
     throw InputError(
         fmt::format("{}: is no video that can be read; expected {}", path.string(), kFormats));
   }
-  {
-    const SilentStderr silent;
-    // FFmpeg takes relative names with a colon for addresses.
-    capture_ = std::make_unique<cv::VideoCapture>(PlainPath(path).string(), cv::CAP_FFMPEG);
-  }
+  // FFmpeg says on stderr what our own error says: AV_LOG_QUIET.
+  ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", /*overwrite=*/0);
+  // FFmpeg takes relative names with a colon for addresses.
+  capture_ = std::make_unique<cv::VideoCapture>(PlainPath(path).string(), cv::CAP_FFMPEG);
   const auto width = static_cast<int>(capture_->get(cv::CAP_PROP_FRAME_WIDTH));
   const auto height = static_cast<int>(capture_->get(cv::CAP_PROP_FRAME_HEIGHT));
   if (!capture_->isOpened() || !IsImageSize(width, height)) {
