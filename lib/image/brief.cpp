@@ -15,8 +15,6 @@ namespace {
 constexpr int kPatchSize = 31;
 constexpr int kPatchRadius = kPatchSize / 2;
 constexpr std::uint32_t kPatternSeed = 2010;
-constexpr size_t kWordSize = 64;
-static_assert(BriefBits().size() % kWordSize == 0);
 
 struct PointPair {
   cv::Point first;  // offsets from the centre of the patch, px
@@ -70,16 +68,8 @@ std::optional<BriefBits> BriefDescriptor(const cv::Mat& smoothed_grey, const Eig
   const auto grey_at = [&](const cv::Point& offset) {
     return grey[offset.y * step + offset.x * side];
   };
-  BriefBits bits;
-  for (size_t end = pattern.size(); end > 0; end -= kWordSize) {
-    std::uint64_t word = 0;
-    for (size_t i = 0; i < kWordSize; ++i) {
-      const PointPair& pair = pattern[end - kWordSize + i];
-      word |= static_cast<std::uint64_t>(grey_at(pair.first) < grey_at(pair.second)) << i;
-    }
-    bits = bits << kWordSize | BriefBits(word);
-  }
-  return bits;
+  return BitsWhere<BriefBits().size()>(
+      [&](size_t i) { return grey_at(pattern[i].first) < grey_at(pattern[i].second); });
 }
 
 }  // namespace soslam

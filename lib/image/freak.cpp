@@ -149,14 +149,8 @@ std::optional<FreakBits> FreakDescriptor(const FreakImage& smoothed, const Eigen
     grey[i] = smoothed[offset.ring].at<std::uint8_t>(centre->y + offset.y,
                                                      centre->x + (mirrored ? -offset.x : offset.x));
   }
-  std::array<std::uint64_t, FreakBits().size() / 64> words = {};
-  for (size_t i = 0; i < pairs.size(); ++i) {
-    const bool is_darker = grey[pairs[i].first] < grey[pairs[i].second];
-    words[i / 64] |= static_cast<std::uint64_t>(is_darker) << i % 64;
-  }
-  FreakBits bits;
-  for (const std::uint64_t word : words) bits = bits << 64 | FreakBits(word);
-  return bits;
+  return BitsWhere<FreakBits().size()>(
+      [&](size_t i) { return grey[pairs[i].first] < grey[pairs[i].second]; });
 }
 
 }  // namespace soslam
