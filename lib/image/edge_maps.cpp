@@ -110,36 +110,6 @@ cv::Mat DistanceMap(const cv::Mat& nearest_edge) {
   return distance;
 }
 
-namespace {
-
-// The image after a Gaussian blur, in other pixels than `grey`; `grey` itself without blur.
-cv::Mat Blurred(const cv::Mat& grey, double sigma_px) {
-  if (!(sigma_px > 0.0)) return grey;
-  cv::Mat blurred;
-  cv::GaussianBlur(grey, blurred, cv::Size(), sigma_px);
-  return blurred;
-}
-
-cv::Mat DetectEdges(const cv::Mat& blurred, const EdgesOptions& options) {
-  cv::Mat edges;
-  constexpr int kSobelSize = 3;
-  constexpr bool kEuclideanGradient = true;  // the same threshold in all directions
-  cv::Canny(blurred, edges, options.canny_low, options.canny_high, kSobelSize, kEuclideanGradient);
-  return edges;
-}
-
-std::vector<Eigen::Vector2f> DetectCorners(const cv::Mat& blurred, const EdgesOptions& options) {
-  std::vector<cv::Point2f> points;
-  cv::goodFeaturesToTrack(blurred, points, options.max_corners, options.corner_quality,
-                          options.corner_min_distance_px);
-  std::vector<Eigen::Vector2f> corners;
-  corners.reserve(points.size());
-  for (const cv::Point2f& point : points) corners.emplace_back(point.x, point.y);
-  return corners;
-}
-
-}  // namespace
-
 void EdgesOptions::Check() const {
   if (canny_low > canny_high) {
     throw SettingsError(fmt::format("canny_low: is {}; expected at most canny_high, which is {}",
@@ -149,13 +119,24 @@ void EdgesOptions::Check() const {
 
 EdgeMaps ComputeEdgeMaps(const cv::Mat& grey, const EdgesOptions& options) {
   CV_Assert(grey.type() == CV_8UC1 && !grey.empty());
+  constexpr int kSobelSize = 3;
+  constexpr bool kEuclideanGradient = true;  // the same threshold in all directions
   EdgeMaps maps;
   maps.grey = grey;
-  const cv::Mat blurred = Blurred(grey, options.blur_sigma_px);
-  maps.edges = DetectEdges(blurred, options);
+  cv::Mat blurred;  // other pixels than those of `grey`, which it would overwrite
+  if (options.blur_sigma_px > 0.0) {
+    cv::GaussianBlur(grey, blurred, cv::Size(), options.blur_sigma_px);
+  } else {
+    blurred = grey;
+  }
+  cv::Canny(blurred, maps.edges, options.canny_low, options.canny_high, kSobelSize,
+            kEuclideanGradient);
   maps.nearest_edge = NearestEdgeMap(maps.edges);
   maps.distance = DistanceMap(maps.nearest_edge);
-  maps.corners = DetectCorners(blurred, options);
+  std::vector<cv::Point2f> corners;
+  cv::goodFeaturesToTrack(blurred, corners, options.max_corners, options.corner_quality,
+                          options.corner_min_distance_px);
+  for (const cv::Point2f& corner : corners) maps.corners.emplace_back(corner.x, corner.y);
   return maps;
 }
 

@@ -11,14 +11,21 @@
 #include <opencv2/core/eigen.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
+#include "base/paths.h"
 #include "base/run_log.h"
 #include "image/image_format.h"
 
 namespace soslam {
+namespace {
 
+// Turns an image upright, as viewers show it, from the stored pixels and EXIF's orientation. That
+// states at which sides of the upright image the first stored row and the first stored column are:
+//   1 top, left    2 top, right    3 bottom, right    4 bottom, left
+//   5 left, top    6 right, top    7 right, bottom    8 left, bottom
 cv::Mat TurnUpright(const cv::Mat& stored, int exif_orientation) {
   if (exif_orientation == 1) return stored;
   const bool swaps = exif_orientation >= 5;
@@ -32,11 +39,8 @@ cv::Mat TurnUpright(const cv::Mat& stored, int exif_orientation) {
   return image;
 }
 
-namespace {
-
 std::vector<char> ReadBytes(const std::filesystem::path& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) {
+  if (!IsFile(path)) {
     throw InputError(fmt::format("{}: no such file; expected an image", path.string()));
   }
   RecordInput(path);
@@ -62,14 +66,10 @@ bool IsHeif(std::string_view file) { return file.size() > 8 && file.substr(4, 4)
 
 constexpr const char* kFormats = "JPEG, PNG, WebP, BMP or TIFF";
 
-// Format and header of an image that can be decoded.
-struct CheckedFile {
-  const ImageFormat* format;
-  ImageHeader header;
-};
-
-// Checks a file before anything of its size is allocated, and cuts `bytes` at the image's end.
-CheckedFile Check(const std::filesystem::path& path, std::vector<char>* bytes) {
+// The format and header of an image that can be decoded. Checks a file before anything of its size
+// is allocated, and cuts `bytes` at the image's end.
+std::pair<const ImageFormat*, ImageHeader> Check(const std::filesystem::path& path,
+                                                 std::vector<char>* bytes) {
   const std::string_view file(bytes->data(), bytes->size());
   const ImageFormat* format = FindImageFormat(file.substr(0, kSignatureSize));
   if (format == nullptr) {

@@ -12,12 +12,6 @@
 
 namespace soslam {
 
-// Turns an image upright, as viewers show it, from the stored pixels and EXIF's orientation. That
-// states at which sides of the upright image the first stored row and the first stored column are:
-//   1 top, left    2 top, right    3 bottom, right    4 bottom, left
-//   5 left, top    6 right, top    7 right, bottom    8 left, bottom
-cv::Mat TurnUpright(const cv::Mat& stored, int exif_orientation);
-
 // Reads an image by the mode cv::IMREAD_GRAYSCALE as grey values, CV_8UC1, by cv::IMREAD_COLOR as
 // blue, green and red, CV_8UC3. JPEG, PNG, WebP, BMP or TIFF, of the latter the first page; bytes
 // after the image are ignored. Throws InputError when the file is missing, empty, truncated, not

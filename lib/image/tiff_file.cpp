@@ -54,13 +54,12 @@ std::optional<TiffDirectory> TiffDirectory::ReadAt(std::uint64_t begin, ByteOrde
     entries.push_back(
         ParseEntry(std::string_view(*bytes).substr(at, kEntrySize), begin + 2 + at, order));
   }
-  return TiffDirectory(order, std::move(entries));
+  return TiffDirectory(file, order, std::move(entries));
 }
 
-std::optional<TiffDirectory> TiffDirectory::SubDirectory(std::uint64_t tag,
-                                                         const ImageBytes& file) const {
-  const auto begin = Number(tag, file);
-  return begin ? ReadAt(*begin, order_, file) : std::nullopt;
+std::optional<TiffDirectory> TiffDirectory::SubDirectory(std::uint64_t tag) const {
+  const auto begin = Number(tag);
+  return begin ? ReadAt(*begin, order_, file_) : std::nullopt;
 }
 
 std::optional<TiffEntry> TiffDirectory::Find(std::uint64_t tag) const {
@@ -73,31 +72,29 @@ std::ptrdiff_t TiffDirectory::Count(std::uint64_t tag) const {
   return std::ranges::count(entries_, tag, &TiffEntry::tag);
 }
 
-std::optional<std::uint64_t> TiffDirectory::Number(std::uint64_t tag,
-                                                   const ImageBytes& file) const {
+std::optional<std::uint64_t> TiffDirectory::Number(std::uint64_t tag) const {
   const auto entry = Find(tag);
-  return entry ? file.NumberAt(entry->begin, entry->bytes_each, order_) : std::nullopt;
+  return entry ? file_.NumberAt(entry->begin, entry->bytes_each, order_) : std::nullopt;
 }
 
-std::optional<double> TiffDirectory::Ratio(std::uint64_t tag, const ImageBytes& file) const {
+std::optional<double> TiffDirectory::Ratio(std::uint64_t tag) const {
   const auto found = std::ranges::find(entries_, tag, &TiffEntry::tag);
   if (found == entries_.end() || !found->is_ratio || found->count == 0) return std::nullopt;
-  const auto numerator = file.NumberAt(found->begin, 4, order_);
-  const auto denominator = file.NumberAt(found->begin + 4, 4, order_);
+  const auto numerator = file_.NumberAt(found->begin, 4, order_);
+  const auto denominator = file_.NumberAt(found->begin + 4, 4, order_);
   if (!numerator || !denominator || *denominator == 0) return std::nullopt;
   return static_cast<double>(*numerator) / static_cast<double>(*denominator);
 }
 
-std::optional<int> ExifOrientation(const TiffDirectory& exif, const ImageBytes& file) {
-  const auto orientation = exif.Number(kTiffOrientation, file);
+std::optional<int> ExifOrientation(const TiffDirectory& exif) {
+  const auto orientation = exif.Number(kTiffOrientation);
   if (!orientation || *orientation < 1 || *orientation > 8) return std::nullopt;
   return static_cast<int>(*orientation);
 }
 
 std::optional<int> ExifOrientation(std::string_view exif) {
-  const ImageBytes file(exif);
-  const auto directory = TiffDirectory::Read(file);
-  return directory ? ExifOrientation(*directory, file) : std::nullopt;
+  const auto directory = TiffDirectory::Read(ImageBytes(exif));
+  return directory ? ExifOrientation(*directory) : std::nullopt;
 }
 
 namespace {
@@ -109,9 +106,7 @@ constexpr std::uint64_t kStripOffsets = 273, kStripByteCounts = 279;
 constexpr std::uint64_t kTileWidth = 322, kTileHeight = 323, kTileOffsets = 324;
 constexpr std::uint64_t kTileByteCounts = 325;
 
-bool IsTiff(std::string_view first_bytes) {
-  return first_bytes.starts_with("II*\0"sv) || first_bytes.starts_with("MM\0*"sv);
-}
+bool IsTiff(std::string_view first_bytes) { return OrderOf(first_bytes.substr(0, 4)).has_value(); }
 
 bool IsOneOf(std::uint64_t number, std::initializer_list<std::uint64_t> numbers) {
   return std::ranges::find(numbers, number) != numbers.end();
@@ -120,10 +115,10 @@ bool IsOneOf(std::uint64_t number, std::initializer_list<std::uint64_t> numbers)
 // True if the pixels are stored in a supported way: 1, 8 or 16 bits per sample, up to four samples;
 // uncompressed, or packed by LZW, JPEG, deflate or run lengths; in strips, or in tiles of a
 // plausible size.
-bool IsReadable(const TiffDirectory& directory, const ImageBytes& file) {
+bool IsReadable(const TiffDirectory& directory) {
   constexpr std::uint64_t kMaxTileSide = 1 << 13;
   const auto number = [&](std::uint64_t tag, std::uint64_t otherwise) {
-    return directory.Count(tag) > 0 ? directory.Number(tag, file).value_or(0) : otherwise;
+    return directory.Count(tag) > 0 ? directory.Number(tag).value_or(0) : otherwise;
   };
   return IsOneOf(number(kBitsPerSample, 1), {1, 8, 16}) &&
          IsOneOf(number(kSamplesPerPixel, 1), {1, 2, 3, 4}) &&
@@ -144,14 +139,14 @@ bool IsUnambiguous(const TiffDirectory& directory) {
 // Header of the first page.
 std::optional<ImageHeader> Header(const ImageBytes& file) {
   const auto directory = TiffDirectory::Read(file);
-  if (!directory || !IsUnambiguous(*directory) || !IsReadable(*directory, file)) {
+  if (!directory || !IsUnambiguous(*directory) || !IsReadable(*directory)) {
     return std::nullopt;
   }
-  const auto width = directory->Number(kWidth, file);
-  const auto height = directory->Number(kHeight, file);
+  const auto width = directory->Number(kWidth);
+  const auto height = directory->Number(kHeight);
   if (!width || !height) return std::nullopt;
   return ImageHeader{{static_cast<std::int64_t>(*width), static_cast<std::int64_t>(*height)},
-                     ExifOrientation(*directory, file).value_or(1)};
+                     ExifOrientation(*directory).value_or(1)};
 }
 
 // True if all numbers of both entries are in the file, and so are the blocks (offset and length)
@@ -182,10 +177,9 @@ std::optional<size_t> Length(std::string_view file) {
 }
 
 void ClearOrientation(std::span<char> file) {
-  const ImageBytes bytes({file.data(), file.size()});
-  const auto directory = TiffDirectory::Read(bytes);
+  const auto directory = TiffDirectory::Read(ImageBytes({file.data(), file.size()}));
   const auto entry = directory ? directory->Find(kTiffOrientation) : std::nullopt;
-  if (!entry || !directory->Number(kTiffOrientation, bytes)) return;  // value is not in the file
+  if (!entry || !directory->Number(kTiffOrientation)) return;  // value is not in the file
   const auto number = file.subspan(entry->begin, entry->bytes_each);
   std::ranges::fill(number, '\0');
   (directory->order() == ByteOrder::kBigEndian ? number.back() : number.front()) = 1;
@@ -200,9 +194,9 @@ constexpr std::uint64_t kFocalPlaneXResolution = 0xA20E, kFocalPlaneResolutionUn
 constexpr double kFilmDiagonalMm = 43.267;
 
 // Size of the image that the camera wrote.
-std::optional<ImageSize> SizeInExif(const TiffDirectory& exif, const ImageBytes& file) {
-  const auto width = exif.Number(kPixelXDimension, file).value_or(0);
-  const auto height = exif.Number(kPixelYDimension, file).value_or(0);
+std::optional<ImageSize> SizeInExif(const TiffDirectory& exif) {
+  const auto width = exif.Number(kPixelXDimension).value_or(0);
+  const auto height = exif.Number(kPixelYDimension).value_or(0);
   if (width == 0 || height == 0) return std::nullopt;
   return ImageSize{static_cast<std::int64_t>(width), static_cast<std::int64_t>(height)};
 }
@@ -217,12 +211,11 @@ double AspectOf(const ImageSize& size) {
   return static_cast<double>(longer) / static_cast<double>(shorter);
 }
 
-std::optional<double> FromSensor(const TiffDirectory& exif, const ImageSize& written,
-                                 const ImageBytes& file) {
+std::optional<double> FromSensor(const TiffDirectory& exif, const ImageSize& written) {
   constexpr std::uint64_t kInch = 2, kCentimetre = 3;
-  const auto focal_mm = exif.Ratio(kFocalLength, file);
-  const auto pixels_per_unit = exif.Ratio(kFocalPlaneXResolution, file);
-  const auto unit = exif.Number(kFocalPlaneResolutionUnit, file).value_or(kInch);
+  const auto focal_mm = exif.Ratio(kFocalLength);
+  const auto pixels_per_unit = exif.Ratio(kFocalPlaneXResolution);
+  const auto unit = exif.Number(kFocalPlaneResolutionUnit).value_or(kInch);
   if (!focal_mm || !pixels_per_unit || (unit != kInch && unit != kCentimetre)) return std::nullopt;
   return *focal_mm * *pixels_per_unit / (unit == kInch ? 25.4 : 10.0) / Diagonal(written);
 }
@@ -255,17 +248,16 @@ std::string FocalLengthSegment(double focal_over_diagonal) {
 
 std::optional<double> ExifFocalOverDiagonal(std::string_view exif, const ImageSize& stored) {
   constexpr double kMin = 0.2, kMax = 10.0, kMaxAspectChange = 0.02;
-  const ImageBytes file(exif);
-  const auto first = TiffDirectory::Read(file);
-  const auto directory = first ? first->SubDirectory(kExifDirectory, file) : std::nullopt;
+  const auto first = TiffDirectory::Read(ImageBytes(exif));
+  const auto directory = first ? first->SubDirectory(kExifDirectory) : std::nullopt;
   if (!directory || stored.width <= 0 || stored.height <= 0) return std::nullopt;
-  const auto written = SizeInExif(*directory, file);
+  const auto written = SizeInExif(*directory);
   const bool is_cropped =
       written && std::abs(AspectOf(*written) / AspectOf(stored) - 1.0) > kMaxAspectChange;
   if (is_cropped) return std::nullopt;
-  const auto film_mm = directory->Number(kFocalLengthIn35mmFilm, file).value_or(0);
+  const auto film_mm = directory->Number(kFocalLengthIn35mmFilm).value_or(0);
   const auto focal = film_mm > 0 ? std::optional(static_cast<double>(film_mm) / kFilmDiagonalMm)
-                                 : FromSensor(*directory, written.value_or(stored), file);
+                                 : FromSensor(*directory, written.value_or(stored));
   return focal && *focal >= kMin && *focal <= kMax ? focal : std::nullopt;
 }
 

@@ -29,7 +29,7 @@ class TiffDirectory {
   // None if the file is no TIFF file, or ends before the directory does.
   static std::optional<TiffDirectory> Read(const ImageBytes& file);
   // The directory that an entry with this tag points to, as EXIF's own; none as for Read.
-  std::optional<TiffDirectory> SubDirectory(std::uint64_t tag, const ImageBytes& file) const;
+  std::optional<TiffDirectory> SubDirectory(std::uint64_t tag) const;
 
   ByteOrder order() const { return order_; }
   // The first entry with this tag; none if there is none, or its numbers are not unsigned integers.
@@ -38,23 +38,24 @@ class TiffDirectory {
   std::ptrdiff_t Count(std::uint64_t tag) const;
   // The first number of the first entry with this tag; none if there is none, or it is not in the
   // file.
-  std::optional<std::uint64_t> Number(std::uint64_t tag, const ImageBytes& file) const;
+  std::optional<std::uint64_t> Number(std::uint64_t tag) const;
   // The first ratio of the first entry with this tag; none also if its denominator is zero.
-  std::optional<double> Ratio(std::uint64_t tag, const ImageBytes& file) const;
+  std::optional<double> Ratio(std::uint64_t tag) const;
 
  private:
   static std::optional<TiffDirectory> ReadAt(std::uint64_t begin, ByteOrder order,
                                              const ImageBytes& file);
-  TiffDirectory(ByteOrder order, std::vector<TiffEntry> entries)
-      : order_(order), entries_(std::move(entries)) {}
+  TiffDirectory(ImageBytes file, ByteOrder order, std::vector<TiffEntry> entries)
+      : file_(std::move(file)), order_(order), entries_(std::move(entries)) {}
 
+  ImageBytes file_;
   ByteOrder order_;
   std::vector<TiffEntry> entries_;
 };
 
 // The orientation in EXIF data, 1 to 8; none if they have none.
 std::optional<int> ExifOrientation(std::string_view exif);
-std::optional<int> ExifOrientation(const TiffDirectory& exif, const ImageBytes& file);
+std::optional<int> ExifOrientation(const TiffDirectory& exif);
 
 // The focal length in EXIF data over the diagonal of the image, which has `stored` pixels: a guess,
 // as cameras round it. From FocalLengthIn35mmFilm, otherwise from FocalLength and the resolution of
