@@ -237,11 +237,9 @@ struct Solid {
   std::optional<SurfaceTexture> texture;  // none for a table
   std::optional<Box> outline;             // none if it may be anywhere in the image
 
-  bool MayCoverRow(int v) const {
-    return !outline || (outline->y_min <= v + 0.5 && outline->y_max >= v - 0.5);
-  }
-  bool MayCoverColumn(int u) const {
-    return !outline || (outline->x_min <= u + 0.5 && outline->x_max >= u - 0.5);
+  bool MayCover(int u, int v) const {
+    return !outline || (outline->x_min <= u + 0.5 && outline->x_max >= u - 0.5 &&
+                        outline->y_min <= v + 0.5 && outline->y_max >= v - 0.5);
   }
 };
 
@@ -251,22 +249,23 @@ class FrameRenderer {
  public:
   FrameRenderer(const Scene& scene, const Rigid3d& world_from_camera)
       : camera_(scene.camera), surroundings_(scene), world_from_camera_(world_from_camera) {
-    for (const SceneObject& object : scene.objects) {
-      AddSolid(ObjectBody(scene, object), SurfaceTexture(object));
+    for (const Landmark& body_in_world : AllBodies(scene)) {
+      const Landmark body_in_camera = Transform(world_from_camera.Inverse(), body_in_world);
+      Solid solid{body_in_camera, body_in_camera.frame_from_object.Inverse(), std::nullopt,
+                  ExactOutline(camera_, body_in_camera)};
+      if (solids_.size() < scene.objects.size()) {
+        solid.texture.emplace(scene.objects[solids_.size()]);
+      }
+      solids_.push_back(std::move(solid));
     }
-    for (const Landmark& body : Furniture(scene)) AddSolid(body, std::nullopt);
   }
 
   void RenderRow(int v, cv::Vec3b* row) const {
-    Solids in_row;
-    for (const Solid& solid : solids_) {
-      if (solid.MayCoverRow(v)) in_row.push_back(&solid);
-    }
     Solids in_pixel;
     for (int u = 0; u < camera_.width; ++u) {
       in_pixel.clear();
-      for (const Solid* solid : in_row) {
-        if (solid->MayCoverColumn(u)) in_pixel.push_back(solid);
+      for (const Solid& solid : solids_) {
+        if (solid.MayCover(u, v)) in_pixel.push_back(&solid);
       }
       const Colour colour = PixelColour(u, v, in_pixel);
       for (int channel = 0; channel < 3; ++channel) {
@@ -276,12 +275,6 @@ class FrameRenderer {
   }
 
  private:
-  void AddSolid(const Landmark& body_in_world, std::optional<SurfaceTexture> texture) {
-    const Landmark body_in_camera = Transform(world_from_camera_.Inverse(), body_in_world);
-    solids_.push_back({body_in_camera, body_in_camera.frame_from_object.Inverse(),
-                       std::move(texture), ExactOutline(camera_, body_in_camera)});
-  }
-
   Colour PixelColour(int u, int v, const Solids& solids) const {
     Colour sum = Colour::Zero();
     for (int i = 0; i < kSamplesPerSide * kSamplesPerSide; ++i) {

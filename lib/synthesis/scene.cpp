@@ -108,8 +108,9 @@ Landmark ObjectBody(const Scene& scene, const SceneObject& object) {
   return body;
 }
 
-std::vector<Landmark> Furniture(const Scene& scene) {
+std::vector<Landmark> AllBodies(const Scene& scene) {
   std::vector<Landmark> bodies;
+  for (const SceneObject& object : scene.objects) bodies.push_back(ObjectBody(scene, object));
   for (const ScenePlane& plane : scene.planes) {
     if (!plane.table) continue;
     const TableTop& table = *plane.table;
@@ -271,10 +272,7 @@ void CheckCameraPose(const Scene& scene, const Rigid3d& world_from_camera,
 }
 
 void CheckTrajectory(const Scene& scene, const std::string& where) {
-  std::vector<Landmark> bodies;
-  for (const SceneObject& object : scene.objects) bodies.push_back(ObjectBody(scene, object));
-  const std::vector<Landmark> furniture = Furniture(scene);
-  bodies.insert(bodies.end(), furniture.begin(), furniture.end());
+  const std::vector<Landmark> bodies = AllBodies(scene);
   const std::vector<Rigid3d> poses = TruePoses(scene);
   for (size_t i = 0; i < poses.size(); ++i) {
     CheckCameraPose(scene, poses[i], bodies,

@@ -97,8 +97,8 @@ Landmark ObjectLandmark(const Scene& scene, const SceneObject& object);
 // The object's solid in the world, in its own axes.
 Landmark ObjectBody(const Scene& scene, const SceneObject& object);
 
-// Solids that are not objects, in the world: slabs and legs of the tables.
-std::vector<Landmark> Furniture(const Scene& scene);
+// All solids in the world: those of the objects, in their order, then slabs and legs of the tables.
+std::vector<Landmark> AllBodies(const Scene& scene);
 
 // The true pose of each frame. Throws InputError when the camera looks straight up or down, or at
 // its own position, which leaves its roll undefined.

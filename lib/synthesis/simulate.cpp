@@ -88,11 +88,7 @@ Simulation Simulate(const Scene& scene, bool noise) {
       noise ? NoisyOdometry(scene, simulation.true_world_from_camera)
             : simulation.true_world_from_camera;
 
-  std::vector<Landmark> bodies_in_world;
-  for (const SceneObject& object : scene.objects) {
-    bodies_in_world.push_back(ObjectBody(scene, object));
-  }
-  for (const Landmark& body : Furniture(scene)) bodies_in_world.push_back(body);
+  const std::vector<Landmark> bodies_in_world = AllBodies(scene);
   for (int frame = 0; frame < scene.trajectory.frames; ++frame) {
     const Rigid3d& world_from_camera = simulation.true_world_from_camera[frame];
     for (int object = 0; object < static_cast<int>(scene.objects.size()); ++object) {
