@@ -22,10 +22,6 @@ double HalfAxis(const CsvRow& row, const char* column) {
   return 0.5 * length_m;
 }
 
-bool SameText(const std::string& one, const std::string& other) {
-  return LowerCase(one) == LowerCase(other);
-}
-
 CatalogueName NameFromJson(const nlohmann::json& json) {
   if (json.is_string()) return {json.get<std::string>(), ""};
   return {json.at("name").get<std::string>(), json.at("category").get<std::string>()};
@@ -56,9 +52,9 @@ CatalogueNames ReadCatalogueNames(const std::filesystem::path& path) {
 }
 
 bool GoesBy(const CatalogueModel& model, const std::vector<CatalogueName>& names) {
-  return std::any_of(names.begin(), names.end(), [&](const CatalogueName& name) {
-    return SameText(name.name, model.name) &&
-           (name.category.empty() || SameText(name.category, model.category));
+  return std::ranges::any_of(names, [&](const CatalogueName& name) {
+    return LowerCase(name.name) == LowerCase(model.name) &&
+           (name.category.empty() || LowerCase(name.category) == LowerCase(model.category));
   });
 }
 

@@ -29,25 +29,22 @@ struct RowOffsets {
   std::map<std::string, int> objects_of_sequence;
 };
 
-void Add(const Sequence& sequence, const Detection& detection,
-         const ShapeExponents& shape_exponents, EdgeOffsets* offsets) {
-  Landmark in_camera = TrueLandmarkInCamera(sequence, detection).value();
-  in_camera.shape_exponents = shape_exponents;
-  if (!IsInFront(in_camera)) return;
-  const auto edges = BoxEdges(sequence.CameraOf(detection), detection.box, {}, 0.0);
-  for (size_t side = 0; side < edges.size(); ++side) {
-    if (detection.is_one_sided[side]) continue;
-    const double inside_px = OutlineExcess(edges[side], in_camera, nullptr) * edges[side].sigma_px;
-    const double extent_px = side % 2 == 0 ? detection.box.Width() : detection.box.Height();
-    (*offsets)[side].push_back(-inside_px / extent_px);
-  }
-}
-
 EdgeOffsets OffsetsOf(const Sequence& sequence, const std::vector<int>& detections,
                       const ShapeExponents& shape_exponents) {
   EdgeOffsets offsets;
   for (const int index : detections) {
-    Add(sequence, sequence.detections[index], shape_exponents, &offsets);
+    const Detection& detection = sequence.detections[index];
+    Landmark in_camera = TrueLandmarkInCamera(sequence, detection).value();
+    in_camera.shape_exponents = shape_exponents;
+    if (!IsInFront(in_camera)) continue;
+    const auto edges = BoxEdges(sequence.CameraOf(detection), detection.box, {}, 0.0);
+    for (size_t side = 0; side < edges.size(); ++side) {
+      if (detection.is_one_sided[side]) continue;
+      const double inside_px =
+          OutlineExcess(edges[side], in_camera, nullptr) * edges[side].sigma_px;
+      const double extent_px = side % 2 == 0 ? detection.box.Width() : detection.box.Height();
+      offsets[side].push_back(-inside_px / extent_px);
+    }
   }
   return offsets;
 }

@@ -119,13 +119,9 @@ struct PriorError {
 // Errors for the objects with ground truth and a row (or default) in the table.
 std::vector<PriorError> PriorErrors(const Sequence& sequence, const SemanticTable& table);
 
-// The exponents in [1, 2] for which the true pose and size of an object fit its boxes best: least
-// Huber loss of the tangency residuals, at true camera poses if they are known. `detections` are of
-// one object, or of several of the same shape, with ground truth.
-ShapeExponents BestShapeExponents(const Sequence& sequence, const std::vector<int>& detections);
-
-// These for each object with ground truth and at least `min_views` such boxes, by object
-// index.
+// The exponents for which the true pose and size of an object fit its boxes best, for each object
+// with ground truth and at least `min_views` boxes that show it wholly in front of the camera, by
+// object index.
 std::map<int, ShapeExponents> LearnShapeExponents(const Sequence& sequence, int min_views);
 
 // Learns the bias of a detector's box edges for each row of a table that has objects with ground

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
-#include <iterator>
 #include <limits>
 
 #include "constraints/loss.h"
@@ -34,16 +32,16 @@ double Loss(const Sequence& sequence, const Detection& detection,
 // have a tangent point.
 std::vector<int> WhollyInFront(const Sequence& sequence, const std::vector<int>& detections) {
   std::vector<int> in_front;
-  std::copy_if(detections.begin(), detections.end(), std::back_inserter(in_front), [&](int index) {
+  for (const int index : detections) {
     Landmark cuboid = *TrueLandmarkInCamera(sequence, sequence.detections[index]);
     cuboid.shape_exponents = kCuboidExponent;
-    return IsInFront(cuboid);
-  });
+    if (IsInFront(cuboid)) in_front.push_back(index);
+  }
   return in_front;
 }
 
-}  // namespace
-
+// The exponents in [1, 2] for which the true pose and size of an object fit its boxes best: least
+// Huber loss of the tangency residuals, at true camera poses if they are known.
 ShapeExponents BestShapeExponents(const Sequence& sequence, const std::vector<int>& detections) {
   ShapeExponents best = kCuboidExponent;
   double least_loss = std::numeric_limits<double>::infinity();
@@ -62,6 +60,8 @@ ShapeExponents BestShapeExponents(const Sequence& sequence, const std::vector<in
   }
   return best;
 }
+
+}  // namespace
 
 std::map<int, ShapeExponents> LearnShapeExponents(const Sequence& sequence, int min_views) {
   std::map<int, ShapeExponents> exponents;

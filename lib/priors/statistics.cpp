@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "priors/learn_priors.h"
 
@@ -60,15 +61,10 @@ std::optional<double> RobustCorrelation(const std::vector<double>& firsts,
   if (first_sigma <= 0.0 || second_sigma <= 0.0) return std::nullopt;
   const std::vector<double> x = Standardised(firsts, first_sigma);
   const std::vector<double> y = Standardised(seconds, second_sigma);
-  double xx = 0.0;
-  double yy = 0.0;
-  double xy = 0.0;
-  for (size_t i = 0; i < x.size(); ++i) {
-    xx += x[i] * x[i];
-    yy += y[i] * y[i];
-    xy += x[i] * y[i];
-  }
-  return xy / std::sqrt(xx * yy);
+  const auto dot = [](const std::vector<double>& a, const std::vector<double>& b) {
+    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+  };
+  return dot(x, y) / std::sqrt(dot(x, x) * dot(y, y));
 }
 
 }  // namespace soslam
