@@ -106,19 +106,17 @@ class FrameLinker {
         Eigen::MatrixXd::Constant(rows, columns, std::numeric_limits<double>::infinity());
     std::vector<std::vector<std::optional<BoxMatch>>> matches(
         detections.size(), std::vector<std::optional<BoxMatch>>(states_.size()));
-    for (Eigen::Index column = 0; column < columns; ++column) {
-      const auto track = static_cast<size_t>(column);
-      if (!states_[track].prediction) continue;
-      for (Eigen::Index row = 0; row < rows; ++row) {
-        auto& match = matches[row][track];
-        match = model_.Match(association_.tracks[track], *states_[track].prediction,
-                             At(detections[row]));
-        if (match) costs(row, column) = match->cost;
-      }
-    }
     Eigen::VectorXd costs_of_new_objects(rows);
     for (Eigen::Index row = 0; row < rows; ++row) {
-      costs_of_new_objects[row] = model_.NewObjectCost(At(detections[row]));
+      const Detection& detection = At(detections[row]);
+      costs_of_new_objects[row] = model_.NewObjectCost(detection);
+      for (Eigen::Index track = 0; track < columns; ++track) {
+        const auto& prediction = states_[track].prediction;
+        if (!prediction) continue;
+        auto& match = matches[row][track];
+        match = model_.Match(association_.tracks[track], *prediction, detection);
+        if (match) costs(row, track) = match->cost;
+      }
     }
     const std::vector<int> track_of_row = Assign(costs, costs_of_new_objects);
     for (size_t row = 0; row < detections.size(); ++row) {

@@ -29,11 +29,7 @@ constexpr double kUnknownHeightLogSigma = 1.0;
 
 // Prior of a label that is not in the table: a cuboid as long and wide as high, with a log standard
 // deviation of 1.
-ShapePrior UnknownShape() {
-  ShapePrior prior;
-  prior.shape_exponents = kCuboidExponent;
-  return prior;
-}
+const ShapePrior kUnknownShape = {.shape_exponents = kCuboidExponent};
 
 // Poses and detections of one segment.
 struct Segment {
@@ -141,7 +137,7 @@ UpEstimate UpOf(const Segment& segment, const BoxesOfLabels& boxes,
 
 ShapePrior PriorOfLabel(const SemanticTable& table, const std::string& label,
                         const AssociateOptions& options) {
-  ShapePrior prior = table.Find(label).value_or(UnknownShape());
+  ShapePrior prior = table.Find(label).value_or(kUnknownShape);
   if (!prior.height_m) prior.height_m = {options.unknown_height_m, kUnknownHeightLogSigma};
   return prior;
 }
