@@ -262,19 +262,9 @@ TEST(AssociateTest, ObjectsStayOnTheirPlane) {
   EXPECT_EQ(association.objects.size(), 2u);
 }
 
-constexpr int kScenesWithoutPlanes = 2;  // each takes a second
-
 // Neither planes nor the height of any label is known.
-TEST(AssociateWithoutPlanesTest, ExactBoxesAreTheirObjects) {
-  ExpectNearlyAllFound(kScenesWithoutPlanes, 0.0, [](int seed) {
-    const Sequence sequence =
-        SyntheticSequence(LabelledScene(seed, kObjects, kFrames, {"thing", "other"}), false);
-    return std::pair(sequence, WithoutPlanes(WithoutIds(sequence)));
-  });
-}
-
 TEST(AssociateWithoutPlanesTest, NoisyBoxesAreNearlyAllTheirObjects) {
-  ExpectNearlyAllFound(kScenesWithoutPlanes, 0.8, [](int seed) {
+  ExpectNearlyAllFound(2, 0.8, [](int seed) {
     const Sequence sequence = NoisySequence(seed, {"thing", "other"});
     // The axes of the world mean nothing.
     return std::pair(sequence, Moved(RandomRigid(), WithoutPlanes(WithoutIds(sequence))));

@@ -36,11 +36,6 @@ Sequence WithUnknownSupports(Sequence sequence) {
   return sequence;
 }
 
-Sequence Associated(const Sequence& seen, const Association& association) {
-  return AssociatedSequence(seen, association,
-                            CompareWithGiven(seen, association, /*min_observations=*/3));
-}
-
 TEST(SupportsTest, AreFoundFromBoxes) {
   double sum = 0.0;
   int right = 0;
@@ -52,7 +47,8 @@ TEST(SupportsTest, AreFoundFromBoxes) {
     const Association association = Associate(unknown, UnknowingTable(), EstimatedAssociation(), 2);
     const Agreement agreement = CompareWithGiven(given, association, 3);
     sum += agreement.F1().value();
-    const Sequence associated = Associated(unknown, association);
+    const Sequence associated =
+        AssociatedSequence(unknown, association, CompareWithGiven(unknown, association, 3));
     EXPECT_TRUE(associated.HasSupports());
     for (size_t i = 0; i < associated.objects.size(); ++i) {
       if (!agreement.given_of_object[i]) continue;
@@ -86,16 +82,6 @@ TEST(SupportsTest, WhatStandsOnNoPlaneIsNoObject) {
     }
   }
   EXPECT_GE(without_support, 5);
-}
-
-TEST(MovingLabelsTest, ThingsThatMoveAreNoObjects) {
-  const Sequence given = SyntheticSequence(LabelledScene(3, 4, 30, {"dog", "cup"}), false);
-  const Association association =
-      Associate(WithoutIds(given), UnknowingTable(), EstimatedAssociation(), 2);
-  ASSERT_EQ(association.objects.size(), 2U);
-  for (const int object : association.objects) {
-    EXPECT_EQ(LabelOf(association.tracks[object]), "cup");
-  }
 }
 
 // Objects of two labels that the detector calls by one name are told apart by their boxes.

@@ -16,14 +16,6 @@
 namespace soslam {
 namespace {
 
-TEST(HammingDistanceTest, CountsDifferingBits) {
-  std::bitset<256> bits;
-  EXPECT_EQ(HammingDistance(bits, ~bits), 1.0);
-  EXPECT_EQ(HammingDistance(bits, bits), 0.0);
-  bits[3] = bits[200] = true;
-  EXPECT_EQ(HammingDistance(bits, std::bitset<256>()), 2.0 / 256.0);
-}
-
 int Columns(const cv::Mat& grey) { return grey.cols; }
 
 // A descriptor that is the column of the closest pixel, counted from the other side when mirrored;
@@ -88,16 +80,16 @@ struct Freak {
   }
 };
 
+// A pixel whose patch lies in the image.
 template <typename Descriptor>
-class DescriptorTest : public testing::Test {
- protected:
-  static constexpr int kRadius = Descriptor::kRadius;
+Eigen::Vector2d PixelWithPatch() {
+  constexpr int kRadius = Descriptor::kRadius;
+  return {RandomUniform(kRadius, kWidth - kRadius - 1),
+          RandomUniform(kRadius, kHeight - kRadius - 1)};
+}
 
-  static Eigen::Vector2d PixelWithPatch() {
-    return {RandomUniform(kRadius, kWidth - kRadius - 1),
-            RandomUniform(kRadius, kHeight - kRadius - 1)};
-  }
-};
+template <typename Descriptor>
+class DescriptorTest : public testing::Test {};
 using Descriptors = testing::Types<Brief, Freak>;
 TYPED_TEST_SUITE(DescriptorTest, Descriptors);
 
@@ -106,7 +98,7 @@ TYPED_TEST(DescriptorTest, MirroredDescriptorAtTheMirrorPixelIsTheSame) {
   cv::Mat flipped;
   cv::flip(grey, flipped, 1);
   for (int i = 0; i < 100; ++i) {
-    const Eigen::Vector2d pixel = this->PixelWithPatch();
+    const Eigen::Vector2d pixel = PixelWithPatch<TypeParam>();
     const Eigen::Vector2d mirror_pixel(kWidth - 1 - pixel.x(), pixel.y());
     const auto plain = TypeParam::At(grey, pixel);
     const auto mirrored = TypeParam::At(flipped, mirror_pixel, true);
@@ -119,7 +111,7 @@ TYPED_TEST(DescriptorTest, MirroredDescriptorAtTheMirrorPixelIsTheSame) {
 TYPED_TEST(DescriptorTest, IgnoresBrightness) {
   const cv::Mat grey = RandomTexture({kWidth, kHeight}, 155);
   for (int i = 0; i < 10; ++i) {
-    const Eigen::Vector2d pixel = this->PixelWithPatch();
+    const Eigen::Vector2d pixel = PixelWithPatch<TypeParam>();
     const auto plain = TypeParam::At(grey, pixel);
     ASSERT_TRUE(plain);
     EXPECT_EQ(plain, TypeParam::At(grey + RandomUniform(1, 100), pixel));

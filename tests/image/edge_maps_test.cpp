@@ -35,19 +35,13 @@ TEST(EdgeMapsTest, EdgesLieOnTheOutlineOfARectangle) {
   EXPECT_LT(cv::countNonZero(maps.edges), 130);
 }
 
-TEST(EdgeMapsTest, TheBlurDoesNotReachTheImage) {
-  const cv::Mat grey = Rectangle();
+TEST(EdgeMapsTest, EdgesAndCornersAreThoseOfTheBlurredImageWhichStaysAsItIs) {
   EdgesOptions options;
   options.blur_sigma_px = 2.0;
+  const cv::Mat grey = Rectangle();
   const EdgeMaps maps = ComputeEdgeMaps(grey, options);
   EXPECT_EQ(cv::norm(grey, Rectangle(), cv::NORM_INF), 0.0);
   EXPECT_EQ(cv::norm(maps.grey, Rectangle(), cv::NORM_INF), 0.0);
-}
-
-TEST(EdgeMapsTest, EdgesAndCornersAreThoseOfTheBlurredImage) {
-  EdgesOptions options;
-  options.blur_sigma_px = 2.0;
-  const EdgeMaps maps = ComputeEdgeMaps(Rectangle(), options);
   cv::Mat blurred;
   cv::GaussianBlur(Rectangle(), blurred, cv::Size(), options.blur_sigma_px);
   options.blur_sigma_px = 0.0;
@@ -171,12 +165,6 @@ TEST(NearestEdgeTest, OfTheLargestSides) {
     EXPECT_EQ(NearestEdgeMap(column).at<cv::Vec2s>(i, 0),
               cv::Vec2s(0, static_cast<short>(nearest)));
   }
-}
-
-TEST(NearestEdgeTest, OfTwoEquallyNearTheLeftThenTheUpperWins) {
-  cv::Mat edges = cv::Mat::zeros(3, 3, CV_8UC1);
-  for (const auto& [x, y] : {std::pair(0, 0), {2, 0}, {0, 2}, {2, 2}}) edges.at<uchar>(y, x) = 255;
-  EXPECT_EQ(NearestEdgeMap(edges).at<cv::Vec2s>(1, 1), cv::Vec2s(0, 0));
 }
 
 constexpr double kMinLength = 40.0;

@@ -44,24 +44,10 @@ TEST(MotionTrackerTest, FindsNothingOfAnotherView) {
   EXPECT_FALSE(MotionTracker(nothing).MedianDisplacement(nothing));
 }
 
-TEST(FrameSelectorTest, LeavesOutWhatShowsTheSame) {
-  const Reasons reasons =
-      ReasonsFor({DrawnView(0), DrawnView(0), DrawnView(1), DrawnView(20), DrawnView(20)});
-  EXPECT_EQ(ChosenOf(reasons).size(), 2u);
-  EXPECT_EQ(std::ranges::count(reasons, FrameRejection::kNoMotion), 3);
-}
-
 TEST(FrameSelectorTest, TakesTheSharpestOfOnePlace) {
   EXPECT_THAT(ChosenOf(ReasonsFor({Blurred(DrawnView(0)), DrawnView(0), Blurred(DrawnView(0)),
                                    Blurred(DrawnView(40)), DrawnView(40)})),
               testing::ElementsAre(1, 4));
-}
-
-TEST(FrameSelectorTest, LeavesOutABlurredOne) {
-  const Reasons reasons = ReasonsFor(
-      {DrawnView(0), DrawnView(20), Blurred(DrawnView(40)), DrawnView(60), DrawnView(80)});
-  EXPECT_THAT(ChosenOf(reasons), testing::ElementsAre(0, 1, 3, 4));
-  EXPECT_EQ(reasons[2], FrameRejection::kBlurred);
 }
 
 TEST(FrameSelectorTest, ImagesThatAreAllSoftAreNotBlurred) {

@@ -6,7 +6,6 @@
 #include "support/drawn_photos.h"
 #include "support/folder_test.h"
 #include "support/image_files.h"
-#include "support/temporary_folder.h"
 
 namespace soslam {
 namespace {
@@ -150,17 +149,6 @@ TEST(ExifFocalLengthTest, IsNotKnown) {
   const std::string of_other_shape = ExifWith({{0xA002, 4000}, {0xA003, 3000}, {kInFilm, 26}});
   EXPECT_TRUE(ExifFocalOverDiagonal(of_other_shape, kPhoto));
   EXPECT_FALSE(ExifFocalOverDiagonal(of_other_shape, {3000, 3000})) << "cropped";
-}
-
-TEST(ExifFocalLengthTest, IsInTheHeaderOfAPhoto) {
-  const TemporaryFolder folder;
-  WritePhoto(folder / "photo.jpg", DrawnView(0), ExifOfCamera(6, 28));
-  const auto header = ReadImageHeader(folder / "photo.jpg");
-  ASSERT_TRUE(header && header->focal_over_diagonal);
-  EXPECT_EQ(header->orientation, 6);
-  EXPECT_NEAR(*header->focal_over_diagonal, 28.0 / kFilmDiagonalMm, 1e-12);
-  WritePhoto(folder / "photo.jpg", DrawnView(0));
-  EXPECT_FALSE(ReadImageHeader(folder / "photo.jpg")->focal_over_diagonal);
 }
 
 }  // namespace

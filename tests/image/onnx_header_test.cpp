@@ -15,24 +15,6 @@ using Shape = std::vector<std::int64_t>;
 
 OnnxHeader Read(const std::string& bytes) { return ReadOnnxHeader(bytes, "net.onnx"); }
 
-TEST(OnnxHeaderTest, SaysWhatTheFileDeclares) {
-  MeanNetwork network = {{1, 2, 7}, std::vector<float>(14), {}, 96, 32};
-  network.metadata = {{"task", "segment"}};
-  network.has_masks = true;
-  network.opset = 17;
-  const OnnxHeader header = Read(network.Onnx());
-  const OnnxValue input = Only(header.inputs);
-  EXPECT_EQ(input.type, OnnxValue::kFloat);
-  EXPECT_EQ(input.shape, (Shape{1, 3, 32, 96}));
-  ASSERT_EQ(header.outputs.size(), 2u);
-  EXPECT_EQ(header.outputs[0].shape, (Shape{1, 2, 7}));
-  EXPECT_EQ(header.outputs[1].shape, (Shape{1, 3, 1, 1}));
-  EXPECT_EQ(header.opset, 17);
-  EXPECT_EQ(header.operators, (std::set<std::string>{"Conv", "GlobalAveragePool", "Reshape"}));
-  EXPECT_FALSE(header.has_half_weights);
-  EXPECT_EQ(header.metadata.at("task"), "segment");
-}
-
 TEST(OnnxHeaderTest, WeightsAreNoInputs) {
   OnnxGraph graph;
   graph.Input("weights", {1}).Floats<float>("weights", {1}, {1}).Input("images", {0, 3, 0, 640});

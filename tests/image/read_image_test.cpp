@@ -55,14 +55,6 @@ class ReadImageTest : public FolderTest {
   }
 };
 
-TEST_F(ReadImageTest, ColourBecomesGrey) {
-  const cv::Mat colour(8, 9, CV_8UC3, cv::Scalar(10, 20, 200));
-  const cv::Mat read = ReadImage(Write("a.png", EncodedImage(".png", colour)), kGrey);
-  ASSERT_EQ(read.type(), CV_8UC1);
-  // 0.299 red + 0.587 green + 0.114 blue = 72.7; 1 for the rounding of integer weights.
-  EXPECT_NEAR(read.at<uchar>(4, 4), 72.7, 1.0);
-}
-
 // The image with a note of its orientation in each format that has one.
 std::vector<std::string> WithOrientation(const cv::Mat& image, int orientation, ByteOrder order) {
   const std::string exif = ExifOf(orientation, order);
@@ -200,11 +192,7 @@ TEST_F(ReadImageTest, SizesWhereOnlyDecodersLookAreRefused) {
 
 TEST_F(ReadImageTest, FormatsWithoutLossComeBackExactly) {
   cv::Mat colour(40, 60, CV_8UC3);
-  for (int y = 0; y < 40; ++y) {
-    for (int x = 0; x < 60; ++x)
-      colour.at<cv::Vec3b>(y, x) = {static_cast<uchar>(4 * x), static_cast<uchar>(6 * y),
-                                    static_cast<uchar>(x * y)};
-  }
+  cv::randu(colour, 0, 256);
   for (const char* extension : {".png", ".webp", ".bmp", ".tiff"}) {
     const auto path = Write("a", EncodedImage(extension, colour));
     EXPECT_EQ(cv::norm(ReadImage(path, kColour), colour, cv::NORM_INF), 0.0) << extension;

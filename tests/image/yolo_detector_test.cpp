@@ -15,18 +15,6 @@
 namespace soslam {
 namespace {
 
-// 640 x 480 fills 320 x 240 of 320 x 320, 40 rows below the top. A pixel of the input is two of the
-// image; the image's own first pixel has its centre at 0, half a pixel from the corner.
-TEST(LetterboxTest, WideImageByHand) {
-  const Letterbox letterbox({640, 480}, {320, 320});
-  ExpectBox(letterbox.ToImage({0, 40, 320, 280}), {-0.5, -0.5, 639.5, 479.5});
-  ExpectBox(letterbox.ToImage({10, 50, 20, 65}), {19.5, 19.5, 39.5, 49.5});
-  // What is outside the image is cut off.
-  ExpectBox(letterbox.ToImage({-10, 20, 30, 400}), {-0.5, -0.5, 59.5, 479.5});
-  const Box in_the_padding = letterbox.ToImage({10, 5, 30, 35});
-  EXPECT_EQ(in_the_padding.Height(), 0.0);
-}
-
 TEST(LetterboxTest, FitsTheImageInGrey) {
   const cv::Mat image(480, 640, CV_8UC3, cv::Scalar(10, 20, 30));
   const cv::Mat fitted = Letterbox(image.size(), {320, 320}).Fit(image);
@@ -140,14 +128,6 @@ TEST_F(YoloDetectorTest, YoloxRawAndDecoded) {
 }
 
 TEST_F(YoloDetectorTest, BadFilesAreNamed) {
-  const auto load = [&](const std::string& bytes) {
-    Write("bad.onnx", bytes);
-    ReadNetworkFile(folder_ / "bad.onnx");
-  };
-  const std::string whole = MeanNetwork{{1, 4, 7}, kCandidates, {}}.Onnx();
-  ExpectError<InputError>([&] { load(""); }, {"bad.onnx"});
-  ExpectError<InputError>([&] { load("no network"); }, {"bad.onnx", "ONNX"});
-  ExpectError<InputError>([&] { load(whole.substr(0, whole.size() / 2)); }, {"bad.onnx", "ONNX"});
   // A network that cannot run: seven numbers do not make eight.
   ExpectError<InputError>(
       [&] {

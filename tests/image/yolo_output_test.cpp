@@ -39,29 +39,6 @@ void ExpectScored(const YoloDetection& box, int class_index, double score, const
   ExpectBox(box.box, expected);
 }
 
-TEST(YoloOutputTest, V5HasARowPerCandidateWithObjectness) {
-  const cv::Mat output = Output({1, 3, 7}, {100, 50, 20, 10, 0.8F, 0.1F, 0.5F,  //
-                                            30,  40, 10, 20, 0.5F, 0.4F, 0.3F,  // 0.2: too low
-                                            10,  10, 4,  6,  1.0F, 1.0F, 0.0F});
-  const auto boxes = Read(output, YoloLayout::kV5);
-  ASSERT_EQ(boxes.size(), 2u);
-  ExpectScored(boxes[0], 1, 0.4, {90, 45, 110, 55});
-  ExpectScored(boxes[1], 0, 1.0, {8, 7, 12, 13});
-}
-
-TEST(YoloOutputTest, V8HasAColumnPerCandidate) {
-  const cv::Mat output = Output({1, 6, 3}, {100, 30, 10,         // cx
-                                            50, 40, 10,          // cy
-                                            20, 10, 4,           // w
-                                            10, 20, 6,           // h
-                                            0.1F, 0.2F, 1.0F,    // class 0
-                                            0.5F, 0.1F, 0.0F});  // class 1
-  const auto boxes = Read(output, YoloLayout::kV8);
-  ASSERT_EQ(boxes.size(), 2u);
-  ExpectScored(boxes[0], 1, 0.5, {90, 45, 110, 55});
-  ExpectScored(boxes[1], 0, 1.0, {8, 7, 12, 13});
-}
-
 TEST(YoloOutputTest, EndToEndHasCornersScoreAndClass) {
   const cv::Mat output = Output({1, 3, 6}, {90, 45, 110, 55, 0.4F, 1,  //
                                             0, 0, 0, 0, 0, 0,          // padding

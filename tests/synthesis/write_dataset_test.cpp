@@ -102,15 +102,6 @@ TEST_F(WriteDatasetTest, SameBytesForAnyNumberOfThreads) {
   EXPECT_EQ(first, Contents(folder_));
 }
 
-TEST_F(WriteDatasetTest, ReplacesWhatItWroteBefore) {
-  Scene scene = SmallScene();
-  WriteDataset(scene, true, folder_, 1);
-  scene.trajectory.frames = 2;
-  WriteDataset(scene, true, folder_.string() + "/", 1);
-  EXPECT_FALSE(fs::exists(folder_ / "rgb/000002.png"));
-  EXPECT_TRUE(fs::exists(folder_ / "rgb/000001.png"));
-}
-
 TEST_F(WriteDatasetTest, RefusesForeignFoldersAndFiles) {
   fs::create_directory(folder_);
   WriteBytes(folder_ / "thesis.tex", "years of work");
