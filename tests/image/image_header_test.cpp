@@ -50,17 +50,6 @@ TEST_F(ImageHeaderTest, OrientationsThatMeanNothingAreUpright) {
   ExpectHeader(JpegWithExif(jpeg, Tiff(ByteOrder::kBigEndian, {{274, 6, 10}})), 1);  // no integer
 }
 
-TEST_F(ImageHeaderTest, SizeAsItIsRead) {
-  const auto turned = Read(JpegWithExif(EncodedImage(".jpg", kImage), ExifOf(8)));
-  ASSERT_TRUE(turned);
-  EXPECT_EQ(turned->Size(ImageOrientation::kUpright).width, 40);
-  EXPECT_EQ(turned->Size(ImageOrientation::kUpright).height, 60);
-  EXPECT_EQ(turned->Size(ImageOrientation::kStored).width, 60);
-  const auto upside_down = Read(JpegWithExif(EncodedImage(".jpg", kImage), ExifOf(3)));
-  ASSERT_TRUE(upside_down);
-  EXPECT_EQ(upside_down->Size(ImageOrientation::kUpright).width, 60);
-}
-
 TEST_F(ImageHeaderTest, NoHeaderWhereThereIsNone) {
   EXPECT_FALSE(ReadImageHeader(folder_ / "none"));
   EXPECT_FALSE(ReadImageHeader(folder_.path()));

@@ -5,28 +5,21 @@
 
 #include "base/error.h"
 #include "support/expect_error.h"
-#include "support/temporary_folder.h"
+#include "support/folder_test.h"
 
 namespace soslam {
 namespace {
 
 constexpr const char* kHeader = "name,category,depth_m,width_m,height_m,collection\n";
 
-class FurnitureCatalogueTest : public testing::Test {
+class FurnitureCatalogueTest : public FolderTest {
  protected:
   std::vector<CatalogueModel> Read(const std::string& text) const {
-    WriteBytes(folder_ / "models.csv", text);
-    return ReadFurnitureCatalogue(folder_ / "models.csv");
-  }
-  void ExpectRefused(const std::string& text, const std::vector<std::string>& words) const {
-    ExpectError<InputError>([&] { Read(text); }, words);
+    return ReadFurnitureCatalogue(Write("models.csv", text));
   }
   CatalogueNames ReadNames(const std::string& text) const {
-    WriteBytes(folder_ / "names.json", text);
-    return ReadCatalogueNames(folder_ / "names.json");
+    return ReadCatalogueNames(Write("names.json", text));
   }
-
-  TemporaryFolder folder_;
 };
 
 TEST_F(FurnitureCatalogueTest, ReadsHalfAxesFrontFirst) {
@@ -39,9 +32,10 @@ TEST_F(FurnitureCatalogueTest, ReadsHalfAxesFrontFirst) {
 
 TEST_F(FurnitureCatalogueTest, BadFilesAreRefusedByLineAndField) {
   const std::string header = kHeader;
-  ExpectRefused("name,category,depth_m,width_m\n", {"models.csv:1", "height_m"});
-  ExpectRefused(header + "Cup,Hall,1,wide,1,Ours\n", {"models.csv:2", "width_m", "wide"});
-  ExpectRefused(header + "Cup,Hall,1,1,0,Ours\n", {"models.csv:2", "height_m is 0"});
+  ExpectBadTexts({{"name,category,depth_m,width_m\n", {":1", "height_m"}},
+                  {header + "Cup,Hall,1,wide,1,Ours\n", {":2", "width_m", "wide"}},
+                  {header + "Cup,Hall,1,1,0,Ours\n", {":2", "height_m is 0"}}},
+                 "models.csv", [&](const std::string& text) { Read(text); });
 }
 
 TEST_F(FurnitureCatalogueTest, NamesHoldInAnyCategoryOrInOne) {
@@ -57,9 +51,9 @@ TEST_F(FurnitureCatalogueTest, NamesHoldInAnyCategoryOrInOne) {
 }
 
 TEST_F(FurnitureCatalogueTest, NamesOfAnotherFormAreRefused) {
-  ExpectError<InputError>([&] { ReadNames(R"({"labels": {"chair": "Stool"}})"); },
-                          {"names.json", "/labels/chair"});
-  ExpectError<InputError>([&] { ReadNames(R"({"chair": []})"); }, {"names.json"});
+  ExpectBadTexts(
+      {{R"({"labels": {"chair": "Stool"}})", {"/labels/chair"}}, {R"({"chair": []})", {}}},
+      "names.json", [&](const std::string& text) { ReadNames(text); });
 }
 
 }  // namespace
