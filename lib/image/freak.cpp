@@ -31,6 +31,7 @@ double FieldSigma(size_t ring) {
 struct ReceptiveField {
   size_t ring = 0;
   Eigen::Vector2d offset;  // from the centre of the patch, px
+  cv::Point pixel;         // the same in whole pixels
 };
 using Retina = std::array<ReceptiveField, kFields>;
 
@@ -44,6 +45,8 @@ Retina MakeRetina() {
     const double angle = steps * 2.0 * std::numbers::pi / kFieldsOfRing;
     field.offset =
         kRingRadii[field.ring] * kPxPerRadius * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    field.pixel = {static_cast<int>(std::lround(field.offset.x())),
+                   static_cast<int>(std::lround(field.offset.y()))};
   }
   return retina;
 }
@@ -111,21 +114,6 @@ std::vector<FieldPair> SelectPairs() {
   return selected;
 }
 
-struct PixelOffset {
-  size_t ring;
-  int x;
-  int y;
-};
-
-std::vector<PixelOffset> PixelOffsets() {
-  std::vector<PixelOffset> offsets;
-  for (const ReceptiveField& field : MakeRetina()) {
-    offsets.push_back({field.ring, static_cast<int>(std::lround(field.offset.x())),
-                       static_cast<int>(std::lround(field.offset.y()))});
-  }
-  return offsets;
-}
-
 }  // namespace
 
 FreakImage SmoothForFreak(const cv::Mat& grey) {
@@ -139,15 +127,15 @@ FreakImage SmoothForFreak(const cv::Mat& grey) {
 
 std::optional<FreakBits> FreakDescriptor(const FreakImage& smoothed, const Eigen::Vector2d& pixel,
                                          bool mirrored) {
-  static const std::vector<PixelOffset> offsets = PixelOffsets();
+  static const Retina retina = MakeRetina();
   static const std::vector<FieldPair> pairs = SelectPairs();
   const auto centre = PatchCentre(smoothed.front().size(), pixel, kFreakPatchRadius);
   if (!centre) return std::nullopt;
   std::array<std::uint8_t, kFields> grey;
-  for (size_t i = 0; i < offsets.size(); ++i) {
-    const PixelOffset& offset = offsets[i];
-    grey[i] = smoothed[offset.ring].at<std::uint8_t>(centre->y + offset.y,
-                                                     centre->x + (mirrored ? -offset.x : offset.x));
+  for (size_t i = 0; i < retina.size(); ++i) {
+    const cv::Point& offset = retina[i].pixel;
+    const int x = centre->x + (mirrored ? -offset.x : offset.x);
+    grey[i] = smoothed[retina[i].ring].at<std::uint8_t>(centre->y + offset.y, x);
   }
   return BitsWhere<FreakBits().size()>(
       [&](size_t i) { return grey[pairs[i].first] < grey[pairs[i].second]; });

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <opencv2/videoio.hpp>
 #include <string>
+#include <string_view>
 
 #include "base/error.h"
 #include "base/paths.h"
@@ -22,14 +23,16 @@ using namespace std::string_view_literals;
 
 constexpr const char* kFormats = "a video: MP4, MOV, AVI, MKV or WebM";
 
-}  // namespace
-
+// True if the first bytes are those of a video: MP4, MOV and relatives, AVI, Matroska, WebM. Lists
+// of other files, which decoders would follow, are none.
 bool IsVideo(std::string_view first_bytes) {
   const std::string_view at_4 = first_bytes.substr(std::min<size_t>(4, first_bytes.size()), 4);
   const bool is_quicktime = at_4 == "ftyp" || at_4 == "moov" || at_4 == "mdat" || at_4 == "wide";
   const bool is_avi = first_bytes.starts_with("RIFF") && first_bytes.ends_with("AVI ");
   return is_quicktime || is_avi || first_bytes.starts_with("\x1a\x45\xdf\xa3"sv);
 }
+
+}  // namespace
 
 VideoReader::VideoReader(const std::filesystem::path& path) : path_(path) {
   if (!IsFile(path)) {

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <memory>
 #include <opencv2/core/mat.hpp>
-#include <string_view>
 
 namespace cv {
 class VideoCapture;
@@ -12,11 +11,8 @@ class VideoCapture;
 
 namespace soslam {
 
-// True if the first bytes are those of a video: MP4, MOV and relatives, AVI, Matroska, WebM. Lists
-// of other files, which decoders would follow, are none.
-bool IsVideo(std::string_view first_bytes);
-
-// Reads the frames of a video from the first to the last, upright.
+// Reads the frames of a video from the first to the last, upright: MP4, MOV and relatives, AVI,
+// Matroska, WebM.
 class VideoReader {
  public:
   // Throws InputError for a file that is missing, no such video, or has no frame that can be
