@@ -4,19 +4,29 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <vector>
 
 namespace soslam {
 namespace {
 
 using namespace std::string_view_literals;
 
-constexpr size_t kEntrySize = 12;  // tag 2, type 2, count 4, value or its offset 4
+constexpr std::uint64_t kTiffOrientation = 274;
 
 std::optional<ByteOrder> OrderOf(std::string_view head) {
   if (head == "II*\0"sv) return ByteOrder::kLittleEndian;
   if (head == "MM\0*"sv) return ByteOrder::kBigEndian;
   return std::nullopt;
 }
+
+// A tag of a TIFF file and its numbers.
+struct TiffEntry {
+  std::uint64_t tag;
+  size_t bytes_each;    // bytes per number; 0 if they are not unsigned integers
+  bool is_ratio;        // each value is a RATIONAL: two unsigned integers of 4 bytes
+  std::uint64_t count;  // as the file claims
+  std::uint64_t begin;  // offset in the file
+};
 
 // Bytes per number of type BYTE, SHORT or LONG; 0 for other types.
 size_t BytesEach(std::uint64_t type) {
@@ -35,66 +45,88 @@ TiffEntry ParseEntry(std::string_view bytes, std::uint64_t begin, ByteOrder orde
   return entry;
 }
 
-}  // namespace
-
-std::optional<TiffDirectory> TiffDirectory::Read(const ImageBytes& file) {
-  const auto order = OrderOf(file.UpTo(0, 4));
-  if (!order) return std::nullopt;
-  const auto begin = file.NumberAt(4, 4, *order);
-  return begin ? ReadAt(*begin, *order, file) : std::nullopt;
-}
-
-std::optional<TiffDirectory> TiffDirectory::ReadAt(std::uint64_t begin, ByteOrder order,
-                                                   const ImageBytes& file) {
-  const auto count = file.NumberAt(begin, 2, order);
-  const auto bytes = count ? file.At(begin + 2, *count * kEntrySize) : std::nullopt;
-  if (!bytes) return std::nullopt;
-  std::vector<TiffEntry> entries;
-  for (size_t at = 0; at < bytes->size(); at += kEntrySize) {
-    entries.push_back(
-        ParseEntry(std::string_view(*bytes).substr(at, kEntrySize), begin + 2 + at, order));
+// The first directory of a TIFF file (TIFF 6.0, section 2). EXIF data are a TIFF file within
+// another.
+class TiffDirectory {
+ public:
+  // None if the file is no TIFF file, or ends before the directory does.
+  static std::optional<TiffDirectory> Read(const ImageBytes& file) {
+    const auto order = OrderOf(file.UpTo(0, 4));
+    if (!order) return std::nullopt;
+    const auto begin = file.NumberAt(4, 4, *order);
+    return begin ? ReadAt(*begin, *order, file) : std::nullopt;
   }
-  return TiffDirectory(file, order, std::move(entries));
-}
 
-std::optional<TiffDirectory> TiffDirectory::SubDirectory(std::uint64_t tag) const {
-  const auto begin = Number(tag);
-  return begin ? ReadAt(*begin, order_, file_) : std::nullopt;
-}
+  // The directory that an entry with this tag points to, as EXIF's own; none as for Read.
+  std::optional<TiffDirectory> SubDirectory(std::uint64_t tag) const {
+    const auto begin = Number(tag);
+    return begin ? ReadAt(*begin, order_, file_) : std::nullopt;
+  }
 
-std::optional<TiffEntry> TiffDirectory::Find(std::uint64_t tag) const {
-  const auto found = std::ranges::find(entries_, tag, &TiffEntry::tag);
-  if (found == entries_.end() || found->bytes_each == 0 || found->count == 0) return std::nullopt;
-  return *found;
-}
+  ByteOrder order() const { return order_; }
 
-std::ptrdiff_t TiffDirectory::Count(std::uint64_t tag) const {
-  return std::ranges::count(entries_, tag, &TiffEntry::tag);
-}
+  // The first entry with this tag; none if there is none, or its numbers are not unsigned integers.
+  std::optional<TiffEntry> Find(std::uint64_t tag) const {
+    const auto found = std::ranges::find(entries_, tag, &TiffEntry::tag);
+    if (found == entries_.end() || found->bytes_each == 0 || found->count == 0) return std::nullopt;
+    return *found;
+  }
 
-std::optional<std::uint64_t> TiffDirectory::Number(std::uint64_t tag) const {
-  const auto entry = Find(tag);
-  return entry ? file_.NumberAt(entry->begin, entry->bytes_each, order_) : std::nullopt;
-}
+  // Number of entries with this tag.
+  std::ptrdiff_t Count(std::uint64_t tag) const {
+    return std::ranges::count(entries_, tag, &TiffEntry::tag);
+  }
 
-std::optional<double> TiffDirectory::Ratio(std::uint64_t tag) const {
-  const auto found = std::ranges::find(entries_, tag, &TiffEntry::tag);
-  if (found == entries_.end() || !found->is_ratio || found->count == 0) return std::nullopt;
-  const auto numerator = file_.NumberAt(found->begin, 4, order_);
-  const auto denominator = file_.NumberAt(found->begin + 4, 4, order_);
-  if (!numerator || !denominator || *denominator == 0) return std::nullopt;
-  return static_cast<double>(*numerator) / static_cast<double>(*denominator);
-}
+  // The first number of the first entry with this tag; none if there is none, or it is not in the
+  // file.
+  std::optional<std::uint64_t> Number(std::uint64_t tag) const {
+    const auto entry = Find(tag);
+    return entry ? file_.NumberAt(entry->begin, entry->bytes_each, order_) : std::nullopt;
+  }
 
-std::optional<int> ExifOrientation(const TiffDirectory& exif) {
-  const auto orientation = exif.Number(kTiffOrientation);
+  // The first ratio of the first entry with this tag; none also if its denominator is zero.
+  std::optional<double> Ratio(std::uint64_t tag) const {
+    const auto found = std::ranges::find(entries_, tag, &TiffEntry::tag);
+    if (found == entries_.end() || !found->is_ratio || found->count == 0) return std::nullopt;
+    const auto numerator = file_.NumberAt(found->begin, 4, order_);
+    const auto denominator = file_.NumberAt(found->begin + 4, 4, order_);
+    if (!numerator || !denominator || *denominator == 0) return std::nullopt;
+    return static_cast<double>(*numerator) / static_cast<double>(*denominator);
+  }
+
+ private:
+  TiffDirectory(ImageBytes file, ByteOrder order) : file_(std::move(file)), order_(order) {}
+
+  static std::optional<TiffDirectory> ReadAt(std::uint64_t begin, ByteOrder order,
+                                             const ImageBytes& file) {
+    constexpr size_t kEntrySize = 12;  // tag 2, type 2, count 4, value or its offset 4
+    const auto count = file.NumberAt(begin, 2, order);
+    const auto bytes = count ? file.At(begin + 2, *count * kEntrySize) : std::nullopt;
+    if (!bytes) return std::nullopt;
+    TiffDirectory directory(file, order);
+    for (size_t at = 0; at < bytes->size(); at += kEntrySize) {
+      directory.entries_.push_back(
+          ParseEntry(std::string_view(*bytes).substr(at, kEntrySize), begin + 2 + at, order));
+    }
+    return directory;
+  }
+
+  ImageBytes file_;
+  ByteOrder order_;
+  std::vector<TiffEntry> entries_;
+};
+
+std::optional<int> OrientationIn(const TiffDirectory& directory) {
+  const auto orientation = directory.Number(kTiffOrientation);
   if (!orientation || *orientation < 1 || *orientation > 8) return std::nullopt;
   return static_cast<int>(*orientation);
 }
 
+}  // namespace
+
 std::optional<int> ExifOrientation(std::string_view exif) {
   const auto directory = TiffDirectory::Read(ImageBytes(exif));
-  return directory ? ExifOrientation(*directory) : std::nullopt;
+  return directory ? OrientationIn(*directory) : std::nullopt;
 }
 
 namespace {
@@ -146,7 +178,7 @@ std::optional<ImageHeader> Header(const ImageBytes& file) {
   const auto height = directory->Number(kHeight);
   if (!width || !height) return std::nullopt;
   return ImageHeader{{static_cast<std::int64_t>(*width), static_cast<std::int64_t>(*height)},
-                     ExifOrientation(*directory).value_or(1)};
+                     OrientationIn(*directory).value_or(1)};
 }
 
 // True if all numbers of both entries are in the file, and so are the blocks (offset and length)
