@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <functional>
 #include <set>
 #include <utility>
 
 #include "base/text.h"
+#include "inspection/inspection.h"
 #include "report/page_html.h"
 #include "report/tables.h"
 
@@ -15,21 +13,28 @@ namespace {
 
 using nlohmann::json;
 
-// Calls `visit` for each map of these variants, by dataset.
-void ForEachMap(const std::vector<DatasetResult>& datasets,
-                const std::vector<std::string>& variants,
-                const std::function<void(const DatasetResult&, const VariantResult&)>& visit) {
+struct EvaluatedMap {
+  std::string dataset;
+  const VariantResult& variant;
+  const json& quality;  // map_quality of its metrics
+};
+
+// The maps of these variants, by dataset.
+std::vector<EvaluatedMap> MapsOf(const std::vector<DatasetResult>& datasets,
+                                 const std::vector<std::string>& variants) {
+  std::vector<EvaluatedMap> maps;
   for (const DatasetResult& dataset : datasets) {
     for (const std::string& name : variants) {
       const VariantResult* const variant = dataset.Evaluated(name);
-      if (variant && variant->metrics.contains("map_quality")) visit(dataset, *variant);
+      if (!variant || !variant->metrics.contains("map_quality")) continue;
+      maps.push_back({dataset.name, *variant, variant->metrics["map_quality"]});
     }
   }
+  return maps;
 }
 
-std::vector<Cell> WithMap(const DatasetResult& dataset, const VariantResult& variant,
-                          const std::vector<Cell>& cells) {
-  std::vector<Cell> row = {dataset.name, variant.name};
+std::vector<Cell> WithMap(const EvaluatedMap& map, const std::vector<Cell>& cells) {
+  std::vector<Cell> row = {map.dataset, map.variant.name};
   row.insert(row.end(), cells.begin(), cells.end());
   return row;
 }
@@ -69,13 +74,11 @@ std::vector<Cell> LimitsRow(const json& landmark) {
   const json& wrong = landmark.at("wrong_part");
   return {ObjectName(landmark, "true_object"),
           wrong.is_null() ? kNoValue : WithBlanks(wrong.at("part")),
-          NumberText(errors.at("iou"), 3),
-          wrong.is_null() ? kNoValue : NumberText(wrong.at("iou_corrected"), 3),
-          NumberText(errors.at("centre_m"), 3),
-          fmt::format("{}, {}, {}", NumberText(errors.at("log_size").at(0), 2),
-                      NumberText(errors.at("log_size").at(1), 2),
-                      NumberText(errors.at("log_size").at(2), 2)),
-          NumberText(errors.at("yaw_error_deg"), 1)};
+          FillIn("{iou:.3f}", errors),
+          wrong.is_null() ? kNoValue : FillIn("{iou_corrected:.3f}", wrong),
+          FillIn("{centre_m:.3f}", errors),
+          FillIn("{log_size/0:.2f}, {log_size/1:.2f}, {log_size/2:.2f}", errors),
+          FillIn("{yaw_error_deg:.1f}", errors)};
 }
 
 }  // namespace
@@ -83,19 +86,18 @@ std::vector<Cell> LimitsRow(const json& landmark) {
 Table MapsTable(const std::vector<DatasetResult>& datasets,
                 const std::vector<std::string>& variants) {
   Table table = {"maps", "Maps against all that is true", {}, {}, 4, {}};
-  ForEachMap(datasets, variants, [&](const DatasetResult& dataset, const VariantResult& variant) {
-    const Table one = QualityTables({dataset.name, {variant}}).front();
+  for (const EvaluatedMap& map : MapsOf(datasets, variants)) {
+    const Table one = QualityTables({map.dataset, {map.variant}}).front();
     if (table.header.empty()) {
       table.header = {"dataset", "variant", "ids", "planes"};
       table.header.insert(table.header.end(), one.header.begin() + 1, one.header.end());
       table.notes = {one.notes.front()};
     }
-    std::vector<Cell> row = WithMap(dataset, variant,
-                                    {SourceOf(variant, "associate", "associations.json"),
-                                     SourceOf(variant, "planes", "planes.json")});
+    std::vector<Cell> row = WithMap(map, {SourceOf(map.variant, "associate", "associations.json"),
+                                          SourceOf(map.variant, "planes", "planes.json")});
     row.insert(row.end(), one.rows.front().begin() + 1, one.rows.front().end());
     table.rows.push_back(std::move(row));
-  });
+  }
   return table;
 }
 
@@ -110,28 +112,26 @@ Table LostTable(const std::vector<DatasetResult>& datasets,
       {"At IoU 0.25, with their ids, those of false landmarks in the map. The landmark of "
        "a missed object is not listed again. soslam-inspect metrics.json says more of "
        "each."}};
-  ForEachMap(datasets, variants, [&](const DatasetResult& dataset, const VariantResult& variant) {
-    const json& quality = variant.metrics["map_quality"];
+  for (const EvaluatedMap& map : MapsOf(datasets, variants)) {
     NamesByKey missed, false_ones;  // by reason
     std::set<int> missed_ids;
-    for (const json& object : quality.at("objects")) {
+    for (const json& object : map.quality.at("objects")) {
       if (object.at("reason").is_null()) continue;
       missed[WithBlanks(object.at("reason"))].push_back(ObjectName(object, "true_object"));
       missed_ids.insert(object.at("true_object").get<int>());
     }
-    for (const json& landmark : quality.at("landmarks")) {
+    for (const json& landmark : map.quality.at("landmarks")) {
       if (landmark.at("reason").is_null() || IsOfMissed(landmark, missed_ids)) continue;
       false_ones[WithBlanks(landmark.at("reason"))].push_back(ObjectName(landmark, "object"));
     }
     const auto add_rows = [&](const char* mistake, const NamesByKey& names) {
       for (const auto& [reason, objects] : names) {
-        AddOrJoin(WithMap(dataset, variant, {mistake, reason, NamesInWords(objects, kNamesInCell)}),
-                  &table);
+        AddOrJoin(WithMap(map, {mistake, reason, NamesInWords(objects, kNamesInCell)}), &table);
       }
     };
     add_rows("missed", missed);
     add_rows("false", false_ones);
-  });
+  }
   return table;
 }
 
@@ -146,12 +146,11 @@ Table LimitsTable(const std::vector<DatasetResult>& datasets,
                  {"The part of the landmark (plane, size, yaw, place) that gains most if it is "
                   "replaced by the true one, and the IoU then. Logarithms are of estimate over "
                   "truth, along the true axes."}};
-  ForEachMap(datasets, variants, [&](const DatasetResult& dataset, const VariantResult& variant) {
-    for (const json& landmark : variant.metrics["map_quality"].at("landmarks")) {
-      if (landmark.at("fate") != "found") continue;
-      table.rows.push_back(WithMap(dataset, variant, LimitsRow(landmark)));
+  for (const EvaluatedMap& map : MapsOf(datasets, variants)) {
+    for (const json& landmark : map.quality.at("landmarks")) {
+      if (landmark.at("fate") == "found") table.rows.push_back(WithMap(map, LimitsRow(landmark)));
     }
-  });
+  }
   return table;
 }
 

@@ -66,10 +66,6 @@ std::string WithBlanks(std::string name) {
   return name;
 }
 
-std::string NumberText(const json& value, int decimals, const char* none) {
-  return value.is_number() ? fmt::format("{:.{}f}", value.get<double>(), decimals) : none;
-}
-
 std::string ObjectName(const json& row, const char* id) {
   return fmt::format("{} {}", row.at("label").get<std::string>(), row.at(id).get<int>());
 }

@@ -30,9 +30,6 @@ std::string PageText(const nlohmann::json& data);
 // A name of the artefacts as words: "no_support" is "no support".
 std::string WithBlanks(std::string name);
 
-// A number of an artefact; `none` where there is no number.
-std::string NumberText(const nlohmann::json& value, int decimals, const char* none = kNoValue);
-
 // "cup 7": the label and this id of a row of an artefact.
 std::string ObjectName(const nlohmann::json& row, const char* id);
 

@@ -24,7 +24,7 @@ using nlohmann::json;
 using Pointer = json::json_pointer;
 
 std::string NumberOrDash(const json& value, int decimals) {
-  return NumberText(value, decimals, "–");
+  return value.is_number() ? fmt::format("{:.{}f}", value.get<double>(), decimals) : "–";
 }
 
 // {"name": count, ...} as "2 name, 1 other name".
