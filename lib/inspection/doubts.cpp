@@ -106,14 +106,11 @@ std::vector<std::string> DoubtsOfMap(const fs::path& folder, const MapEstimate& 
   const std::map<int, Sightings> sightings = ReadSightings(folder / "associations.json");
   const std::vector<std::optional<int>> segments = SegmentsOfObjects(sequence);
   std::vector<std::string> doubts;
-  std::map<int, Eigen::Vector3d> up_of_segment;
   for (const ObjectEstimate& estimate : map.objects) {
-    const int segment = segments[estimate.object_index].value_or(0);
-    if (!up_of_segment.contains(segment)) up_of_segment[segment] = UpOfSegment(sequence, segment);
     const auto found = sightings.find(sequence.objects[estimate.object_index].id);
     doubts.push_back(DoubtsInWords(
         estimate, found == sightings.end() ? std::nullopt : std::optional(found->second),
-        up_of_segment.at(segment)));
+        UpOfSegment(sequence, segments[estimate.object_index].value_or(0))));
   }
   return doubts;
 }

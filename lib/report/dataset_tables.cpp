@@ -30,7 +30,6 @@ constexpr std::array<Column, 8> kColumns = {{
     {"yaw error deg", "/summary/yaw_error_deg_mean", 2},
     {"ATE m", "/trajectory/ate_rmse_m", 4},
 }};
-constexpr const char* kOdometryAte = "/trajectory/odometry_ate_rmse_m";
 
 std::vector<Cell> RowOf(const VariantResult& variant) {
   std::vector<Cell> row = {variant.name};
@@ -54,7 +53,7 @@ Table DatasetTable(const DatasetResult& dataset) {
   for (const VariantResult& variant : dataset.variants) {
     const bool has_row = std::ranges::find(kPaperVariants, variant.name) != kPaperVariants.end();
     if (!has_row && !variant.metrics.is_null()) table.rows.push_back(RowOf(variant));
-    const auto ate = MetricsNumber(variant, kOdometryAte);
+    const auto ate = MetricsNumber(variant, "/trajectory/odometry_ate_rmse_m");
     if (ate) odometry.insert(fmt::format("{:.4f} m", *ate));
   }
   // One value, unless variants started from different trajectories.

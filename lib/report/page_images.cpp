@@ -31,43 +31,37 @@ std::string EncodeJpeg(const cv::Mat& image) {
   return Base64({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-struct ReadImages {
-  std::vector<int> frames;
-  std::vector<cv::Mat> images;  // of the largest width that is tried
-  std::vector<std::string> failures;
+// The image of a frame, of the largest width that is tried, or why it cannot be read.
+struct LoadedImage {
+  int frame_index = 0;
+  cv::Mat pixels = {};
+  std::string failure = {};
 };
 
-ReadImages ReadAll(std::vector<int> frames, const ImageSource& source, int threads) {
-  std::erase_if(frames, std::not_fn(source.has));
-  std::vector<cv::Mat> images(frames.size());
-  std::vector<std::string> failures(frames.size());
-  ParallelFor(static_cast<int>(frames.size()), threads, [&](int i) {
-    const auto index = static_cast<size_t>(i);
+std::vector<LoadedImage> LoadAll(const std::vector<int>& frames, const ImageSource& source,
+                                 int threads) {
+  std::vector<LoadedImage> images;
+  for (const int frame : frames) {
+    if (source.has(frame)) images.push_back({frame});
+  }
+  ParallelFor(static_cast<int>(images.size()), threads, [&](int i) {
+    LoadedImage& image = images[i];
     try {
-      const cv::Mat image = source.read(frames[index]);
-      images[index] = Scaled(image, image.cols, kWidthsPx.front());
+      const cv::Mat pixels = source.read(image.frame_index);
+      image.pixels = Scaled(pixels, pixels.cols, kWidthsPx.front());
     } catch (const InputError& error) {
-      failures[index] = error.what();
+      image.failure = error.what();
     }
   });
-  ReadImages read;
-  for (size_t i = 0; i < frames.size(); ++i) {
-    if (failures[i].empty()) {
-      read.frames.push_back(frames[i]);
-      read.images.push_back(images[i]);
-    } else {
-      read.failures.push_back(failures[i]);
-    }
-  }
-  return read;
+  return images;
 }
 
-std::vector<EncodedImages::Image> EncodeAll(const ReadImages& read, int width, int threads) {
-  std::vector<EncodedImages::Image> encoded(read.frames.size());
-  ParallelFor(static_cast<int>(encoded.size()), threads, [&](int i) {
-    const auto index = static_cast<size_t>(i);
-    encoded[index] = {read.frames[index],
-                      EncodeJpeg(Scaled(read.images[index], read.images[index].cols, width))};
+std::vector<EncodedImages::Image> EncodeAll(const std::vector<LoadedImage>& images, int width,
+                                            int threads) {
+  std::vector<EncodedImages::Image> encoded(images.size());
+  ParallelFor(static_cast<int>(images.size()), threads, [&](int i) {
+    const auto& [frame_index, pixels, failure] = images[i];
+    encoded[i] = {frame_index, EncodeJpeg(Scaled(pixels, pixels.cols, width))};
   });
   return encoded;
 }
@@ -82,10 +76,14 @@ size_t TotalBytes(const std::vector<EncodedImages::Image>& images) {
 
 EncodedImages EncodeImages(const std::vector<int>& frames, const ImageSource& source,
                            size_t max_bytes, int threads) {
-  ReadImages read = ReadAll(frames, source, threads);
+  std::vector<LoadedImage> images = LoadAll(frames, source, threads);
   EncodedImages encoded;
+  for (const LoadedImage& image : images) {
+    if (!image.failure.empty()) encoded.failures.push_back(image.failure);
+  }
+  std::erase_if(images, [](const LoadedImage& image) { return !image.failure.empty(); });
   for (const int width : kWidthsPx) {
-    encoded.images = EncodeAll(read, width, threads);
+    encoded.images = EncodeAll(images, width, threads);
     if (width < kWidthsPx.front()) encoded.scaled_to_px = width;
     if (TotalBytes(encoded.images) <= max_bytes) break;
   }
@@ -93,8 +91,7 @@ EncodedImages EncodeImages(const std::vector<int>& frames, const ImageSource& so
     size_t i = 0;
     std::erase_if(encoded.images, [&](const auto&) { return i++ % 2 == 0; });
   }
-  encoded.left_out = read.frames.size() - encoded.images.size();
-  encoded.failures = std::move(read.failures);
+  encoded.left_out = images.size() - encoded.images.size();
   return encoded;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -178,24 +179,21 @@ const MapPoint& PointAt(int index, const std::vector<MapPoint>& points) {
 // among them.
 json PagePoints(const MapEstimate& map, const std::vector<MapPoint>& points,
                 const Sequence& sequence, const PageSelection& selection) {
-  const auto frame_and_object = [&](int detection_index) {  // ascending
-    const Detection& detection = sequence.detections[detection_index];
-    return std::pair(detection.frame_index, detection.object_index);
-  };
+  std::map<std::pair<int, int>, size_t> places;  // in the selection, by frame and object
+  for (size_t i = 0; i < selection.detections.size(); ++i) {
+    const Detection& detection = sequence.detections[selection.detections[i]];
+    places.try_emplace({detection.frame_index, detection.object_index}, i);
+  }
   std::vector<json> page(selection.detections.size());
   for (const ObjectEstimate& estimate : map.objects) {
     for (const PointPosterior& posterior : estimate.points) {
       for (const PointObservation& observation : PointAt(posterior.index, points).observations) {
         const auto frame = FrameIndexOf(sequence, observation);
         if (!frame) continue;
-        const std::pair of_point(static_cast<int>(*frame), estimate.object_index);
-        const auto found =
-            std::ranges::lower_bound(selection.detections, of_point, {}, frame_and_object);
-        const bool is_selected =
-            found != selection.detections.end() && frame_and_object(*found) == of_point;
+        const auto place = places.find({static_cast<int>(*frame), estimate.object_index});
         const auto pixel = UndistortedPixel(sequence, observation);
-        if (!is_selected || !pixel) continue;
-        json& of_detection = page[found - selection.detections.begin()];
+        if (place == places.end() || !pixel) continue;
+        json& of_detection = page[place->second];
         for (const json& coordinate : PagePixels({*pixel})) of_detection.push_back(coordinate);
         of_detection.push_back(std::lround(100.0 * posterior.responsibility));
       }

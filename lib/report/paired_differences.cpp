@@ -98,7 +98,7 @@ double StudentT95(int degrees_of_freedom) {
 
 PairedDifference MeanDifference(const std::vector<double>& differences) {
   const int count = static_cast<int>(differences.size());
-  PairedDifference difference = {count, MeanOf(differences).value(), std::nullopt};
+  PairedDifference difference = {MeanOf(differences).value(), std::nullopt};
   if (count < 2) return difference;
   double squares = 0.0;
   for (const double d : differences) squares += (d - difference.mean) * (d - difference.mean);

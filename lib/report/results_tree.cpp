@@ -133,30 +133,21 @@ std::vector<DatasetResult> ReadResults(const fs::path& results, DamagedFiles dam
   return datasets;
 }
 
-namespace {
-
-void CountSequence(const std::filesystem::path& sequence, DatasetFacts* facts) {
-  const Sequence read = ReadSequence(sequence, PlaneNeed::kNotNeeded);
-  DatasetCounts counts = {static_cast<int>(read.frames.size() + read.held_out.size())};
-  for (const TrueObject& object : read.true_objects) {
-    if (!object.IsWanted()) continue;
-    ++counts.objects;
-    counts.round_objects += object.truth.rotationally_symmetric ? 1 : 0;
-  }
-  facts->counts = counts;
-  facts->odometry = read.odometry_source;
-}
-
-}  // namespace
-
 DatasetFacts ReadFacts(const DatasetResult& dataset, const fs::path& settings) {
   DatasetFacts facts;
-  const auto has_sequence = [](const VariantResult& variant) {
-    return Exists(variant.folder / "sequence.json");
-  };
-  const auto with_sequence = std::ranges::find_if(dataset.variants, has_sequence);
+  const auto with_sequence = std::ranges::find_if(
+      dataset.variants,
+      [](const VariantResult& variant) { return Exists(variant.folder / "sequence.json"); });
   if (with_sequence != dataset.variants.end()) {
-    CountSequence(with_sequence->folder / "sequence.json", &facts);
+    const Sequence sequence =
+        ReadSequence(with_sequence->folder / "sequence.json", PlaneNeed::kNotNeeded);
+    facts.odometry = sequence.odometry_source;
+    facts.counts = {static_cast<int>(sequence.frames.size() + sequence.held_out.size())};
+    for (const TrueObject& object : sequence.true_objects) {
+      if (!object.IsWanted()) continue;
+      ++facts.counts->objects;
+      facts.counts->round_objects += object.truth.rotationally_symmetric ? 1 : 0;
+    }
   }
   if (!settings.empty()) ReadAbout(settings / (dataset.name + ".json"), &facts);
   return facts;

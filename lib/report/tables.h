@@ -138,7 +138,6 @@ struct Interval {
 };
 
 struct PairedDifference {
-  int objects = 0;
   double mean = 0.0;
   // Confidence interval of the mean by Student's t, which assumes independent normal differences of
   // the objects. None for fewer than two objects.
