@@ -30,7 +30,7 @@ using testing::HasSubstr;
 
 class InspectionTest : public testing::Test {
  protected:
-  std::filesystem::path File(const std::string& name = "artefact") const { return folder_ / name; }
+  std::filesystem::path File() const { return folder_ / "artefact"; }
   Inspection Read(const std::optional<Sequence>& sequence = std::nullopt) const {
     return Inspect(File(), sequence);
   }
@@ -289,16 +289,10 @@ TEST_F(InspectionTest, WhatIsNoArtefactIsRefused) {
     WriteBytes(File(), bytes);
     ExpectError<InputError>([&] { Read(); }, words);
   };
-  refuses("", {File().string(), "empty"});
-  refuses("no JSON", {File().string(), "parse error"});
-  refuses("[1]", {File().string(), "no artefact header"});
-  refuses(R"({"artefact": {"kind": 3}})", {"no artefact header"});
+  refuses(R"({"artefact": {"kind": 3}})", {File().string(), "no artefact header"});
   refuses(R"({"artefact": {"kind": "soup", "schema_version": [1, 0]}})",
           {"\"soup\"", "expected one of associations, edges"});
-  refuses(R"({"artefact": {"kind": "map", "schema_version": [99, 0]}})",
-          {"schema version [99, 0]"});
   refuses(R"({"artefact": {"kind": "map", "schema_version": [1, 0]}})", {File().string()});
-  ExpectError<InputError>([&] { Inspect(File("missing"), std::nullopt); }, {"missing"});
 }
 
 ValueTable SmallTable() {

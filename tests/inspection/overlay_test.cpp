@@ -92,13 +92,6 @@ TEST(OverlayTest, WhatIsBehindTheCameraIsNotDrawn) {
   EXPECT_EQ(cv::countNonZero(image.reshape(1)), 0);
 }
 
-// Some of a body is beside or behind the camera: its box is cut off there.
-TEST(OverlayTest, WhatReachesBehindTheCameraIsCutOff) {
-  const Landmark around{{Eigen::Quaterniond::Identity(), {0.0, 0.5, 1.0}}, {0.3, 0.2, 3.0}};
-  const cv::Mat image = Drawn({.camera = kCamera, .truths_in_camera = {around}});
-  EXPECT_FALSE(Where(image, palette::kVermilion).empty());
-}
-
 class OverlayOfSceneTest : public testing::Test {
  protected:
   Sequence sequence_ = SyntheticSequence(RandomScene(1, 3, 6, {Shape::kEllipsoid}), false);

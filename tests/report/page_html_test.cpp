@@ -23,23 +23,6 @@ TEST(HtmlText, IsTextWithinElementsAndQuotes) {
             "&lt;b a=&#39;1&#39; c=&quot;2&quot;&gt; &amp; \xef\xbf\xbd");
 }
 
-TEST(PageHtml, EndsNoElementBecauseOfWhatItShows) {
-  const std::string html = PageHtml("</title> & \xff", "<p>shown</p>",
-                                    {{"label", "</script><script>alert(1)"}}, PageScripts::kNone);
-  EXPECT_THAT(html, HasSubstr("<title>&lt;/title&gt; &amp; \xef\xbf\xbd"));
-  EXPECT_THAT(html, HasSubstr("<p>shown</p>"));
-  EXPECT_THAT(html, Not(HasSubstr("alert(1)</script>")));
-  EXPECT_THAT(html, Not(HasSubstr("<script>")));
-  EXPECT_THAT(html, HasSubstr("\\u003c/script>"));
-}
-
-TEST(PageHtml, FillsNothingIntoWhatItShows) {
-  const std::string html =
-      PageHtml("{{data}}", "{{style}}", {{"label", "{{scripts}}"}}, PageScripts::kNone);
-  EXPECT_THAT(html, AllOf(HasSubstr("<title>{{data}}"), HasSubstr("\n{{style}}</main>"),
-                          HasSubstr("{\"label\":\"{{scripts}}\"}")));
-}
-
 TEST(PageHtml, CarriesTheLicencesOfTheScriptsInIt) {
   const std::string html = PageHtml("room", "", {}, PageScripts::kDataset);
   const size_t footer = html.find("<footer>");

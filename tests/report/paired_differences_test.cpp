@@ -32,12 +32,6 @@ TEST(MeanDifference, WorkedByHand) {
   EXPECT_NEAR(difference.confidence_95->high, 0.02 + 4.302653 * 0.00577350, 1e-7);
 }
 
-TEST(MeanDifference, OneObjectHasNoInterval) {
-  const PairedDifference difference = MeanDifference({0.3});
-  EXPECT_EQ(difference.mean, 0.3);
-  EXPECT_FALSE(difference.confidence_95);
-}
-
 TEST(ParseComparisons, EachVariantWithThoseBeforeItInItsList) {
   std::vector<std::string> texts;
   for (const Comparison& comparison : ParseComparisons("A B C, D Init1-1")) {

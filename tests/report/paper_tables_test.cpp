@@ -25,13 +25,6 @@ Published OnePublishedTable() {
           {}};
 }
 
-TEST(WeightedMean, WeightsByObjects) {
-  const ObjectMean mean = WeightedMean({{0.2, 1, 10}, {0.6, 3, 20}});
-  EXPECT_NEAR(mean.mean, 0.5, 1e-12);
-  EXPECT_EQ(mean.objects, 4);
-  EXPECT_EQ(mean.observations, 30);
-}
-
 class PaperTablesTest : public testing::Test {
  protected:
   std::vector<DatasetResult> Read() const { return ReadResults(results_.path()); }
