@@ -81,11 +81,11 @@ std::string RarelyDetectedInWords(int frames, int frames_in_sight) {
                      frames_in_sight);
 }
 
-std::string DoubtsInWords(const ObjectEstimate& estimate, const std::optional<Sightings>& sightings,
+std::string DoubtsInWords(const ObjectEstimate& estimate, const Sightings& sightings,
                           const Eigen::Vector3d& up_in_world) {
   std::vector<std::string> doubts;
-  if (sightings && 2 * sightings->frames < sightings->frames_in_sight) {
-    doubts.push_back(RarelyDetectedInWords(sightings->frames, sightings->frames_in_sight));
+  if (2 * sightings.frames < sightings.frames_in_sight) {
+    doubts.push_back(RarelyDetectedInWords(sightings.frames, sightings.frames_in_sight));
   }
   if (estimate.landmark_in_world && estimate.covariance) {
     const Covariance9& covariance = *estimate.covariance;
@@ -103,14 +103,13 @@ std::string DoubtsInWords(const ObjectEstimate& estimate, const std::optional<Si
 
 std::vector<std::string> DoubtsOfMap(const fs::path& folder, const MapEstimate& map,
                                      const Sequence& sequence) {
-  const std::map<int, Sightings> sightings = ReadSightings(folder / "associations.json");
+  std::map<int, Sightings> sightings = ReadSightings(folder / "associations.json");
   const std::vector<std::optional<int>> segments = SegmentsOfObjects(sequence);
   std::vector<std::string> doubts;
   for (const ObjectEstimate& estimate : map.objects) {
-    const auto found = sightings.find(sequence.objects[estimate.object_index].id);
-    doubts.push_back(DoubtsInWords(
-        estimate, found == sightings.end() ? std::nullopt : std::optional(found->second),
-        UpOfSegment(sequence, segments[estimate.object_index].value_or(0))));
+    doubts.push_back(
+        DoubtsInWords(estimate, sightings[sequence.objects[estimate.object_index].id],
+                      UpOfSegment(sequence, segments[estimate.object_index].value_or(0))));
   }
   return doubts;
 }

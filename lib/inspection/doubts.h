@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,7 +19,7 @@ const nlohmann::json& TrackAt(const nlohmann::json& tracks, const nlohmann::json
 // "detected in only 3 of the 58 images that should show it"
 std::string RarelyDetectedInWords(int frames, int frames_in_sight);
 
-// How often an object was detected.
+// How often an object was detected; both are 0 where that is unknown.
 struct Sightings {
   int frames = 0;           // frames in which it was detected
   int frames_in_sight = 0;  // frames that should show it: near enough and not hidden
@@ -31,7 +30,7 @@ struct Sightings {
 // seen from above (the 95 % interval reaches farther than the body, in a horizontal direction), or
 // if its 95 % interval of a size includes twice and half of that. The error of the scale, which all
 // objects share, does not count.
-std::string DoubtsInWords(const ObjectEstimate& estimate, const std::optional<Sightings>& sightings,
+std::string DoubtsInWords(const ObjectEstimate& estimate, const Sightings& sightings,
                           const Eigen::Vector3d& up_in_world);
 
 // The doubts about each of MapEstimate::objects, by map.json's folder, where associations.json is

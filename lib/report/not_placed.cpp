@@ -196,9 +196,7 @@ std::vector<NotPlaced> ThingsNotPlaced(const fs::path& folder, const MapEstimate
   std::ranges::move(LeftOutByPlanes(sequence), std::back_inserter(things));
   if (Exists(folder / kAssociations)) {
     const json associations = ReadArtefact(folder / kAssociations, "associations");
-    for (NotPlaced& thing : TracksLeftOut(associations, sequence)) {
-      things.push_back(std::move(thing));
-    }
+    std::ranges::move(TracksLeftOut(associations, sequence), std::back_inserter(things));
   }
   std::ranges::stable_sort(things, std::greater<>(),
                            [](const NotPlaced& thing) { return thing.boxes.size(); });

@@ -74,12 +74,6 @@ size_t PageBytes(const json& page) { return PageText(page).size() + DatasetTable
 
 namespace fs = std::filesystem;
 
-// The section of the map has at most this fraction of a page.
-constexpr double kMostShareOfMap = 0.25;
-
-// Images shrink to this fraction of a page before anything else is left out.
-constexpr double kLeastShareOfImages = 0.125;
-
 // Collects the data of a dataset's page. Files that variants share are read once.
 class DatasetPage {
  public:
@@ -100,11 +94,11 @@ class DatasetPage {
     const LoadedSequence& first = sequences_.front();
     const ImageSource source = images_(first.sequence);
     const bool has_images = std::ranges::any_of(first.selection.shown, source.has);
-    const std::string map_section = SectionOfBestMap(
-        static_cast<size_t>(kMostShareOfMap * static_cast<double>(max_bytes)), threads);
+    // The section of the map has at most a quarter of a page.
+    const std::string map_section = SectionOfBestMap(max_bytes / 4, threads);
     max_bytes -= std::min(max_bytes, map_section.size());
-    const auto least = static_cast<size_t>(kLeastShareOfImages * static_cast<double>(max_bytes));
-    FitPageData(max_bytes - (has_images ? least : 0), PageBytes, &data_);
+    // Images shrink to an eighth of a page before anything else is left out.
+    FitPageData(max_bytes - (has_images ? max_bytes / 8 : 0), PageBytes, &data_);
     data_["detailed"] = DetailedVariants(data_);
     if (!data_["sequences"].front()["frames"].empty()) {
       AddImages(first, source, max_bytes, threads);

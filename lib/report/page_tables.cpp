@@ -269,10 +269,8 @@ std::string AblationSection(const json& page) {
   Table table;
   table.header = {"", "objects", "IoU", "Rot, °", "yaw error, °"};
   for (const json& pair : page.at("differences")) {
-    table.rows.push_back({fmt::format("{} – {}", pair.at("with").get<std::string>(),
-                                      pair.at("without").get<std::string>()),
-                          pair.at("objects").dump(), IntervalCell(pair.at("iou"), 3),
-                          IntervalCell(pair.at("rotation_deg"), 2),
+    table.rows.push_back({FillIn("{with} – {without}", pair), pair.at("objects").dump(),
+                          IntervalCell(pair.at("iou"), 3), IntervalCell(pair.at("rotation_deg"), 2),
                           IntervalCell(pair.at("yaw_error_deg"), 2)});
   }
   if (table.rows.empty()) return "";

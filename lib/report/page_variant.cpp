@@ -84,14 +84,6 @@ json OutlinesOfObjects(const std::vector<ObjectEstimate>& estimates, const Seque
   return outlines;
 }
 
-json PageSolver(const SolverSummary& solver) {
-  return {{"converged", solver.converged},
-          {"iterations", solver.iterations},
-          {"cost_per_iteration", PageNumbers(solver.cost_per_iteration)},
-          {"residuals", solver.residuals},
-          {"gated", solver.gated}};
-}
-
 // Given planes are the same in the map and are not added.
 void AddPlanes(const MapEstimate& map, const Sequence& sequence, const PageSelection& selection,
                json* variant) {
@@ -120,7 +112,11 @@ void AddMap(const MapEstimate& map, const Sequence& sequence, const PageSelectio
   for (const int frame : selection.frames) {
     (*variant)["trajectory"].push_back(PagePose(map.world_from_camera[frame]));
   }
-  (*variant)["solver"] = PageSolver(map.solver);
+  (*variant)["solver"] = {{"converged", map.solver.converged},
+                          {"iterations", map.solver.iterations},
+                          {"cost_per_iteration", PageNumbers(map.solver.cost_per_iteration)},
+                          {"residuals", map.solver.residuals},
+                          {"gated", map.solver.gated}};
   AddPlanes(map, sequence, selection, variant);
 }
 
@@ -202,18 +198,15 @@ json PagePoints(const MapEstimate& map, const std::vector<MapPoint>& points,
   return page;
 }
 
-bool HavePoints(const MapEstimate& map) {
-  return std::ranges::any_of(map.objects,
-                             [](const ObjectEstimate& object) { return !object.points.empty(); });
-}
-
 void AddEstimates(const VariantResult& result, const Sequence& sequence,
                   const PageSelection& selection, json* variant) {
   const fs::path& folder = result.folder;
   if (ShowsStage(result, "optimise", "map.json")) {
     const MapEstimate map = ReadMap(folder / "map.json", sequence);
     AddMap(map, sequence, selection, variant);
-    if (HavePoints(map) && ShowsStage(result, "track", "points.h5")) {
+    const bool has_points = std::ranges::any_of(
+        map.objects, [](const ObjectEstimate& object) { return !object.points.empty(); });
+    if (has_points && ShowsStage(result, "track", "points.h5")) {
       (*variant)["points"] = PagePoints(map, ReadPoints(folder / "points.h5"), sequence, selection);
     }
     return;

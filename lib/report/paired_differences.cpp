@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <sstream>
 
@@ -55,14 +54,11 @@ DifferenceTexts TextsOf(const std::vector<double>& differences, const Quantity& 
 // Differences of the objects for which both variants have the quantity, in the order of `variant`.
 std::vector<double> DifferencesByObject(const VariantResult& variant, const VariantResult& baseline,
                                         const Quantity& quantity) {
-  std::map<int, double> baseline_values;
-  for (const ObjectValue& object : ObjectValues(baseline, quantity)) {
-    baseline_values[object.object_id] = object.value;
-  }
+  const ValuesByObject baseline_values = ObjectValues(baseline, quantity);
   std::vector<double> differences;
-  for (const ObjectValue& object : ObjectValues(variant, quantity)) {
-    const auto other = baseline_values.find(object.object_id);
-    if (other != baseline_values.end()) differences.push_back(object.value - other->second);
+  for (const auto& [object, value] : ObjectValues(variant, quantity)) {
+    const auto other = baseline_values.find(object);
+    if (other != baseline_values.end()) differences.push_back(value - other->second);
   }
   return differences;
 }

@@ -237,9 +237,7 @@ std::set<int> CommonObjects(const DatasetResult& dataset, const Quantity& quanti
   for (const std::string& name : variants) {
     const VariantResult* const variant = dataset.Evaluated(name);
     if (!variant) return {};
-    for (const ObjectValue& object : ObjectValues(*variant, quantity)) {
-      ++variants_with[object.object_id];
-    }
+    for (const auto& [object, value] : ObjectValues(*variant, quantity)) ++variants_with[object];
   }
   std::set<int> common;
   for (const auto& [object, count] : variants_with) {
@@ -252,8 +250,8 @@ std::optional<ObjectMean> MeanOver(const std::set<int>& objects, const VariantRe
                                    const Quantity& quantity) {
   if (!variant || objects.empty()) return std::nullopt;
   ObjectMean mean = {0.0, static_cast<int>(objects.size())};
-  for (const ObjectValue& object : ObjectValues(*variant, quantity)) {
-    if (objects.contains(object.object_id)) mean.mean += object.value / mean.objects;
+  for (const auto& [object, value] : ObjectValues(*variant, quantity)) {
+    if (objects.contains(object)) mean.mean += value / mean.objects;
   }
   return mean;
 }

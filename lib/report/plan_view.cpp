@@ -177,13 +177,6 @@ double SharedArea(const Rectangle& one, const std::vector<Rectangle>& others) {
   return area;
 }
 
-// Sum of the parts of others that the rectangle covers.
-double SharesCovered(const Rectangle& one, const std::vector<Rectangle>& others) {
-  double shares = 0.0;
-  for (const Rectangle& other : others) shares += (one & other).area() / other.area();
-  return shares;
-}
-
 // The place near the footprint at which a card of this size covers least.
 Rectangle FreePlace(const Rectangle& footprint, const cv::Size2d& size, const Screen& screen,
                     const std::vector<Rectangle>& cards, const std::vector<Rectangle>& footprints) {
@@ -204,8 +197,10 @@ Rectangle FreePlace(const Rectangle& footprint, const cv::Size2d& size, const Sc
       place.y = std::clamp(place.y + distance * std::sin(angle), whole.y,
                            std::max(whole.y, whole.br().y - size.height));
       const double overlap = SharedArea(place, cards);
-      const double cost = distance + overlap + (overlap > 0.0 ? kOverlap : 0.0) +
-                          kPerFootprint * SharesCovered(place, footprints);
+      double covered = 0.0;  // sum of the parts of footprints
+      for (const Rectangle& other : footprints) covered += (place & other).area() / other.area();
+      const double cost =
+          distance + overlap + (overlap > 0.0 ? kOverlap : 0.0) + kPerFootprint * covered;
       if (cost < least) {
         least = cost;
         best = place;

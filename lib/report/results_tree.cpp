@@ -159,12 +159,12 @@ std::optional<double> MetricsNumber(const VariantResult& variant, const std::str
   return variant.metrics.at(place).get<double>();
 }
 
-std::vector<ObjectValue> ObjectValues(const VariantResult& variant, const Quantity& quantity) {
-  std::vector<ObjectValue> values;
+ValuesByObject ObjectValues(const VariantResult& variant, const Quantity& quantity) {
+  ValuesByObject values;
   if (variant.metrics.is_null()) return values;
   for (const json& object : variant.metrics.at("objects")) {
     const json& value = object.at(quantity.key);
-    if (!value.is_null()) values.push_back({object.at("object"), value});
+    if (!value.is_null()) values.emplace(object.at("object"), value);
   }
   return values;
 }

@@ -142,12 +142,10 @@ DatasetFacts ReadFacts(const DatasetResult& dataset, const std::filesystem::path
 // absent.
 std::optional<double> MetricsNumber(const VariantResult& variant, const std::string& pointer);
 
-// A quantity of one object, by its id in the dataset; objects without it are left out.
-struct ObjectValue {
-  int object_id = 0;
-  double value = 0.0;
-};
-std::vector<ObjectValue> ObjectValues(const VariantResult& variant, const Quantity& quantity);
+// A quantity of the objects that have it, by their ids in the dataset and in the order of
+// metrics.json.
+using ValuesByObject = nlohmann::ordered_map<int, double>;
+ValuesByObject ObjectValues(const VariantResult& variant, const Quantity& quantity);
 
 // The reason why the variant's folder does not show the planned results: "failed: refine: exit code
 // 3: ..." or "incomplete: refine has not run"; empty if it does, and for folders without

@@ -58,14 +58,13 @@ function slider(label, onchange) {
 }
 
 // rows: arrays of cells, each a text or {text, best}.
-function table(header, rows, attributesOfRow) {
+function table(header, rows) {
   const cell = (content) => typeof content === "object" && content !== null && !(content instanceof Node)
     ? element("td", { class: content.best ? "best" : null }, content.text)
     : element("td", {}, content);
   return element("div", { class: "scroll" }, element("table", {},
     element("thead", {}, element("tr", {}, header.map((name) => element("th", {}, name)))),
-    element("tbody", {}, rows.map((row, i) =>
-      element("tr", attributesOfRow ? attributesOfRow(i) : {}, row.map(cell))))));
+    element("tbody", {}, rows.map((row) => element("tr", {}, row.map(cell))))));
 }
 
 function quantityRows(pairs) {
