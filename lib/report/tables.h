@@ -179,7 +179,4 @@ nlohmann::json PageDifferences(const DatasetResult& dataset);
 std::string FillPage(const std::string& page, const std::vector<Table>& tables,
                      const std::string& name);
 
-// Names of the tables in a page that are not as FillPage left them.
-std::vector<std::string> EditedTables(const std::string& page, const std::string& name);
-
 }  // namespace soslam

@@ -78,27 +78,16 @@ class VariantStateTest : public testing::Test {
   ResultsFolder results_;
 };
 
-TEST_F(VariantStateTest, NothingIsUnfinishedOfACompleteVariant) {
+TEST_F(VariantStateTest, SaysWhyTheFolderDoesNotShowThePlan) {
+  EXPECT_EQ(WhyUnfinished(Read()), "incomplete: refine has not run");
   WriteBytes(Shared("refine-34") / "done", "");
   EXPECT_EQ(WhyUnfinished(Read()), "");
   WriteBytes(Folder() / ".linked", "import-12\nrefine-34\n");
   EXPECT_EQ(WhyUnfinished(Read()), "");
-}
-
-TEST_F(VariantStateTest, TheFirstStageThatHasNotRun) {
-  EXPECT_EQ(WhyUnfinished(Read()), "incomplete: refine has not run");
-}
-
-TEST_F(VariantStateTest, TheStageThatFailedAndWhy) {
-  WriteBytes(Shared("refine-34") / "done", "");
-  WriteBytes(Shared("refine-34") / "failed", "exit code 3: edges.h5: is damaged\n");
-  EXPECT_EQ(WhyUnfinished(Read()), "failed: refine: exit code 3: edges.h5: is damaged");
-}
-
-TEST_F(VariantStateTest, FilesOfAnEarlierPlan) {
-  WriteBytes(Shared("refine-34") / "done", "");
   WriteBytes(Folder() / ".linked", "import-12\nrefine-56\n");
   EXPECT_EQ(WhyUnfinished(Read()), "incomplete: its files are those of an earlier plan");
+  WriteBytes(Shared("refine-34") / "failed", "exit code 3: edges.h5: is damaged\n");
+  EXPECT_EQ(WhyUnfinished(Read()), "failed: refine: exit code 3: edges.h5: is damaged");
 }
 
 TEST_F(VariantStateTest, StagesAreThoseOfTheLinks) {
