@@ -28,8 +28,9 @@ constexpr size_t kMaxPlaced = 100, kMaxNotPlaced = 40;
 
 // What is drawn of a thing: its best box, with the outline of its body or the box.
 struct Picture {
-  Crop crop;
-  Polygon outline;
+  int frame_index = 0;
+  cv::Rect part = {};  // of the frame's image, px
+  Polygon outline = {};
   bool is_body = false;   // the outline is that of the landmark
   std::string jpeg = {};  // base 64; empty where there is none
 };
@@ -67,7 +68,7 @@ Picture PictureOf(const std::vector<SeenBox>& boxes, const ImageSource& images,
   const SeenBox* best = BestBox(boxes, images);
   if (best == nullptr) return {};
   const Camera& camera = sequence.CameraOf(sequence.frames[best->frame_index]);
-  return {{best->frame_index, Around(best->box, camera)}, CornersOf(best->box)};
+  return {best->frame_index, Around(best->box, camera), CornersOf(best->box)};
 }
 
 // A thing in one of the section's lists.
@@ -82,7 +83,7 @@ struct Entry {
 std::string PictureSvg(const Entry& entry, const Sequence& sequence) {
   const Picture& picture = entry.picture;
   if (picture.jpeg.empty()) return "";
-  const cv::Rect& part = picture.crop.part;
+  const cv::Rect& part = picture.part;
   std::string points;
   for (const Eigen::Vector2d& pixel : picture.outline) {
     points += fmt::format("{:.1f},{:.1f} ", pixel.x() + 0.5 - part.x, pixel.y() + 0.5 - part.y);
@@ -93,7 +94,7 @@ std::string PictureSvg(const Entry& entry, const Sequence& sequence) {
       "<svg id=\"{4}\" class=\"on-image\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\">"
       "<image width=\"{0}\" height=\"{1}\" href=\"data:image/jpeg;base64,{5}\"/>"
       "<polygon class=\"{6}\" points=\"{7}\"/></svg></svg>",
-      part.width, part.height, HtmlText(entry.name), sequence.frames[picture.crop.frame_index].id,
+      part.width, part.height, HtmlText(entry.name), sequence.frames[picture.frame_index].id,
       entry.id, picture.jpeg, picture.is_body ? "estimate" : "detection", points);
 }
 
@@ -116,7 +117,7 @@ std::string EntriesHtml(const std::vector<Entry>& entries, const Sequence& seque
 void AddPictures(const ImageSource& images, int threads, std::vector<Entry>* entries) {
   ParallelFor(static_cast<int>(entries->size()), threads, [&](int i) {
     Picture& picture = (*entries)[i].picture;
-    picture.jpeg = EncodeCrop(picture.crop, images);
+    picture.jpeg = EncodeCrop(picture.frame_index, picture.part, images);
   });
 }
 
@@ -209,8 +210,8 @@ class MapOfVariant {
 
   // The outline of the body in place of the box, if the camera sees all of it.
   void DrawBody(const ObjectEstimate& estimate, Picture* picture) const {
-    if (picture->crop.part.empty()) return;
-    const auto frame = static_cast<size_t>(picture->crop.frame_index);
+    if (picture->part.empty()) return;
+    const auto frame = static_cast<size_t>(picture->frame_index);
     Polygon outline = OutlinePolygon(
         sequence_.CameraOf(sequence_.frames[frame]),
         Transform(map_.world_from_camera[frame].Inverse(), *estimate.landmark_in_world));
@@ -267,8 +268,7 @@ class MapOfVariant {
     object.is_uncertain = !entry.doubts.empty();
     if (entry.picture.jpeg.empty()) return object;
     object.picture = entry.id;
-    const cv::Rect& part = entry.picture.crop.part;
-    object.picture_aspect = static_cast<double>(part.width) / part.height;
+    object.picture_aspect = entry.picture.part.size().aspectRatio();
     return object;
   }
 

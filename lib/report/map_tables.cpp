@@ -44,12 +44,6 @@ std::string SourceOf(const VariantResult& variant, const char* stage, const char
   return ShowsStage(variant, stage, file) ? "estimated" : "given";
 }
 
-// True for a false landmark that is the landmark of an object in `missed`.
-bool IsOfMissed(const json& landmark, const std::set<int>& missed) {
-  const json& object = landmark.at("true_object");
-  return !object.is_null() && missed.contains(object.get<int>());
-}
-
 constexpr size_t kNamesInCell = 12;
 
 // Adds a row, or its variant to a row that says the same of another variant.
@@ -114,14 +108,15 @@ Table LostTable(const std::vector<DatasetResult>& datasets,
        "each."}};
   for (const EvaluatedMap& map : MapsOf(datasets, variants)) {
     NamesByKey missed, false_ones;  // by reason
-    std::set<int> missed_ids;
+    std::set<json> missed_ids;
     for (const json& object : map.quality.at("objects")) {
       if (object.at("reason").is_null()) continue;
       missed[WithBlanks(object.at("reason"))].push_back(ObjectName(object, "true_object"));
-      missed_ids.insert(object.at("true_object").get<int>());
+      missed_ids.insert(object.at("true_object"));
     }
     for (const json& landmark : map.quality.at("landmarks")) {
-      if (landmark.at("reason").is_null() || IsOfMissed(landmark, missed_ids)) continue;
+      const bool is_of_missed = missed_ids.contains(landmark.at("true_object"));
+      if (landmark.at("reason").is_null() || is_of_missed) continue;
       false_ones[WithBlanks(landmark.at("reason"))].push_back(ObjectName(landmark, "object"));
     }
     const auto add_rows = [&](const char* mistake, const NamesByKey& names) {

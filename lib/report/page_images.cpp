@@ -95,13 +95,13 @@ EncodedImages EncodeImages(const std::vector<int>& frames, const ImageSource& so
   return encoded;
 }
 
-std::string EncodeCrop(const Crop& crop, const ImageSource& source) {
-  if (crop.part.empty() || !source.has(crop.frame_index)) return "";
+std::string EncodeCrop(int frame_index, const cv::Rect& part, const ImageSource& source) {
+  if (part.empty() || !source.has(frame_index)) return "";
   try {
-    const cv::Mat image = source.read(crop.frame_index);
-    const cv::Mat part = image(crop.part & cv::Rect(0, 0, image.cols, image.rows));
-    if (part.empty()) return "";
-    return EncodeJpeg(Scaled(part, std::max(part.cols, part.rows), kMaxCropPx));
+    const cv::Mat image = source.read(frame_index);
+    const cv::Mat crop = image(part & cv::Rect(0, 0, image.cols, image.rows));
+    if (crop.empty()) return "";
+    return EncodeJpeg(Scaled(crop, std::max(crop.cols, crop.rows), kMaxCropPx));
   } catch (const InputError&) {  // EncodeImages says which images cannot be read
     return "";
   }

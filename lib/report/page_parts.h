@@ -45,16 +45,10 @@ struct EncodedImages {
 EncodedImages EncodeImages(const std::vector<int>& frames, const ImageSource& source,
                            size_t max_bytes, int threads);
 
-// A part of a frame's image, px.
-struct Crop {
-  int frame_index = 0;
-  cv::Rect part = {};
-};
-
-// The JPEG file in base 64 of a part of an image, at most kMaxCropPx wide and high; empty where the
-// part is empty, or the frame has no image that can be read.
+// The JPEG file in base 64 of a part (px) of a frame's image, at most kMaxCropPx wide and high;
+// empty where the part is empty, or the frame has no image that can be read.
 inline constexpr int kMaxCropPx = 160;
-std::string EncodeCrop(const Crop& crop, const ImageSource& source);
+std::string EncodeCrop(int frame_index, const cv::Rect& part, const ImageSource& source);
 
 // What a map says of an object, in words.
 

@@ -226,13 +226,13 @@ cv::Size SizeOf(const std::string& base64) {
 
 TEST(EncodeCrop, IsSmallOrEmpty) {
   const cv::Rect large(0, 0, 320, 200), tall(600, 0, 100, 480), small(10, 10, 40, 30);
-  EXPECT_EQ(SizeOf(EncodeCrop({0, large}, kFaulty)), cv::Size(160, 100));
-  EXPECT_EQ(EncodeCrop({1, large}, kFaulty), "");
-  EXPECT_EQ(EncodeCrop({2, large}, kFaulty), "");
+  EXPECT_EQ(SizeOf(EncodeCrop(0, large, kFaulty)), cv::Size(160, 100));
+  EXPECT_EQ(EncodeCrop(1, large, kFaulty), "");
+  EXPECT_EQ(EncodeCrop(2, large, kFaulty), "");
   // 40 of its 100 columns are in the image.
-  EXPECT_EQ(SizeOf(EncodeCrop({3, tall}, kFaulty)), cv::Size(13, 160));
-  EXPECT_EQ(SizeOf(EncodeCrop({3, small}, kFaulty)), cv::Size(40, 30));
-  EXPECT_EQ(EncodeCrop({3, {}}, kFaulty), "");
+  EXPECT_EQ(SizeOf(EncodeCrop(3, tall, kFaulty)), cv::Size(13, 160));
+  EXPECT_EQ(SizeOf(EncodeCrop(3, small, kFaulty)), cv::Size(40, 30));
+  EXPECT_EQ(EncodeCrop(3, {}, kFaulty), "");
 }
 
 // A page of three variants whose parts have 10 000 bytes each, in at most so many.
