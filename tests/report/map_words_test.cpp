@@ -91,15 +91,9 @@ std::string Plain(std::string text) {
 TEST(SizeInWords, IsWidthDepthHeightWithTheirIntervals) {
   // exp(1.96 * 0.12) - 1 = 0.2652, of 0.03: 0.0606, of 0.04: 0.0816.
   EXPECT_EQ(Plain(SizeInWords(Estimate(), {})), "100 × 50 × 6.0 cm (± 27 × 3 × 0.5)");
-}
-
-TEST(SizeInWords, AddsTheVarianceOfTheScale) {
-  // sqrt(0.12^2 + 0.05^2) = 0.13: 0.2902; sqrt(0.03^2 + 0.05^2) = 0.0583: 0.1211;
-  // sqrt(0.04^2 + 0.05^2) = 0.0640: 0.1337.
+  // With the variance of the scale: sqrt(0.12^2 + 0.05^2) = 0.13: 0.2902;
+  // sqrt(0.03^2 + 0.05^2) = 0.0583: 0.1211; sqrt(0.04^2 + 0.05^2) = 0.0640: 0.1337.
   EXPECT_EQ(Plain(SizeInWords(Estimate(), {true, 0.05, ""})), "100 × 50 × 6.0 cm (± 29 × 6 × 0.8)");
-}
-
-TEST(SizeInWords, HasNoUnitWithoutScaleAndNoIntervalsWithoutCovariance) {
   EXPECT_EQ(Plain(SizeInWords(Estimate(), {false, 0.0, ""})),
             "1.00 × 0.50 × 0.06 (± 0.27 × 0.03 × 0.00)");
   ObjectEstimate without = Estimate();

@@ -31,12 +31,13 @@ function section(id, title, ...children) {
   return element("section", { id }, element("h2", {}, title), ...children);
 }
 
-// Calls onchoice(index) at once and for every choice.
-function chooser(label, names, chosen, onchoice) {
-  const select = element("select", { onchange: () => onchoice(select.selectedIndex) },
-    names.map((name, i) => element("option", { selected: i === chosen }, name)));
-  onchoice(chosen);
-  return element("label", {}, label, select);
+// Calls onchoice(variant, index) for the first one at once and for every choice.
+function variantChooser(variants, onchoice) {
+  const choose = (i) => onchoice(variants[i], i);
+  const select = element("select", { onchange: () => choose(select.selectedIndex) },
+    variants.map(({ name }) => element("option", {}, name)));
+  choose(0);
+  return element("label", {}, "variant", select);
 }
 
 function checkbox(label, key, checked, onchange) {

@@ -45,8 +45,8 @@ function framesSection(page, variants) {
     holder.replaceChildren(view);
   };
   const { input, setCount } = slider("frame", (i) => { at = i; draw(); });
-  const choose = chooser("variant", variants.map(({ name }) => name), 0, (i) => {
-    variant = variants[i];
+  const choose = variantChooser(variants, (chosen) => {
+    variant = chosen;
     at = Math.max(0, Math.min(at, framesOf().length - 1));
     setCount(framesOf().length, at);
     draw();

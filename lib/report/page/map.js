@@ -268,8 +268,8 @@ function mapSection(page, variants) {
     else view.show(variant, frame);
     say();
   });
-  const choose = chooser("variant", variants.map(({ name }) => name), 0, (i) => {
-    variant = variants[i];
+  const choose = variantChooser(variants, (chosen) => {
+    variant = chosen;
     frame = Math.min(frame, framesOf().length - 1);
     setCount(framesOf().length, frame);
     view.picked = null;

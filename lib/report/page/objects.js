@@ -81,7 +81,7 @@ function showEvidenceInObjects(holder, page, variants) {
     const first = [...rows.querySelectorAll("tr[data-index]")].find((row) => seen.has(Number(row.dataset.index)));
     if (first) page.showEvidence(variant, Number(first.dataset.index));
   };
-  const choose = chooser("variant", variants.map(({ name }) => name), 0, (i) => draw(variants[i], tables[i]));
+  const choose = variantChooser(variants, (variant, i) => draw(variant, tables[i]));
   holder.append(element("p", {}, "Choose an object to see what it was estimated from."),
     element("div", { class: "bar" }, choose), shown, evidenceHolder);
 }
