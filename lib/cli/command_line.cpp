@@ -6,7 +6,6 @@
 #include <glog/logging.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -14,9 +13,9 @@
 #include <iostream>
 #include <opencv2/core/utility.hpp>
 #include <optional>
-#include <thread>
 
 #include "artefact/json_file.h"
+#include "base/process.h"
 #include "base/progress.h"
 #include "base/text.h"
 #include "cli/run_recorder.h"
@@ -105,13 +104,34 @@ std::string ExampleHelp(const std::string& command) {
 
 constexpr const char* kFailureRecord = "--failure_record";
 
+// Value of an option's text. A text that does not match the type stays a string, which
+// OptionsFromJson then refuses with the option's name.
+nlohmann::json ValueFromText(const std::string& text, const std::string& type) {
+  const char* const end = text.data() + text.size();
+  if (type == "integer") {
+    int64_t value = 0;
+    const auto result = std::from_chars(text.data(), end, value);
+    if (result.ec == std::errc() && result.ptr == end) return value;
+  }
+  if (type == "number") {
+    double value = 0.0;
+    const auto result = std::from_chars(text.data(), end, value);
+    if (result.ec == std::errc() && result.ptr == end && std::isfinite(value)) return value;
+  }
+  if (type == "boolean") {
+    if (text.empty() || text == "true") return true;
+    if (text == "false") return false;
+  }
+  return text;
+}
+
 // Storage for CLI11 while it parses.
 struct ParsedArguments {
   StageFiles files;
   std::string settings_file;
   int threads = 0;
   bool quiet = false;
-  std::map<std::string, std::string> option_texts;  // keyed by option name
+  nlohmann::json options = nlohmann::json::object();
 };
 
 void AddFiles(const std::vector<FileArgument>& files, const std::string& group, CLI::App* app,
@@ -138,7 +158,9 @@ void AddOptions(const std::vector<OptionRow>& options, CLI::App* app, ParsedArgu
   for (const OptionRow& row : options) {
     CLI::Option* option = app->add_option_function<std::string>(
         "--" + row.name,
-        [parsed, name = row.name](const std::string& text) { parsed->option_texts[name] = text; },
+        [parsed, &row](const std::string& text) {
+          parsed->options[row.name] = ValueFromText(text, row.type);
+        },
         OptionHelp(row));
     option->group(row.group.empty() ? "Options" : row.group)->option_text(row.type);
     if (row.type == "boolean") option->expected(0, 1);
@@ -171,95 +193,54 @@ void AddCommon(const std::vector<OptionRow>& options, CLI::App* app, ParsedArgum
   AddHelpAndVersion(app);
 }
 
-// Value of an option's text. A text that does not match the type stays a string, which
-// OptionsFromJson then refuses with the option's name.
-nlohmann::json ValueFromText(const std::string& text, const std::string& type) {
-  const char* const end = text.data() + text.size();
-  if (type == "integer") {
-    int64_t value = 0;
-    const auto result = std::from_chars(text.data(), end, value);
-    if (result.ec == std::errc() && result.ptr == end) return value;
-  }
-  if (type == "number") {
-    double value = 0.0;
-    const auto result = std::from_chars(text.data(), end, value);
-    if (result.ec == std::errc() && result.ptr == end && std::isfinite(value)) return value;
-  }
-  if (type == "boolean") {
-    if (text.empty() || text == "true") return true;
-    if (text == "false") return false;
-  }
-  return text;
-}
-
-int ThreadsOf(const ParsedArguments& parsed) {
-  if (parsed.threads > 0) return parsed.threads;
-  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-}
-
-std::vector<SettingsLayer> LayersOf(const ParsedArguments& parsed,
-                                    const std::vector<OptionRow>& options) {
+std::vector<SettingsLayer> LayersOf(const ParsedArguments& parsed) {
   std::vector<SettingsLayer> layers;
   if (!parsed.settings_file.empty()) {
     layers.push_back(
         {parsed.settings_file, "settings file", ReadSettingsFile(parsed.settings_file)});
   }
-  nlohmann::json values = nlohmann::json::object();
-  for (const OptionRow& row : options) {
-    const auto text = parsed.option_texts.find(row.name);
-    if (text != parsed.option_texts.end()) values[row.name] = ValueFromText(text->second, row.type);
-  }
-  layers.push_back({"command line", "command line", values});
+  layers.push_back({"command line", "command line", parsed.options});
   return layers;
 }
 
-struct Failure {
-  int exit_code;
-  std::string message;  // one line
-};
-
-// Exit code and message of the current exception.
-Failure CurrentFailure() {
-  const auto failure = [](ExitCode exit_code, const std::string& message) {
-    return Failure{static_cast<int>(exit_code), OneLine(message)};
-  };
+// The current exception with an exit code and a message of one line.
+Error CurrentError() {
   try {
     throw;
   } catch (const CLI::ParseError& error) {
-    return failure(ExitCode::kSettings, fmt::format("{} (see --help)", error.what()));
+    return {ExitCode::kSettings, OneLine(fmt::format("{} (see --help)", error.what()))};
   } catch (const Error& error) {
-    return failure(error.exit_code(), error.what());
+    return {error.exit_code(), OneLine(error.what())};
   } catch (const std::exception& error) {  // among them std::bad_alloc and cv::Exception
-    return failure(ExitCode::kInternal, fmt::format("internal error: {}", error.what()));
+    return {ExitCode::kInternal, OneLine(fmt::format("internal error: {}", error.what()))};
   } catch (...) {
-    return failure(ExitCode::kInternal, "internal error: unknown exception");
+    return {ExitCode::kInternal, "internal error: unknown exception"};
   }
 }
 
-int Fail(const CLI::App& app, const Failure& failure) {
-  std::cerr << app.get_name() << ": error: " << failure.message << std::endl;
+int Fail(const CLI::App& app, const Error& error) {
+  const int exit_code = static_cast<int>(error.exit_code());
+  std::cerr << app.get_name() << ": error: " << error.what() << std::endl;
   const CLI::Option* record = app.get_option_no_throw(kFailureRecord);
   if (record != nullptr && record->count() > 0) {
     // If the record cannot be written, stderr must suffice.
     std::ofstream(record->as<std::string>())
-        << fmt::format("exit code {}: {}\n", failure.exit_code, failure.message);
+        << fmt::format("exit code {}: {}\n", exit_code, error.what());
   }
-  return failure.exit_code;
+  return exit_code;
 }
 
-int RunRecorded(const ParsedArguments& parsed, const StageInfo& info,
-                const std::vector<OptionRow>& options, const StageBody& body) {
-  const int threads = ThreadsOf(parsed);
+int RunRecorded(const ParsedArguments& parsed, const StageInfo& info, const StageBody& body) {
+  const int threads = parsed.threads > 0 ? parsed.threads : ThisMachine().cores;
   RunRecorder recorder(info, parsed.files, parsed.settings_file, threads);
   try {
-    const std::vector<SettingsLayer> layers = LayersOf(parsed, options);
+    const std::vector<SettingsLayer> layers = LayersOf(parsed);
     recorder.SetSettings(body.resolve(layers), layers);
     const int exit_code = body.run(parsed.files, threads);
     recorder.RecordSuccess();
     return exit_code;
   } catch (...) {
-    const Failure failure = CurrentFailure();
-    recorder.RecordFailure(failure.exit_code, failure.message);
+    recorder.RecordFailure(CurrentError());
     throw;
   }
 }
@@ -277,7 +258,7 @@ int ParseAndRun(int argc, const char* const* argv, const StageInfo& info, CLI::A
   app->parse(argc, argv);
   std::optional<ProgressOnStderr> progress;
   if (!parsed.quiet) progress.emplace(info.name);
-  return RunRecorded(parsed, info, options, body);
+  return RunRecorded(parsed, info, body);
 }
 
 }  // namespace
@@ -309,7 +290,7 @@ int ExitCodeOf(CLI::App* app, const std::function<int()>& run) {
   } catch (const CLI::Success& answered) {  // --help and its like
     return app->exit(answered);
   } catch (...) {
-    return Fail(*app, CurrentFailure());
+    return Fail(*app, CurrentError());
   }
 }
 

@@ -88,24 +88,26 @@ void RunRecorder::SetSettings(const json& resolved, const std::vector<SettingsLa
 
 void RunRecorder::RecordSuccess() {
   if (!folder_) return;
-  const RunRecord record = Finished(0, "");
-  json timing = record.timing;
-  timing["stage"] = record.stage;
+  Finish();
+  json timing = record_.timing;
+  timing["stage"] = record_.stage;
   WriteTextFile(*folder_ / "timing.json", timing.dump(2) + "\n");
-  WriteRun(*folder_ / "run.json", record);
+  WriteRun(*folder_ / "run.json", record_);
 }
 
-void RunRecorder::RecordFailure(int exit_code, const std::string& error) {
+void RunRecorder::RecordFailure(const Error& error) {
   if (!folder_) return;
+  record_.exit_code = static_cast<int>(error.exit_code());
+  record_.error = error.what();
   try {
-    const RunRecord record = Finished(exit_code, error);
-    WriteRun(*folder_ / "run.json", record);
+    Finish();
+    WriteRun(*folder_ / "run.json", record_);
   } catch (const std::exception&) {
     return;  // the failure itself is more important
   }
 }
 
-RunRecord RunRecorder::Finished(int exit_code, const std::string& error) {
+void RunRecorder::Finish() {
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start_;
   if (log_) {  // false when called again because the first record could not be written
     for (const FileDigest& input : log_->Inputs()) record_.inputs.push_back(Place(input));
@@ -113,11 +115,7 @@ RunRecord RunRecorder::Finished(int exit_code, const std::string& error) {
     record_.seed = log_->Seed();
     log_.reset();  // the record is no result
   }
-  RunRecord record = record_;
-  record.exit_code = exit_code;
-  record.error = error;
-  record.timing = Timing(wall.count(), threads_);
-  return record;
+  record_.timing = Timing(wall.count(), threads_);
 }
 
 RunFile RunRecorder::Place(const FileDigest& file) const {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "artefact/run_file.h"
+#include "base/error.h"
 #include "base/run_log.h"
 #include "cli/command_line.h"
 
@@ -28,11 +29,11 @@ class RunRecorder {
   // Throws SettingsError when the files cannot be written.
   void RecordSuccess();
   // Ignores a failure to write the record: the error is on stderr as well.
-  void RecordFailure(int exit_code, const std::string& error);
+  void RecordFailure(const Error& error);
 
  private:
   // Completes the record and ends the log.
-  RunRecord Finished(int exit_code, const std::string& error);
+  void Finish();
   RunFile Place(const FileDigest& file) const;
 
   std::optional<std::filesystem::path> folder_;  // none: not recorded
