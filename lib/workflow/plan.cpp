@@ -15,79 +15,55 @@ using nlohmann::json;
 // Digits of a key: enough to avoid collisions within a dataset, few enough to read.
 constexpr size_t kKeyDigits = 10;
 
-// Builds the chain of one variant, stage by stage.
-class ChainBuilder {
- public:
-  explicit ChainBuilder(const VariantSettings& settings) : settings_(settings) {}
+// Ids of instances of one variant, keyed by stage.
+using InstanceIds = std::map<std::string, std::string>;
 
-  // The instances of all stages that the variant runs, in order.
-  std::vector<StageInstance> Build() {
-    for (const std::string& stage : PipelineStages()) {
-      if (settings_.options.contains(stage)) Append(stage);
-    }
-    return std::move(chain_);
-  }
+// What a stage of a variant reads, in which these instances come before it.
+std::map<std::string, ArtefactSource> InputsOf(const std::string& stage, const json& settings,
+                                               const InstanceIds& before) {
+  // The output of the first of these stages that the variant has; the last one it always has.
+  const auto latest = [&](const std::vector<std::string>& stages) -> ArtefactSource {
+    const std::string& maker = *std::ranges::find_if(
+        stages, [&](const std::string& name) { return before.contains(name); });
+    return {before.at(maker), OutputsOfStage(maker).front().file};
+  };
+  if (stage == "import") return {};
+  // Neither edge maps nor points depend on the world or its unit.
+  if (stage == "edges" || stage == "track") return {{"sequence", latest({"import"})}};
+  std::map<std::string, ArtefactSource> inputs;
+  inputs["sequence"] = latest({"planes", "associate", "ground", "import"});
+  if (UsesImages(stage, settings)) inputs["edges"] = latest({"edges"});
+  if (stage == "refine") inputs["initial"] = latest({"initialise"});
+  if (UsesPoints(settings)) inputs["points"] = latest({"track"});
+  if (stage == "optimise") inputs["landmarks"] = latest({"refine", "initialise"});
+  if (stage == "evaluate") inputs["landmarks"] = latest({"optimise", "refine", "initialise"});
+  return inputs;
+}
 
- private:
-  void Append(const std::string& stage) {
-    StageInstance instance;
-    instance.stage = stage;
-    instance.settings = settings_.options.at(stage);
-    instance.inputs = Inputs(stage);
-    if (StageReads(stage, "table")) instance.semantic_table = settings_.semantic_table;
-    instance.key = Key(instance);
-    ids_[stage] = instance.Id();
-    chain_.push_back(std::move(instance));
-  }
+std::string KeyOf(const StageInstance& instance) {
+  json inputs = json::object();
+  for (const auto& [argument, source] : instance.inputs) inputs[argument] = source.instance;
+  if (!instance.semantic_table.empty()) inputs["table"] = instance.semantic_table;
+  const json identity = {
+      {"stage", instance.stage}, {"settings", instance.settings}, {"inputs", inputs}};
+  return Sha256OfText(identity.dump()).substr(0, kKeyDigits);
+}
 
-  std::map<std::string, ArtefactSource> Inputs(const std::string& stage) const {
-    if (stage == "import") return {};
-    // Neither edge maps nor points depend on the world or its unit.
-    if (stage == "edges" || stage == "track") return {{"sequence", Output("import")}};
-    std::vector<std::string> makers = {"planes", "associate", "ground", "import"};
-    const auto same = std::ranges::find(makers, stage);
-    if (same != makers.end()) makers.erase(makers.begin(), std::next(same));
-    std::map<std::string, ArtefactSource> inputs = {{"sequence", Latest(makers)}};
-    const json& settings = settings_.options.at(stage);
-    if (UsesImages(stage, settings)) inputs["edges"] = Output("edges");
-    if (stage == "refine") inputs["initial"] = Output("initialise");
-    if (UsesPoints(settings)) inputs["points"] = Output("track");
-    if (stage == "optimise") inputs["landmarks"] = Latest({"refine", "initialise"});
-    if (stage == "evaluate") inputs["landmarks"] = Latest({"optimise", "refine", "initialise"});
-    return inputs;
-  }
-
-  ArtefactSource Output(const std::string& stage) const {
-    return {ids_.at(stage), OutputsOfStage(stage).front().file};
-  }
-
-  // The output of the first of these stages that is in the variant.
-  ArtefactSource Latest(const std::vector<std::string>& stages) const {
-    const auto found = std::ranges::find_if(
-        stages, [&](const std::string& stage) { return ids_.contains(stage); });
-    if (found == stages.end()) throw std::logic_error("no stage that gives this input");
-    return Output(*found);
-  }
-
-  static std::string Key(const StageInstance& instance) {
-    json inputs = json::object();
-    for (const auto& [argument, source] : instance.inputs) inputs[argument] = source.instance;
-    if (!instance.semantic_table.empty()) inputs["table"] = instance.semantic_table;
-    const json identity = {
-        {"stage", instance.stage}, {"settings", instance.settings}, {"inputs", inputs}};
-    return Sha256OfText(identity.dump()).substr(0, kKeyDigits);
-  }
-
-  const VariantSettings& settings_;
-  std::map<std::string, std::string> ids_;  // keyed by stage
-  std::vector<StageInstance> chain_;
-};
+StageInstance InstanceOf(const std::string& stage, const VariantSettings& settings,
+                         const InstanceIds& before) {
+  StageInstance instance;
+  instance.stage = stage;
+  instance.settings = settings.options.at(stage);
+  instance.inputs = InputsOf(stage, instance.settings, before);
+  if (StageReads(stage, "table")) instance.semantic_table = settings.semantic_table;
+  instance.key = KeyOf(instance);
+  return instance;
+}
 
 }  // namespace
 
 const StageInstance& Plan::Instance(const std::string& id) const {
-  const auto found = std::ranges::find_if(
-      instances, [&](const StageInstance& instance) { return instance.Id() == id; });
+  const auto found = std::ranges::find(instances, id, &StageInstance::Id);
   if (found == instances.end()) throw std::out_of_range("no instance " + id);
   return *found;
 }
@@ -118,11 +94,13 @@ Plan MakePlan(const std::filesystem::path& pipelines, const std::string& dataset
   for (const std::string& variant : variants) {
     const VariantSettings settings = ReadVariant(pipelines, dataset, variant);
     VariantChain chain{variant, {}};
-    for (StageInstance& instance : ChainBuilder(settings).Build()) {
-      const std::string id = instance.Id();
-      chain.instances.push_back(id);
-      auto known = std::ranges::find_if(
-          plan.instances, [&](const StageInstance& other) { return other.Id() == id; });
+    InstanceIds ids;
+    for (const std::string& stage : PipelineStages()) {
+      if (!settings.options.contains(stage)) continue;
+      StageInstance instance = InstanceOf(stage, settings, ids);
+      ids[stage] = instance.Id();
+      chain.instances.push_back(instance.Id());
+      auto known = std::ranges::find(plan.instances, instance.Id(), &StageInstance::Id);
       if (known == plan.instances.end()) {
         known = plan.instances.insert(known, std::move(instance));
       }
