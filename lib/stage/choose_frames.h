@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <opencv2/core/types.hpp>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "artefact/dataset_folder.h"
@@ -32,5 +34,14 @@ ChosenFrames ChoosePhotos(const FrameOptions& options, const std::filesystem::pa
 
 // Chooses among the frames of a video. Throws InputError as VideoReader.
 ChosenFrames ChooseFromVideo(const FrameOptions& options, const std::filesystem::path& path);
+
+// Begin of the first line of the detections.csv that soslam-frames writes, by which a later run
+// recognises it.
+inline constexpr std::string_view kFrameBoxesMark = "# Written by soslam-frames";
+
+// The text of detections.csv: the boxes of the chosen images among those of all images in the file
+// `path`. Prints how many they are. Throws InputError as ReadDetectionsCsv, when there are none,
+// and for a file of other images.
+std::string FrameBoxesText(const std::filesystem::path& path, const ChosenFrames& chosen);
 
 }  // namespace soslam

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <set>
 
 #include "artefact/files.h"
 #include "artefact/json_file.h"
@@ -33,7 +32,7 @@ void AddReconstruction(const std::filesystem::path& folder, const ImportOptions&
   const std::filesystem::path path = folder / "reconstruction.json";
   if (!Exists(path) || options.folder.trajectory_format != TrajectoryFormat::kTum) return;
   const nlohmann::json document = ParseJsonFile(path);
-  if (!document.is_object() || !document.contains("artefact")) return;
+  if (!document.contains("artefact")) return;
   std::ranges::move(FindingsFromJson(ReadArtefact(path, "reconstruction")),
                     std::back_inserter(sequence->findings));
   sequence->images_without_pose = ReadReconstruction(path).images_without_pose;
@@ -79,14 +78,11 @@ std::vector<Sequence> ReadSequences(const std::vector<std::filesystem::path>& pa
 
 void RefuseLearningFromHeldOut(const std::vector<Sequence>& learned,
                                const std::vector<Sequence>& held_out) {
-  std::set<std::string> names;
-  for (const Sequence& sequence : learned) names.insert(sequence.name);
   for (const Sequence& sequence : held_out) {
-    if (names.contains(sequence.name)) {
-      throw SettingsError(fmt::format(
-          "sequence '{}' is given as --sequence and as --held_out; expected one of them",
-          sequence.name));
-    }
+    if (std::ranges::find(learned, sequence.name, &Sequence::name) == learned.end()) continue;
+    throw SettingsError(
+        fmt::format("sequence '{}' is given as --sequence and as --held_out; expected one of them",
+                    sequence.name));
   }
 }
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/frame_boxes.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,6 +11,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "dataset/labelled_box.h"
+#include "stage/choose_frames.h"
 
 namespace soslam {
 namespace {

@@ -26,7 +26,6 @@
 #include "image/video_file.h"
 #include "model/finding.h"
 #include "stage/choose_frames.h"
-#include "stage/frame_boxes.h"
 #include "stage/stages.h"
 
 namespace soslam {
