@@ -53,13 +53,6 @@ class HelpTest : public testing::TestWithParam<std::string> {
   const json schema_ = json::parse(Said("--settings_schema"));
 };
 
-TEST_P(HelpTest, SaysWhatTheStageIsForAndHowItEnds) {
-  EXPECT_THAT(help_, testing::ContainsRegex("\n(Inputs|Outputs):\n  --"));
-  EXPECT_THAT(help_, HasSubstr("\nCommon:\n"));
-  EXPECT_THAT(help_, HasSubstr("\nExample:\n  soslam-" + GetParam() + " "));
-  EXPECT_THAT(help_, HasSubstr("\nExit codes: 0 done; 2 "));
-}
-
 TEST_P(HelpTest, SettingsThatTheSchemaTakesAreAccepted) {
   json defaults = json::object();
   for (const auto& [name, property] : schema_["properties"].items()) {
