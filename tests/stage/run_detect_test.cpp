@@ -42,27 +42,25 @@ class RunDetectTest : public FolderTest {
     Write("net.onnx", network.Onnx());
   }
 
-  StageFiles Files(const std::string& output = "detections.csv") {
-    return {{"dataset", folder_.path()},
-            {"network", folder_ / "net.onnx"},
-            {"labels", folder_ / "labels.txt"},
-            {"output", folder_ / output}};
-  }
-  void Run(const StageFiles& files, int threads = 1) {
-    printed_ = PrintedBy([&] { RunDetect(options_, files, threads); }).output;
+  void Run(int threads = 1) {
+    printed_ = PrintedBy([&] { RunDetect(options_, files_, threads); }).output;
   }
   // Expects that the stage refuses its input, saying these words, and writes nothing.
-  void ExpectRefused(const StageFiles& files, const std::vector<std::string>& words) {
-    ExpectError<InputError>([&] { RunDetect(options_, files, 2); }, words);
-    EXPECT_FALSE(std::filesystem::exists(files.at("output")));
+  void ExpectRefused(const std::vector<std::string>& words) {
+    ExpectError<InputError>([&] { Run(); }, words);
+    EXPECT_FALSE(std::filesystem::exists(files_.at("output")));
   }
 
+  StageFiles files_ = {{"dataset", folder_.path()},
+                       {"network", folder_ / "net.onnx"},
+                       {"labels", folder_ / "labels.txt"},
+                       {"output", folder_ / "detections.csv"}};
   DetectorOptions options_;
   std::string printed_;
 };
 
 TEST_F(RunDetectTest, WritesBoxesWithoutObjectIds) {
-  Run(Files());
+  Run();
   const auto boxes = ReadDetectionsCsv(folder_ / "detections.csv");
   ASSERT_EQ(boxes.size(), 5u);
   const Box cup{21.5, 16.5, 41.5, 46.5};
@@ -76,7 +74,7 @@ TEST_F(RunDetectTest, WritesBoxesWithoutObjectIds) {
 
 TEST_F(RunDetectTest, CommentsSayWhatItWasMadeFrom) {
   options_.min_score = 0.35;
-  Run(Files());
+  Run();
   const std::string text = FileBytes(folder_ / "detections.csv");
   const auto header = nlohmann::json::parse(text.substr(2, text.find('\n') - 2));
   EXPECT_EQ(header["kind"], "detections");
@@ -90,29 +88,18 @@ TEST_F(RunDetectTest, CommentsSayWhatItWasMadeFrom) {
 }
 
 TEST_F(RunDetectTest, SameBytesForAnyNumberOfThreads) {
-  ExpectSameBytesForThreads([&](int threads) { Run(Files(), threads); },
-                            {folder_ / "detections.csv"});
+  ExpectSameBytesForThreads([&](int threads) { Run(threads); }, {folder_ / "detections.csv"});
   const std::string bytes = FileBytes(folder_ / "detections.csv");
-  Run(Files(), 50);  // more than images
+  Run(50);  // more than images
   EXPECT_EQ(FileBytes(folder_ / "detections.csv"), bytes);
 }
 
 TEST_F(RunDetectTest, BadInputIsNamedAndNothingIsWritten) {
-  StageFiles files = Files();
-  files["network"] = folder_ / "none.onnx";
-  ExpectRefused(files, {"none.onnx"});
-  files = Files();
-  files.erase("labels");
-  ExpectRefused(files, {"net.onnx", "[1, 2, 7]", "80 classes"});
-  files = Files();
-  files["labels"] = folder_ / "none.txt";
-  ExpectRefused(files, {"none.txt"});
-  std::filesystem::remove(folder_ / "rgb/3.png");
-  ExpectRefused(Files(), {"3.png", "no such file"});
   Write("rgb.txt", "1.0 ../elsewhere.png\n");
-  ExpectRefused(Files(), {"rgb.txt", "../elsewhere.png"});
-  std::filesystem::remove(folder_ / "rgb.txt");
-  ExpectRefused(Files(), {"rgb.txt"});
+  ExpectRefused({"rgb.txt", "../elsewhere.png"});
+  files_.erase("labels");
+  Write("rgb.txt", "1.0 rgb/0.png\n");
+  ExpectRefused({"net.onnx", "[1, 2, 7]", "80 classes"});
 }
 
 // OpenCV 4.6 crashes when it loads this one.
@@ -120,39 +107,38 @@ TEST_F(RunDetectTest, ACrashOfOpenCvIsAnError) {
   MeanNetwork network = {{1, 1, 7}, {32, 32, 20, 30, 1, 0, 0}, {}};
   network.weights_of_conv = "nothing";
   Write("net.onnx", network.Onnx());
-  ExpectRefused(Files(), {"net.onnx", "OpenCV"});
+  ExpectRefused({"net.onnx", "OpenCV"});
 }
 
 TEST_F(RunDetectTest, NamesInTheNetworkAreItsLabels) {
   MeanNetwork network = {{1, 1, 7}, {32, 32, 20, 30, 1, 0, 0.5F}, {}};
   network.metadata["names"] = "{0: 'cup', 1: 'tea pot'}";
   Write("net.onnx", network.Onnx());
-  StageFiles files = Files();
-  files.erase("labels");
-  Run(files);
+  auto labels = files_.extract("labels");
+  Run();
   EXPECT_EQ(ReadDetectionsCsv(folder_ / "detections.csv").at(0).label, "tea pot");
   EXPECT_THAT(printed_, HasSubstr("net.onnx: layout v5, pixel values rgb_0_1, input of 64 x 64"));
   for (const char* names : {"", "{}", "cup", "{0: 'cup'", "{0: 'cup', 2: 'book'}",
                             "['cup, saucer']", "['']", "['a\\n']", "['cup"}) {
     network.metadata["names"] = names;
     Write("net.onnx", network.Onnx());
-    ExpectError<InputError>([&] { RunDetect(options_, files, 2); },
-                            {"net.onnx", names, "--labels"});
+    ExpectError<InputError>([&] { Run(); }, {"net.onnx", names, "--labels"});
   }
-  Run(Files());  // the file of labels comes first
+  files_.insert(std::move(labels));
+  Run();  // the file of labels comes first
   EXPECT_EQ(ReadDetectionsCsv(folder_ / "detections.csv").at(0).label, "milk carton");
 }
 
 TEST_F(RunDetectTest, LabelsAreRenamedAndSelected) {
   options_.rename_labels = "milk carton = carton";
   options_.keep_labels = "carton";
-  Run(Files());
+  Run();
   const auto boxes = ReadDetectionsCsv(folder_ / "detections.csv");
   ASSERT_EQ(boxes.size(), 2u);
   EXPECT_EQ(boxes[0].label, "carton");
   EXPECT_EQ(boxes[0].frame, FrameKey(3));
   options_.min_score = 0.6;  // no carton is left, but cups
-  ExpectError<NothingUsableError>([&] { RunDetect(options_, Files(), 1); }, {"not kept"});
+  ExpectError<NothingUsableError>([&] { Run(); }, {"not kept"});
 }
 
 // Raw boxes in cells, a pixel or two large, that another layout would take for pixels.
@@ -160,7 +146,7 @@ TEST_F(RunDetectTest, ImpossibleBoxesAreNotWritten) {
   WriteBytes(
       folder_ / "net.onnx",
       MeanNetwork{{1, 2, 7}, {0.5F, 0.5F, 1.5F, 2, 0.9F, 1, 0, 1, 1, 3, 2, 0.9F, 0, 1}, {}}.Onnx());
-  ExpectRefused(Files(), {"net.onnx", "of 10 boxes 10 are smaller", "layout v5", "rgb_0_1"});
+  ExpectRefused({"net.onnx", "of 10 boxes 10 are smaller", "layout v5", "rgb_0_1"});
 }
 
 TEST(LabelsForDetectorTest, GroupsForOverlaps) {
@@ -200,11 +186,11 @@ TEST_F(RunDetectTest, ExifTurnsImages) {
   Write("rgb/a.jpg", JpegWithExif(jpeg, ExifOf(6)));
   Write("rgb.txt", "0 rgb/a.jpg\n");
   options_.min_score = 0.3;  // half of the input is the image
-  Run(Files());
+  Run();
   // (22, 17) to (42, 47) of the input, whose columns 16 to 48 are the upright image of 32 x 64.
   ExpectBox(ReadDetectionsCsv(folder_ / "detections.csv").at(0).box, {5.5, 16.5, 25.5, 46.5});
   options_.image_orientation = ImageOrientation::kStored;
-  Run(Files());
+  Run();
   // Rows 16 to 48 are the stored image of 64 x 32.
   ExpectBox(ReadDetectionsCsv(folder_ / "detections.csv").at(0).box, {21.5, 0.5, 41.5, 30.5});
 }
@@ -212,8 +198,7 @@ TEST_F(RunDetectTest, ExifTurnsImages) {
 TEST_F(RunDetectTest, NothingFoundIsNotAResult) {
   options_.min_score = 0.9;
   Write("detections.csv", "old");
-  ExpectError<NothingUsableError>([&] { RunDetect(options_, Files(), 1); },
-                                  {"net.onnx", "5 images", "0.9"});
+  ExpectError<NothingUsableError>([&] { Run(); }, {"net.onnx", "5 images", "0.9"});
   EXPECT_EQ(FileBytes(folder_ / "detections.csv"), "old");
 }
 

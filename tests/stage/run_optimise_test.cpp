@@ -59,9 +59,7 @@ class RunOptimiseTest : public FolderTest {
   MapEstimate Run() const {
     StageFiles files;
     for (const char* name : {"sequence", "landmarks", "table", "output"}) files[name] = File(name);
-    if (options_.points.point_evidence && std::filesystem::exists(File("points"))) {
-      files["points"] = File("points");
-    }
+    if (options_.points.point_evidence) files["points"] = File("points");
     RunOptimise(options_, files, 1);
     return ReadMap(File("output"), sequence_);
   }
@@ -113,12 +111,6 @@ TEST_F(RunOptimiseTest, SymmetryNeedsADescriptorWithADerivative) {
     ExpectError<SettingsError>([&] { RunOptimise(options_, files, 1); },
                                {"derivative", kDescriptorNames[static_cast<size_t>(descriptor)]});
   }
-}
-
-TEST_F(RunOptimiseTest, PointEvidenceNeedsPoints) {
-  WriteTable(kCuboidExponent, /*factor_of_a=*/1.0);
-  options_.points.point_evidence = true;
-  ExpectError<SettingsError>([&] { Run(); }, {"point_evidence", "--points"});
 }
 
 TEST_F(RunOptimiseTest, PointsOfOtherFramesAreRefused) {
