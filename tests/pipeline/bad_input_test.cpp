@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <set>
 #include <utility>
 
@@ -19,45 +19,39 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::HasSubstr;
 
+// A stage and how it is called in folder "chain".
+struct Call {
+  std::string stage;
+  std::string output;
+  std::string inputs;
+};
+const std::string kTable = " --table ../pipelines/priors/semantic_table.json";
+const std::vector<Call> kCalls = {
+    {"import", "sequence.json", "--dataset ../data/small"},
+    {"edges", "edges.h5", "--dataset ../data/small --sequence sequence.json"},
+    {"initialise", "initial.json", "--sequence sequence.json" + kTable},
+    {"refine", "refined.json",
+     "--sequence sequence.json --initial initial.json --edges edges.h5 --curves symmetry.h5" +
+         kTable},
+    {"optimise", "map.json", "--sequence sequence.json --landmarks refined.json" + kTable}};
+
 // Runs stages one by one, each on what those before it wrote into folder "chain".
 class StageChain {
  public:
-  inline static const std::vector<std::string> kStages = {"import", "edges", "initialise", "refine",
-                                                          "optimise"};
-
   StageChain() { fs::create_directory(pipeline_.Folder() / "chain"); }
 
   const SmallPipeline& pipeline() const { return pipeline_; }
   fs::path Dataset(const std::string& file) const { return pipeline_.Dataset() / file; }
   fs::path Artefact(const std::string& file) const { return pipeline_.Folder() / "chain" / file; }
   static std::string OutputOf(const std::string& stage) {
-    static const std::map<std::string, std::string> outputs = {{"import", "sequence.json"},
-                                                               {"edges", "edges.h5"},
-                                                               {"initialise", "initial.json"},
-                                                               {"refine", "refined.json"},
-                                                               {"optimise", "map.json"}};
-    return outputs.at(stage);
+    return std::ranges::find(kCalls, stage, &Call::stage)->output;
   }
 
-  CommandResult Run(const std::string& stage) const {
-    const auto artefact = [this](const std::string& file) { return Artefact(file).string(); };
-    std::vector<std::string> words = {
-        StageProgram(stage), "--quiet", "--threads", "2", "--output", artefact(OutputOf(stage))};
-    const auto add = [&](const std::string& argument, const std::string& path) {
-      words.insert(words.end(), {"--" + argument, path});
-    };
-    if (stage == "import" || stage == "edges") add("dataset", pipeline_.Dataset().string());
-    if (stage != "import") add("sequence", artefact("sequence.json"));
-    if (stage == "initialise" || stage == "refine" || stage == "optimise") {
-      add("table", pipeline_.SemanticTable().string());
-    }
-    if (stage == "refine") {
-      add("initial", artefact("initial.json"));
-      add("edges", artefact("edges.h5"));
-      add("curves", artefact("symmetry.h5"));
-    }
-    if (stage == "optimise") add("landmarks", artefact("refined.json"));
-    return RunCommand(words);
+  CommandResult Run(const std::string& stage, const std::string& flags = "--quiet") const {
+    const Call& call = *std::ranges::find(kCalls, stage, &Call::stage);
+    const std::string command = fmt::format("exec {} {} --threads 2 --output {} {}",
+                                            StageProgram(stage), flags, call.output, call.inputs);
+    return RunCommand({"env", "-C", Artefact("").string(), "sh", "-c", command});
   }
 
   // A chain of which all stages ran, once for all tests that ask for it. Each finds it as they left
@@ -65,7 +59,7 @@ class StageChain {
   static const StageChain& Finished() {
     static const StageChain chain;
     static const SavedFolder saved = [] {
-      for (const std::string& stage : kStages) ExpectSuccess(chain.Run(stage));
+      for (const Call& call : kCalls) ExpectSuccess(chain.Run(call.stage));
       return SavedFolder(chain.pipeline().Folder());
     }();
     saved.Restore();
@@ -74,7 +68,7 @@ class StageChain {
 
   // Runs all stages before this one; they have to succeed.
   void RunUpTo(const std::string& stage) const {
-    for (auto earlier = kStages.begin(); *earlier != stage; ++earlier) ExpectSuccess(Run(*earlier));
+    for (auto call = kCalls.begin(); call->stage != stage; ++call) ExpectSuccess(Run(call->stage));
   }
 
  private:
@@ -256,10 +250,7 @@ TEST(UnusualInputTest, ImagesElsewhereAreReadWhenTheUserSaysSo) {
   const StageChain chain;
   chain.RunUpTo("edges");
   MovedOut("rgb")(chain);
-  ExpectSuccess(RunCommand({StageProgram("edges"), "--quiet", "--allow_outside_paths", "--dataset",
-                            chain.pipeline().Dataset().string(), "--sequence",
-                            chain.Artefact("sequence.json").string(), "--output",
-                            chain.Artefact("edges.h5").string()}));
+  ExpectSuccess(chain.Run("edges", "--quiet --allow_outside_paths"));
 }
 
 TEST(UnusualInputTest, WhatCannotBeInitialisedIsCountedWithItsReason) {

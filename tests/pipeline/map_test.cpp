@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -25,50 +27,37 @@ using testing::ContainsRegex;
 using testing::EndsWith;
 using testing::HasSubstr;
 
-// COLMAP's model of the small scene: its true poses, and points on the floor and above it.
-class ModelOfSmallScene {
- public:
-  explicit ModelOfSmallScene(const fs::path& dataset) {
-    for (const TimedPose& pose : ReadTrajectory(dataset / "groundtruth.txt")) {
-      camera_from_world_.push_back(pose.world_from_camera.Inverse());
-    }
-    for (int i = 0; i < 120; ++i) {
-      points_.emplace_back(2.0 + 0.2 * (i % 12), 0.3 * (i / 12) - 1.5, i % 4 == 0 ? 0.3 : 0.0);
-    }
+// Writes COLMAP's model of the small scene: its true poses, and points on the floor and above it.
+void WriteModelOfSmallScene(const fs::path& dataset, const fs::path& folder) {
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 0; i < 120; ++i) {
+    points.emplace_back(2.0 + 0.2 * (i % 12), 0.3 * (i / 12) - 1.5, i % 4 == 0 ? 0.3 : 0.0);
   }
-
-  void Write(const fs::path& folder) const {
-    fs::create_directories(folder);
-    WriteBytes(folder / "cameras.txt", "1 PINHOLE 480 360 400 400 240 180\n");
-    std::string images, points;
-    for (size_t i = 0; i < camera_from_world_.size(); ++i) images += ImageLines(i);
-    for (size_t j = 0; j < points_.size(); ++j) {
-      points += fmt::format("{} {} 0 0 0 0.3", j + 1, fmt::join(points_[j], " "));
-      for (size_t i = 0; i < camera_from_world_.size(); ++i)
-        points += fmt::format(" {} {}", i + 1, j);
-      points += "\n";
+  std::vector<std::string> tracks(points.size());
+  std::string images, lines;
+  int count = 0;
+  for (const TimedPose& pose : ReadTrajectory(dataset / "groundtruth.txt")) {
+    const Rigid3d camera_from_world = pose.world_from_camera.Inverse();
+    const Eigen::Quaterniond& q = camera_from_world.rotation;
+    images += fmt::format("{} {} {} {} {} {} 1 rgb/IMG_{}.png\n", count + 1, q.w(), q.x(), q.y(),
+                          q.z(), fmt::join(camera_from_world.translation, " "), count);
+    ++count;
+    for (size_t j = 0; j < points.size(); ++j) {
+      const Eigen::Vector3d point = camera_from_world * points[j];
+      images += fmt::format("{} {} {} ", 400.0 * point.x() / point.z() + 240.0,
+                            400.0 * point.y() / point.z() + 180.0, j + 1);
+      tracks[j] += fmt::format(" {} {}", count, j);
     }
-    WriteBytes(folder / "images.txt", images);
-    WriteBytes(folder / "points3D.txt", points);
+    images += "\n";
   }
-
- private:
-  std::string ImageLines(size_t index) const {
-    const Rigid3d& pose = camera_from_world_[index];
-    const Eigen::Quaterniond& q = pose.rotation;
-    std::string lines = fmt::format("{} {} {} {} {} {} 1 rgb/IMG_{}.png\n", index + 1, q.w(), q.x(),
-                                    q.y(), q.z(), fmt::join(pose.translation, " "), index);
-    for (size_t j = 0; j < points_.size(); ++j) {
-      const Eigen::Vector3d point = pose * points_[j];
-      lines += fmt::format("{} {} {} ", 400.0 * point.x() / point.z() + 240.0,
-                           400.0 * point.y() / point.z() + 180.0, j + 1);
-    }
-    return lines + "\n";
+  for (size_t j = 0; j < points.size(); ++j) {
+    lines += fmt::format("{} {} 0 0 0 0.3{}\n", j + 1, fmt::join(points[j], " "), tracks[j]);
   }
-
-  std::vector<Rigid3d> camera_from_world_;
-  std::vector<Eigen::Vector3d> points_;
-};
+  fs::create_directories(folder);
+  WriteBytes(folder / "cameras.txt", "1 PINHOLE 480 360 400 400 240 180\n");
+  WriteBytes(folder / "images.txt", images);
+  WriteBytes(folder / "points3D.txt", lines);
+}
 
 // `make map` of the project itself, on photos of the small scene in a folder with a name that make
 // and the shell would read otherwise.
@@ -83,7 +72,7 @@ class MapTest : public testing::Test {
                photos_ / fmt::format("IMG {}.png", i));
     }
     fs::copy(pipeline_.Dataset() / "detections.csv", detections_);
-    ModelOfSmallScene(pipeline_.Dataset()).Write(programs_ / "models/0");
+    WriteModelOfSmallScene(pipeline_.Dataset(), programs_ / "models/0");
     WriteFakeColmap(programs_);
   }
 
