@@ -28,12 +28,8 @@ class RunExportTest : public FolderTest {
   using Outputs = std::vector<std::pair<std::string, std::string>>;  // argument and file
 
   RunExportTest() {
-    for (size_t i = 0; i < sequence_.objects.size(); ++i) {
-      map_.objects.push_back({static_cast<int>(i), 5, {}, {}, "no_start"});
-      if (i + 1 == sequence_.objects.size()) break;
-      map_.objects[i].landmark_in_world = sequence_.objects[i].ground_truth->landmark_in_world;
-      map_.objects[i].failure.clear();
-    }
+    map_.objects.back().landmark_in_world.reset();
+    map_.objects.back().failure = "no_start";
     for (Rigid3d& pose : map_.world_from_camera) pose.translation.x() += 0.125;
     Write();
   }
@@ -66,7 +62,7 @@ class RunExportTest : public FolderTest {
                         {"coco", "c.json"},      {"coco_dataset", "d.json"}, {"csv", "l.csv"}};
   ExportOptions options_;
   Sequence sequence_ = CuboidSequence(4, 9);
-  MapEstimate map_ = EmptyMap(sequence_);
+  MapEstimate map_ = TrueMap(sequence_);
 };
 
 TEST_F(RunExportTest, WritesWhatIsAskedFor) {

@@ -111,12 +111,6 @@ TEST_F(RunInitialiseCuboidsTest, RefusesToRunWithoutEdges) {
   ExpectError<SettingsError>([&] { Run(); }, {"method = cuboid_proposals needs --edges FILE"});
 }
 
-TEST_F(RunInitialiseCuboidsTest, RefusesEdgesOfOtherFrames) {
-  WriteEdges();
-  for (Frame& frame : sequence_.frames) frame.id += 1000;
-  ExpectError<InputError>([&] { Run(); }, {files_.at("edges").string(), "1000"});
-}
-
 // edges.h5 of images of another size, as after a camera.json was replaced.
 TEST_F(RunInitialiseCuboidsTest, AllStagesRefuseEdgesOfImagesOfAnotherSize) {
   WriteEdges();

@@ -60,11 +60,10 @@ class RunPagesTest : public FolderTest {
 
   // Without the last object, and with covariances as a back end has them.
   std::vector<ObjectEstimate> Estimates() const {
-    std::vector<ObjectEstimate> objects;
-    for (size_t i = 0; i + 1 < sequence_.objects.size(); ++i) {
-      const auto& truth = sequence_.objects[i].ground_truth;
-      objects.push_back({static_cast<int>(i), 5, truth->landmark_in_world,
-                         Covariance9(0.0123456 * Covariance9::Identity()), ""});
+    std::vector<ObjectEstimate> objects = TrueMap(sequence_).objects;
+    objects.pop_back();
+    for (ObjectEstimate& object : objects) {
+      object.covariance = Covariance9(0.0123456 * Covariance9::Identity());
     }
     return objects;
   }

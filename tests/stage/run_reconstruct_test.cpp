@@ -257,29 +257,18 @@ TEST_F(RunReconstructTest, FindingsAreReported) {
   EXPECT_EQ(FindingsFromJson(ParseJsonFile(Output("reconstruction.json"))).size(), 3u);
 }
 
-TEST_F(RunReconstructTest, ColmapIsMissing) {
-  setenv("PATH", (folder_ / "nothing").string().c_str(), 1);
-  ExpectFailure<SettingsError>({"package colmap", "--model"});
-}
-
-TEST_F(RunReconstructTest, ASingleImage) {
-  Write("data/rgb.txt", "0 rgb/0.png\n");
-  ExpectFailure<InputError>({"rgb.txt", "single image"});
-}
-
-TEST_F(RunReconstructTest, NoImageHasFeatures) {
-  Prints("  Features:        0");
-  ExpectFailure<NothingUsableError>({"none of 3 images has features"});
-}
-
-TEST_F(RunReconstructTest, NoModel) {
-  fs::remove_all(folder_ / "bin/models");
-  ExpectFailure<NumericalError>({"no two images", "log.txt"});
-}
-
-TEST_F(RunReconstructTest, Crash) {
+TEST_F(RunReconstructTest, FailuresOfColmapAreNamed) {
   Write("bin/crash", "");
   ExpectFailure<NothingUsableError>({"colmap mapper", "exit code 139", "Registering", "log.txt"});
+  fs::remove(folder_ / "bin/crash");
+  fs::remove_all(folder_ / "bin/models");
+  ExpectFailure<NumericalError>({"no two images", "log.txt"});
+  Prints("  Features:        0");
+  ExpectFailure<NothingUsableError>({"none of 3 images has features"});
+  setenv("PATH", (folder_ / "nothing").string().c_str(), 1);
+  ExpectFailure<SettingsError>({"package colmap", "--model"});
+  Write("data/rgb.txt", "0 rgb/0.png\n");
+  ExpectFailure<InputError>({"rgb.txt", "single image"});
 }
 
 TEST_F(RunReconstructTest, ImagesThatColmapWouldMistakeAreRefused) {
