@@ -50,13 +50,10 @@ class RerunTest : public testing::Test {
   const SmallPipeline& pipeline_ = Finished().Restored();
 };
 
-TEST_F(RerunTest, TheFirstRunRunsEachStageOnce) {
+TEST_F(RerunTest, EachStageRunsOnce) {
   EXPECT_THAT(StagesIn(Finished().Output()),
               ElementsAre("edges", "evaluate", "evaluate", "evaluate", "import", "initialise",
                           "optimise", "refine"));
-}
-
-TEST_F(RerunTest, NothingToDo) {
   EXPECT_THAT(StagesIn(ExpectSuccess(pipeline_.Run(kRerunVariants, {"-n"}))), IsEmpty());
   const auto before = Artefacts();
   EXPECT_THAT(RunStages(), IsEmpty());

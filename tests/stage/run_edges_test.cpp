@@ -41,12 +41,6 @@ class RunEdgesTest : public FolderTest {
             {"sequence", folder_ / "sequence.json"},
             {"output", folder_ / output}};
   }
-  // Expects that the stage refuses its input, saying these words, and writes nothing.
-  void ExpectRefused(const std::vector<std::string>& words) {
-    const StageFiles files = Files();
-    ExpectError<InputError>([&] { RunEdges({}, files, 2); }, words);
-    EXPECT_FALSE(std::filesystem::exists(files.at("output")));
-  }
 
   Sequence sequence_;
 };
@@ -110,7 +104,8 @@ TEST_F(RunEdgesTest, FramesWithoutAnImageAreLeftOutAndCounted) {
 
 TEST_F(RunEdgesTest, AnImageHasTheSizeOfItsFramesCamera) {
   cv::imwrite((folder_ / "rgb/3.png").string(), cv::Mat(40, 60, CV_8UC1, cv::Scalar(7)));
-  ExpectRefused({"rgb/3.png", "60 x 40", "64 x 48"});
+  ExpectError<InputError>([&] { RunEdges({}, Files(), 2); }, {"rgb/3.png", "60 x 40", "64 x 48"});
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "edges.h5"));
   sequence_.frames[3].camera = Camera{60, 40, 60.0, 60.0, 29.5, 19.5};
   RunEdges({}, Files(), 2);
   EXPECT_EQ(EdgesReader(folder_ / "edges.h5").Read(15).grey.cols, 60);
