@@ -22,7 +22,6 @@ namespace soslam {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::AllOf;
 using testing::ContainsRegex;
 using testing::EndsWith;
 using testing::HasSubstr;
@@ -197,16 +196,6 @@ TEST_F(MapTest, RefusesWhatIsMissing) {
   expect_refused({images, "NETWORK=x", "NAME=../x"}, "expected letters and digits");
   expect_refused({"IMAGES=/nowhere's", "NETWORK=x"}, "'/nowhere's': no such folder");
   EXPECT_FALSE(fs::exists(marker));
-}
-
-TEST_F(MapTest, GoesIntoTheFolderOfMapsByDefault) {
-  std::vector<std::string> words =
-      Words({"IMAGES=" + photos_.string(), "NETWORK=x", "VARIANT=OursS OursSTE", "-n"});
-  std::erase(words, "MAPS=" + maps_.string());
-  EXPECT_THAT(ExpectSuccess(RunCommand(words)),
-              AllOf(HasSubstr("MAP_ROOT=maps/"), HasSubstr("'OursS OursSTE'")));
-  std::erase(words, "VARIANT=OursS OursSTE");
-  EXPECT_THAT(RunCommand(words).output, HasSubstr("MAP_VARIANT='OursSP'"));
 }
 
 TEST_F(SlowMapTest, KilledAnywhereItGoesOn) {

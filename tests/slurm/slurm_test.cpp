@@ -208,20 +208,6 @@ TEST_F(SlowSlurmTest, StagesThroughSrunGiveTheSameBytes) {
   ExpectTheBytesOfALocalRun();
 }
 
-TEST_F(SlowSlurmTest, AFailingSrunIsToldFromAFailingStage) {
-  const CommandResult refused = Make("sweep", kCluster, {"LAUNCH=srun --constraint=nowhere"});
-  EXPECT_NE(refused.exit_code, 0);
-  EXPECT_FALSE(fs::exists(Data() / "small-seed1"));
-  Do("scenes", kCluster);
-  EXPECT_NE(Make("sweep", kCluster, {"LAUNCH=srun --constraint=nowhere"}).exit_code, 0);
-  EXPECT_THAT(Status(), ContainsRegex("import-[0-9a-f]+: its last run failed: exit code 1 of "
-                                      "LAUNCH or of a stage that was killed"));
-  WriteBytes(Data() / "small-seed1/objects.json", "[");
-  EXPECT_NE(Make("sweep", kCluster, {"LAUNCH=srun --ntasks=1"}).exit_code, 0);
-  EXPECT_THAT(Status(), ContainsRegex("import-[0-9a-f]+: its last run failed: exit code 3: .*"
-                                      "objects.json"));
-}
-
 TEST_F(SlowSlurmTest, ASweepGivesTheBytesOfALocalOne) {
   Submit();
   ExpectTheSweepToEndWithTheBytesOfALocalRun();

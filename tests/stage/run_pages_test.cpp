@@ -277,18 +277,6 @@ TEST_F(RunPagesTest, OlderResultsAreShownAsSuch) {
   EXPECT_EQ(PageDataIn(Page())["variants"].size(), 1u);
 }
 
-TEST_F(RunPagesTest, ImagesThatAreDamagedOrOfAnotherSizeAreLeftOut) {
-  WriteMultiView("MultiView");
-  Write("data/" + sequence_.frames[1].image, "no image");
-  Write("data/" + sequence_.frames[2].image, EncodedImage(".png", cv::Mat(9, 8, CV_8UC3)));
-  const Printed printed = Run();
-  EXPECT_THAT(printed.errors, AllOf(HasSubstr("2 of 6 images cannot be shown"),
-                                    HasSubstr(sequence_.frames[1].image)));
-  const json page = PageDataIn(Page());
-  EXPECT_EQ(page["images"].size(), 4u);
-  EXPECT_EQ(page["problems"].size(), 1u);
-}
-
 TEST_F(RunPagesTest, ImagesOutsideTheDatasetAreNotShown) {
   Write("secret.png", "no image");
   sequence_.frames[0].image = "../secret.png";
