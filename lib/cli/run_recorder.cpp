@@ -31,11 +31,6 @@ std::optional<fs::path> RecordFolder(const StageInfo& info, const StageFiles& fi
 // Argument name of a file: "sequence" also for the second file of --sequence, see RepeatedName.
 std::string ArgumentOf(const std::string& name) { return name.substr(0, name.find('#')); }
 
-const FileArgument* FindOutput(const StageInfo& info, const std::string& argument) {
-  const auto output = std::ranges::find(info.outputs, argument, &FileArgument::name);
-  return output == info.outputs.end() ? nullptr : &*output;
-}
-
 double Seconds(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
@@ -65,10 +60,11 @@ RunRecorder::RunRecorder(const StageInfo& info, const StageFiles& files,
   log_.emplace();
   for (const auto& [name, path] : files_) {
     const std::string argument = ArgumentOf(name);
-    const FileArgument* output = FindOutput(info, argument);
-    if (IsFolder(path) || (output != nullptr && output->is_folder)) {
+    const auto output = std::ranges::find(info.outputs, argument, &FileArgument::name);
+    const bool is_output = output != info.outputs.end();
+    if (IsFolder(path) || (is_output && output->is_folder)) {
       record_.folders[argument] = path;
-    } else if (output == nullptr) {
+    } else if (!is_output) {
       RecordInput(path);
     }
   }

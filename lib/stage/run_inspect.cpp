@@ -137,11 +137,6 @@ void WritePng(const fs::path& path, const cv::Mat& picture) {
   WriteTextFile(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-std::optional<Sequence> KnownSequence(const InspectRequest& request) {
-  if (!request.sequence) return std::nullopt;
-  return ReadSequence(*request.sequence, PlaneNeed::kNotNeeded);
-}
-
 // True if the artefact was made from another sequence than the given one.
 bool IsOfAnotherSequence(const InspectRequest& request) {
   if (!request.sequence || *request.sequence == request.file) return false;
@@ -212,7 +207,9 @@ std::string RunInspect(const InspectRequest& request, bool is_coloured) {
   if (request.headline) return Headline(request);
   if (request.image) WritePng(*request.image, PictureOf(request));
   if (request.image && !request.csv) return "";
-  Inspection inspection = Inspect(request.file, KnownSequence(request));
+  std::optional<Sequence> sequence;
+  if (request.sequence) sequence = ReadSequence(*request.sequence, PlaneNeed::kNotNeeded);
+  Inspection inspection = Inspect(request.file, sequence);
   if (!request.csv) {
     if (IsOfAnotherSequence(request)) {
       inspection.facts.push_back({"note", "--sequence is not the file that this was made from"});

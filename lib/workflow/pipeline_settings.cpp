@@ -99,21 +99,15 @@ const PipelineStage* FindStage(const std::string& name) {
   return found == Stages().end() ? nullptr : &*found;
 }
 
-// Stages that 'stages' may list.
-std::vector<std::string> ListedStages() {
-  std::vector<std::string> names;
-  for (const PipelineStage& stage : Stages()) {
-    if (stage.asked_by == nullptr) names.emplace_back(stage.name);
-  }
-  return names;
-}
-
 void CheckStageList(const json& stages, const std::string& file) {
   std::set<std::string> seen;
   if (!stages.is_array() || stages.empty()) {
     throw SettingsError(file + ": 'stages' is " + stages.dump() + "; expected a list of stages");
   }
-  const std::vector<std::string> listed = ListedStages();
+  std::vector<std::string> listed;
+  for (const PipelineStage& stage : Stages()) {
+    if (stage.asked_by == nullptr) listed.emplace_back(stage.name);
+  }
   for (const json& stage : stages) {
     if (!stage.is_string() || std::ranges::find(listed, stage.get<std::string>()) == listed.end()) {
       throw SettingsError(fmt::format("{}: 'stages' has {}; expected one of {}", file, stage.dump(),
