@@ -59,9 +59,9 @@ class StateFinder {
       found.state = StageState::kMissing;
       found.reasons.emplace_back("it has not run with these settings and inputs");
     }
-    if (done) Append(MissingOutputs(instance), &found.reasons);
-    if (done) Append(NewerFiles(instance, *done), &found.reasons);
-    Append(InputsToCome(instance), &found.reasons);
+    if (done) AddMissingOutputs(instance, &found.reasons);
+    if (done) AddNewerFiles(instance, *done, &found.reasons);
+    AddInputsToCome(instance, &found.reasons);
     if (found.state == StageState::kDone && !found.reasons.empty()) {
       found.state = StageState::kStale;
     }
@@ -70,33 +70,25 @@ class StateFinder {
     return found;
   }
 
-  static void Append(const std::vector<std::string>& more, std::vector<std::string>* lines) {
-    lines->insert(lines->end(), more.begin(), more.end());
-  }
-
-  std::vector<std::string> MissingOutputs(const StageInstance& instance) const {
-    std::vector<std::string> reasons;
+  void AddMissingOutputs(const StageInstance& instance, std::vector<std::string>* reasons) const {
     for (const StageOutput& output : OutputsOfStage(instance.stage)) {
       if (!Exists(Result(instance, output.file))) {
-        reasons.push_back(output.file + ", which it writes, is gone");
+        reasons->push_back(output.file + ", which it writes, is gone");
       }
     }
-    return reasons;
   }
 
-  std::vector<std::string> NewerFiles(const StageInstance& instance,
-                                      fs::file_time_type done) const {
-    std::vector<std::string> reasons;
+  void AddNewerFiles(const StageInstance& instance, fs::file_time_type done,
+                     std::vector<std::string>* reasons) const {
     for (const fs::path& path : PrerequisitesOf(instance, folders_)) {
       const auto time = TimeOf(path);
-      if (!time) reasons.push_back(path.string() + " does not exist");
+      if (!time) reasons->push_back(path.string() + " does not exist");
       if (!time || *time <= done) continue;
       const bool is_listing =
           path == folders_.results / kDatasetListing || path == folders_.results / kImagesListing;
-      reasons.push_back(is_listing ? NewerFilesListedIn(path, done)
-                                   : path.string() + " has changed since");
+      reasons->push_back(is_listing ? NewerFilesListedIn(path, done)
+                                    : path.string() + " has changed since");
     }
-    return reasons;
   }
 
   // Files of a listing newer than `done`. A listing has the dataset's folder in its first line,
@@ -115,16 +107,14 @@ class StateFinder {
     return "files of the dataset have changed since: " + NamesInWords(newer, 5);
   }
 
-  std::vector<std::string> InputsToCome(const StageInstance& instance) const {
-    std::vector<std::string> reasons;
+  void AddInputsToCome(const StageInstance& instance, std::vector<std::string>* reasons) const {
     for (const auto& [argument, source] : instance.inputs) {
       const StageState state = states_.at(source.instance).state;
       if (state != StageState::kDone) {
-        reasons.push_back(fmt::format("{} comes from {}, which is {}", source.file, source.instance,
-                                      NameOf(state)));
+        reasons->push_back(fmt::format("{} comes from {}, which is {}", source.file,
+                                       source.instance, NameOf(state)));
       }
     }
-    return reasons;
   }
 
   const Plan& plan_;
