@@ -8,7 +8,6 @@
 #include <map>
 #include <memory>
 #include <regex>
-#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -164,19 +163,6 @@ class SlowSlurmTest : public testing::Test {
       records[entry.path().lexically_relative(results).string()] = record;
     }
     return records;
-  }
-  // The paths that only one of two has, or that differ.
-  template <typename Content>
-  static std::set<std::string> Differing(const std::map<std::string, Content>& one,
-                                         const std::map<std::string, Content>& other) {
-    std::set<std::string> paths;
-    for (const auto* side : {&one, &other}) {
-      for (const auto& [path, content] : *side) {
-        const bool is_in_both = one.contains(path) && other.contains(path);
-        if (!is_in_both || one.at(path) != other.at(path)) paths.insert(path);
-      }
-    }
-    return paths;
   }
   void ExpectTheBytesOfALocalRun() const {
     Do("sweep", kLocal);

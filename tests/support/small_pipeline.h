@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,20 @@ inline std::vector<std::string> MakeWords(const std::vector<std::string>& argume
 inline CommandResult RunMake(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), {"-j2", "--output-sync"});
   return RunCommand(MakeWords(arguments));
+}
+
+// The paths that only one of two has, or whose content differs.
+template <typename Content>
+std::set<std::string> Differing(const std::map<std::string, Content>& one,
+                                const std::map<std::string, Content>& other) {
+  std::set<std::string> paths;
+  for (const auto* side : {&one, &other}) {
+    for (const auto& [path, content] : *side) {
+      const bool is_in_both = one.contains(path) && other.contains(path);
+      if (!is_in_both || one.at(path) != other.at(path)) paths.insert(path);
+    }
+  }
+  return paths;
 }
 
 // The small scene's dataset, a copy of the project's pipelines, and a results folder, all in a
