@@ -84,13 +84,13 @@ struct AlignedLandmark {
   int object_index = 0;  // into Sequence::objects
   int segment = 0;
   Landmark landmark_in_world;
+  std::optional<Plane> plane_in_world = std::nullopt;  // its support plane
 };
 
 // A map, aligned with the true world.
 struct AlignedMap {
-  std::vector<AlignedLandmark> landmarks;               // by object
-  std::vector<Rigid3d> world_from_camera;               // one per Sequence::frames
-  std::vector<std::optional<Plane>> plane_of_landmark;  // support plane of each landmark
+  std::vector<AlignedLandmark> landmarks;  // by object
+  std::vector<Rigid3d> world_from_camera;  // one per Sequence::frames
 };
 
 // `world_from_camera` and `planes_in_world` as in MapEstimate.

@@ -7,6 +7,7 @@
 #include "base/assignment.h"
 #include "evaluation/map_reasons.h"
 #include "evaluation/statistics.h"
+#include "model/segments.h"
 
 namespace soslam {
 namespace {
@@ -23,14 +24,12 @@ struct Judged {
 
 std::vector<Judged> JudgedLandmarks(const Sequence& sequence,
                                     const std::vector<ObjectEstimate>& estimates) {
-  const auto detections = DetectionsByObject(sequence);
+  const auto segments = SegmentsOfObjects(sequence);
   std::vector<Judged> judged;
   for (const ObjectEstimate& estimate : estimates) {
-    const std::vector<int>& own = detections[estimate.object_index];
-    if (!estimate.landmark_in_world || own.empty()) continue;
-    const Detection& first = sequence.detections[own.front()];
-    judged.push_back(
-        {estimate.object_index, *estimate.landmark_in_world, sequence.FrameOf(first).segment});
+    const auto& segment = segments[estimate.object_index];
+    if (!estimate.landmark_in_world || !segment) continue;
+    judged.push_back({estimate.object_index, *estimate.landmark_in_world, *segment});
   }
   return judged;
 }

@@ -71,8 +71,8 @@ class RowMaker {
     const Landmark& truth = object.truth.landmark_in_world;
     row->errors = CompareBodies(map_.landmarks[landmark].landmark_in_world, object.truth, truth);
     row->label_agrees = AreSameLabel(sequence_.objects[row->object_index].label, object.label);
-    if (const auto& plane = map_.plane_of_landmark[landmark])
-      row->plane = ComparePlane(*plane, truth);
+    const auto& plane = map_.landmarks[landmark].plane_in_world;
+    if (plane) row->plane = ComparePlane(*plane, truth);
   }
 
   // Compares them in the frames of its observations, if the true object's place there is known.

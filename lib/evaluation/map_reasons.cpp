@@ -148,10 +148,9 @@ MapReason ReasonOf(BodyPart part, const Landmark& landmark, const std::optional<
 Explanation ExplainWrong(const ReasonInput& input, int landmark, int true_index) {
   const auto wrong = DominantError(input.sequence, input.map, landmark, true_index);
   const GroundTruth& truth = input.sequence.true_objects[true_index].truth;
-  const auto index = static_cast<size_t>(landmark);
-  const Landmark& estimate = input.map.landmarks[index].landmark_in_world;
+  const Landmark& estimate = input.map.landmarks[landmark].landmark_in_world;
+  const auto& plane = input.map.landmarks[landmark].plane_in_world;
   const BodyErrors errors = CompareBodies(estimate, truth, truth.landmark_in_world);
-  const auto& plane = input.map.plane_of_landmark[index];
   std::optional<PlaneErrors> plane_errors;
   if (plane) plane_errors = ComparePlane(*plane, truth.landmark_in_world);
   std::string detail = fmt::format("IoU {:.3f}", errors.iou);

@@ -125,20 +125,15 @@ Metrics EvaluateMap(const Sequence& sequence, const MapEstimate& map, AlignmentK
   metrics.map_quality = EvaluateMapQuality(sequence, map.objects, map.world_from_camera,
                                            map.planes_in_world, alignment);
 
+  if (sequence.frames.empty()) return metrics;
   // Each segment has a world of its own, so one alignment is not enough.
-  if (!sequence.frames.empty() &&
-      sequence.frames.front().segment != sequence.frames.back().segment) {
-    return metrics;
+  const int segment = sequence.frames.front().segment;
+  if (sequence.frames.back().segment != segment) return metrics;
+  const auto error = AbsoluteTrajectoryError(PosePairs(sequence, map.world_from_camera, segment));
+  if (error) {
+    metrics.trajectory = {
+        *error, *AbsoluteTrajectoryError(PosePairs(sequence, PosesOf(sequence), segment))};
   }
-  std::vector<PosePair> optimised, odometry;
-  for (size_t i = 0; i < sequence.frames.size(); ++i) {
-    const Frame& frame = sequence.frames[i];
-    if (!frame.true_world_from_camera) continue;
-    optimised.push_back({map.world_from_camera[i], *frame.true_world_from_camera});
-    odometry.push_back({frame.world_from_camera, *frame.true_world_from_camera});
-  }
-  const auto error = AbsoluteTrajectoryError(optimised);
-  if (error) metrics.trajectory = {*error, *AbsoluteTrajectoryError(odometry)};
   return metrics;
 }
 

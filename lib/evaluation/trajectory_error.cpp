@@ -11,6 +11,18 @@
 
 namespace soslam {
 
+std::vector<PosePair> PosePairs(const Sequence& sequence,
+                                const std::vector<Rigid3d>& world_from_camera, int segment) {
+  std::vector<PosePair> pairs;
+  for (size_t i = 0; i < sequence.frames.size(); ++i) {
+    const auto& truth = sequence.frames[i].true_world_from_camera;
+    if (truth && sequence.frames[i].segment == segment) {
+      pairs.push_back({world_from_camera[i], *truth});
+    }
+  }
+  return pairs;
+}
+
 TrajectoryGap GapOf(const std::vector<PosePair>& pairs) {
   std::vector<double> rotations, translations;
   for (const auto& [estimated, truth] : pairs) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/rigid3.h"
+#include "model/sequence.h"
 
 namespace soslam {
 
@@ -14,6 +15,11 @@ struct PosePair {
   Rigid3d estimated;
   Rigid3d truth;
 };
+
+// The poses of the frames of a segment that have a true one. `world_from_camera`: the estimates,
+// one per Sequence::frames.
+std::vector<PosePair> PosePairs(const Sequence& sequence,
+                                const std::vector<Rigid3d>& world_from_camera, int segment);
 
 // Difference of two trajectories, medians over frames.
 struct TrajectoryGap {

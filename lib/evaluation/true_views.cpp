@@ -50,8 +50,7 @@ std::vector<std::optional<Box>> Outlines(const Sequence& sequence, const TrueVie
 
 TrueViews::TrueViews(const Sequence& sequence) : sequence_(sequence) {
   for (const TruthInFrame& truth : sequence.truth_in_frames) {
-    of_frame_[{truth.frame_index, truth.true_object_id}] = &truth.landmark_in_camera;
-    said_for_each_frame_.insert(truth.true_object_id);
+    of_frames_[truth.true_object_id][truth.frame_index] = &truth.landmark_in_camera;
   }
 }
 
@@ -64,9 +63,9 @@ std::optional<Landmark> TrueViews::FromPose(const Rigid3d& world_from_camera, in
 
 std::optional<Landmark> TrueViews::KnownInCamera(int frame_index, int true_index) const {
   const TrueObject& object = sequence_.true_objects[true_index];
-  if (said_for_each_frame_.contains(object.id)) {
-    const auto known = of_frame_.find({frame_index, object.id});
-    return known == of_frame_.end() ? std::nullopt : std::optional(*known->second);
+  if (const auto own = of_frames_.find(object.id); own != of_frames_.end()) {
+    const auto known = own->second.find(frame_index);
+    return known == own->second.end() ? std::nullopt : std::optional(*known->second);
   }
   const auto& pose = sequence_.frames[frame_index].true_world_from_camera;
   return pose ? FromPose(*pose, frame_index, object) : std::nullopt;
@@ -75,9 +74,9 @@ std::optional<Landmark> TrueViews::KnownInCamera(int frame_index, int true_index
 std::optional<Landmark> TrueViews::InCamera(int frame_index, int true_index) const {
   const Frame& frame = sequence_.frames[frame_index];
   const TrueObject& object = sequence_.true_objects[true_index];
-  const bool is_known =
-      said_for_each_frame_.contains(object.id) || frame.true_world_from_camera.has_value();
-  if (is_known) return KnownInCamera(frame_index, true_index);
+  if (of_frames_.contains(object.id) || frame.true_world_from_camera) {
+    return KnownInCamera(frame_index, true_index);
+  }
   if (sequence_.odometry_world != OdometryWorld::kOfTruth) return std::nullopt;
   return FromPose(frame.world_from_camera, frame_index, object);
 }

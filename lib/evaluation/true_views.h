@@ -3,8 +3,6 @@
 
 #include <map>
 #include <optional>
-#include <set>
-#include <utility>
 #include <vector>
 
 #include "model/sequence.h"
@@ -31,8 +29,8 @@ class TrueViews {
   std::optional<Landmark> FromPose(const Rigid3d& world_from_camera, int frame_index,
                                    const TrueObject& object) const;
 
-  std::map<std::pair<int, int>, const Landmark*> of_frame_;  // by frame and true object id
-  std::set<int> said_for_each_frame_;  // true object ids that have poses per frame
+  // Of the true objects that have poses per frame, by id, by frame.
+  std::map<int, std::map<int, const Landmark*>> of_frames_;
 };
 
 // A box, used or not, that belongs to a true object.
