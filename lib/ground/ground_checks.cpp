@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/text.h"
@@ -140,22 +141,14 @@ void CheckSupport(const GroundEstimate& estimate, std::vector<Finding>* findings
                        "look at the map from the side; more images of the ground"});
 }
 
-std::string HoldingInWords(CameraHolding holding) {
-  switch (holding) {
-    case CameraHolding::kRolled90:
-      return "turned clockwise by a quarter turn";
-    case CameraHolding::kRolled180:
-      return "upside down";
-    case CameraHolding::kRolled270:
-      return "turned anticlockwise by a quarter turn";
-    case CameraHolding::kLookingDown:
-      return "looking straight down, with upright images";
-    case CameraHolding::kLookingDownRolled90:
-      return "looking straight down, with images turned by a quarter turn";
-    default:
-      return "level, as is usual";
-  }
-}
+// Each CameraHolding in words.
+constexpr std::array kHoldingWords = {
+    "level, as is usual",
+    "turned clockwise by a quarter turn",
+    "upside down",
+    "turned anticlockwise by a quarter turn",
+    "looking straight down, with upright images",
+    "looking straight down, with images turned by a quarter turn"};
 
 constexpr const char* kSeeWhetherUpright =
     "see in the map from the side whether objects stand upright. If not, take photos with the "
@@ -183,7 +176,8 @@ void CheckHolding(const GroundEstimate& estimate, std::vector<Finding>* findings
            "more than twice as many objects stand on flat surfaces if it was held {}, "
            "which is assumed. If that is wrong, the map lies on its side or is upside down, and "
            "heights and scale are wrong with it",
-           HoldingInWords(estimate.holding_of_boxes), HoldingInWords(holding)),
+           kHoldingWords.at(static_cast<size_t>(estimate.holding_of_boxes)),
+           kHoldingWords.at(static_cast<size_t>(holding))),
        "objects and surfaces that agree on which way is up",
        "photos that were turned in different ways or look steeply down, few objects, or surfaces "
        "without texture",
@@ -192,12 +186,9 @@ void CheckHolding(const GroundEstimate& estimate, std::vector<Finding>* findings
 
 void CheckCameraHeight(const GroundEstimate& estimate, const GroundOptions& options,
                        std::vector<Finding>* findings) {
-  constexpr const char* kName = "camera_height_m";
-  if (options.camera_height_m <= 0.0 ||
-      std::ranges::find(estimate.known_scales, kName, &KnownScale::setting) !=
-          estimate.known_scales.end()) {
-    return;
-  }
+  const bool is_used =
+      std::ranges::count(estimate.known_scales, "camera_height_m", &KnownScale::setting) > 0;
+  if (options.camera_height_m <= 0.0 || is_used) return;
   findings->push_back(
       {"camera_height_unused", Severity::kWarning,
        "camera_height_m is given, and no horizontal plane below the cameras is found",

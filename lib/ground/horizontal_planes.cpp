@@ -66,14 +66,11 @@ double Sigma(const GroundPoint& point, const Eigen::Vector3d& up) {
   return std::hypot(std::sqrt(up.dot(point.covariance * up)), kRoughness);
 }
 
-std::vector<GroundPoint> UsablePoints(const std::vector<GroundPoint>& points,
-                                      const Eigen::Vector3d& up) {
-  std::vector<GroundPoint> usable;
-  for (const GroundPoint& point : points) {
-    if (up.dot(point.covariance * up) > kMaxPointSigma * kMaxPointSigma) continue;
-    usable.push_back(point);
-  }
-  return usable;
+std::vector<GroundPoint> UsablePoints(std::vector<GroundPoint> points, const Eigen::Vector3d& up) {
+  std::erase_if(points, [&](const GroundPoint& point) {
+    return up.dot(point.covariance * up) > kMaxPointSigma * kMaxPointSigma;
+  });
+  return points;
 }
 
 // Number of pairs of points at the same height.
@@ -109,13 +106,15 @@ std::vector<Eigen::Vector3d> Starts(const std::vector<GroundPoint>& points,
 struct HeightReading {
   double height;
   double sigma;
+
+  bool IsWithin(double sigmas, double other) const {
+    return std::abs(height - other) < sigmas * sigma;
+  }
 };
 
-// Number of readings within `bound` standard deviations.
-double CountNear(const std::vector<HeightReading>& readings, double height, double bound) {
-  return static_cast<double>(std::ranges::count_if(readings, [&](const HeightReading& reading) {
-    return std::abs(reading.height - height) < bound * reading.sigma;
-  }));
+double CountNear(const std::vector<HeightReading>& readings, double height, double sigmas) {
+  return static_cast<double>(std::ranges::count_if(
+      readings, [&](const HeightReading& reading) { return reading.IsWithin(sigmas, height); }));
 }
 
 // The height to which most readings are near.
@@ -154,9 +153,8 @@ std::vector<double> PeakHeights(const std::vector<GroundPoint>& points, const Ei
     // Where points are evenly distributed, twice the width has twice as many.
     const double around = CountNear(all, height, 2.0 * kBound) - CountNear(all, height, kBound);
     if (count > kLeastContrast * around) peaks.push_back(height);
-    std::erase_if(readings, [&](const HeightReading& reading) {
-      return std::abs(reading.height - height) < kBound * reading.sigma;
-    });
+    std::erase_if(readings,
+                  [&](const HeightReading& reading) { return reading.IsWithin(kBound, height); });
   }
   return peaks;
 }

@@ -2,11 +2,13 @@
 #include "ground/scale_posterior.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 namespace soslam {
 namespace {
@@ -82,19 +84,17 @@ double MisfitOf(const std::vector<ScaleEvidence>& objects, double log_scale) {
 ScalePosterior Summary(double low, const std::vector<double>& probabilities) {
   ScalePosterior posterior;
   double mean = 0.0, square = 0.0, sum = 0.0;
-  const auto quantile = [&](double share, double before, double x, double probability,
-                            double* value) {
-    if (before < share && before + probability >= share) {
-      *value = x + kGridStep * ((share - before) / probability - 0.5);
-    }
-  };
+  const std::array quantiles = {std::pair(0.025, &posterior.low),
+                                std::pair(0.5, &posterior.log_scale),
+                                std::pair(0.975, &posterior.high)};
   for (size_t i = 0; i < probabilities.size(); ++i) {
     const double x = low + kGridStep * static_cast<double>(i);
     mean += probabilities[i] * x;
     square += probabilities[i] * x * x;
-    quantile(0.025, sum, x, probabilities[i], &posterior.low);
-    quantile(0.5, sum, x, probabilities[i], &posterior.log_scale);
-    quantile(0.975, sum, x, probabilities[i], &posterior.high);
+    for (const auto& [share, value] : quantiles) {
+      if (sum >= share || sum + probabilities[i] < share) continue;
+      *value = x + kGridStep * ((share - sum) / probabilities[i] - 0.5);
+    }
     sum += probabilities[i];
   }
   posterior.log_sigma = std::sqrt(std::max(0.0, square - mean * mean));
