@@ -90,7 +90,7 @@ class Estimation {
 
   // Runs all steps for cameras that are held in this way.
   void Run(const UpEstimate& held, const std::vector<SegmentView>& views) {
-    of_cameras = held;
+    result.attitude = held;
     FindAttitude(views);
     Run();
   }
@@ -100,8 +100,8 @@ class Estimation {
   void RunTurned(const UpEstimate& up_of_cameras) {
     constexpr double kSigma = 30.0 * kRadPerDeg;
     constexpr double kLeast = 0.5;  // length of the mean: less is of cameras turned in all ways
-    of_cameras = up_of_cameras;
-    cameras_are_turned = true;
+    result.attitude = up_of_cameras;
+    result.cameras_are_turned = true;
     Eigen::Vector3d up = Eigen::Vector3d::Zero();  // halfway between level and looking down
     for (const Frame& frame : sequence_.frames) {
       up -= frame.world_from_camera.rotation * Eigen::Vector3d(0.0, 1.0, 1.0);
@@ -122,21 +122,16 @@ class Estimation {
   double units_per_input = 1.0;  // units of the input in a normalised one
   UpPrior attitude;              // from cameras and vertical edges
   UpPrior without_verticals;
-  UpEstimate of_cameras;
-  bool uses_verticals = false;
-  bool cameras_are_turned = false;
   HorizontalPlanes planes;
-  int planes_of_points = 0;
   std::vector<MeasuredObject> objects;
-  std::optional<ScalePosterior> scale, scale_of_objects;
-  std::vector<KnownScale> known_scales;
+  GroundEstimate result;  // what does not need the output's world; its scales are of this one
 
  private:
   void Run() {
     planes = FindHorizontalPlanes(points_, attitude);
     CheckVerticals();
-    planes_of_points = static_cast<int>(planes.planes.size());
-    if (planes_of_points > 0) on_lowest_plane_ = planes.planes.front().centre_in_world;
+    result.planes_of_points = static_cast<int>(planes.planes.size());
+    if (result.planes_of_points > 0) on_lowest_plane_ = planes.planes.front().centre_in_world;
     const auto groups = GroupBoxes(sequence_, points_, planes, threads_);
     Measure(groups);
     if (DropPlanesWithoutObjects()) {
@@ -150,10 +145,10 @@ class Estimation {
     const double correlation = options_.view_correlation_deg * kRadPerDeg;
     attitude = RobustUpPriorFromCameras(poses, options_.camera_roll_sigma_deg * kRadPerDeg,
                                         options_.camera_pitch_sigma_deg * kRadPerDeg, correlation,
-                                        of_cameras.holding);
+                                        result.attitude.holding);
     without_verticals = WithCommonError(attitude);
-    uses_verticals = !views.empty();
-    if (uses_verticals) {
+    result.verticals = !views.empty();
+    if (result.verticals) {
       constexpr double kMaxTilt = 12.0 * kRadPerDeg;
       std::vector<SegmentView> in_world = views;
       for (size_t i = 0; i < poses.size(); ++i) in_world[i].world_from_camera = poses[i];
@@ -169,7 +164,8 @@ class Estimation {
     constexpr double kRoughly = 10.0 * kRadPerDeg;
     constexpr double kSameUp = 3.0 * kRadPerDeg;
     constexpr double kShare = 0.1;  // as many fewer points make a direction e times less probable
-    if (!uses_verticals || std::sqrt(TiltCovariance(without_verticals).trace()) < kRoughly) return;
+    if (!result.verticals || std::sqrt(TiltCovariance(without_verticals).trace()) < kRoughly)
+      return;
     HorizontalPlanes other = FindHorizontalPlanes(points_, without_verticals);
     const double angle = AngleBetween(planes.up_in_world, other.up_in_world);
     if (angle < kSameUp || other.planes.empty()) return;
@@ -177,7 +173,7 @@ class Estimation {
     if (other_points > points) {
       std::swap(planes, other);
       attitude = without_verticals;
-      uses_verticals = false;
+      result.verticals = false;
     }
     const double weight =
         std::exp(-std::abs(points - other_points) / (kShare * std::max(points, other_points)));
@@ -185,7 +181,7 @@ class Estimation {
   }
 
   void Measure(const std::vector<std::vector<int>>& groups) {
-    UpEstimate up = of_cameras;
+    UpEstimate up = result.attitude;
     up.up_in_world = planes.up_in_world;
     const Eigen::Matrix3d level = UprightRotation(up.up_in_world, 0.0).toRotationMatrix();
     up.covariance = level.leftCols<2>() * planes.tilt_covariance * level.leftCols<2>().transpose();
@@ -195,9 +191,9 @@ class Estimation {
     WeightSameLabels(options_.same_label_correlation, &evidence);
     for (size_t i = 0; i < objects.size(); ++i) objects[i].evidence.weight = evidence[i].weight;
     std::erase_if(evidence, [](const ScaleEvidence& one) { return one.hypotheses.empty(); });
-    scale_of_objects = EstimateScale(evidence, {});
-    known_scales = Known();
-    scale = EstimateScale(evidence, known_scales);
+    result.scale_of_objects = EstimateScale(evidence, {});
+    result.known_scales = Known();
+    result.scale = EstimateScale(evidence, result.known_scales);
   }
 
   std::vector<KnownScale> Known() const {
@@ -224,7 +220,7 @@ class Estimation {
   // For each plane, the sum of the probabilities of objects to stand on it.
   std::vector<double> ObjectsOnPlanes() const {
     std::vector<double> objects_on(planes.planes.size());
-    const auto& at_scale = scale_of_objects ? scale_of_objects : scale;
+    const auto& at_scale = result.scale_of_objects ? result.scale_of_objects : result.scale;
     for (const MeasuredObject& object : objects) {
       const auto& hypotheses = object.evidence.hypotheses;
       const auto shares =
@@ -292,19 +288,19 @@ Estimation BestHeld(const Estimation& none, const UpEstimate& of_cameras,
   return *std::move(best);
 }
 
-ScalePosterior Shifted(ScalePosterior posterior, double log_factor) {
-  posterior.log_scale += log_factor;
-  posterior.low += log_factor;
-  posterior.high += log_factor;
-  return posterior;
+void Shift(double log_factor, std::optional<ScalePosterior>* posterior) {
+  if (!*posterior) return;
+  (*posterior)->log_scale += log_factor;
+  (*posterior)->low += log_factor;
+  (*posterior)->high += log_factor;
 }
 
 // The output's world: z up, metres, its origin below the first camera on the lowest plane.
 // Where the scale is unknown, the unit is that of the input.
 Similarity OutputFromNormalised(const Estimation& estimation) {
   Similarity output;
-  output.scale =
-      estimation.scale ? std::exp(estimation.scale->log_scale) : estimation.units_per_input;
+  const auto& scale = estimation.result.scale;
+  output.scale = scale ? std::exp(scale->log_scale) : estimation.units_per_input;
   output.rigid.rotation = UprightRotation(estimation.planes.up_in_world, 0.0).conjugate();
   if (!estimation.planes.planes.empty()) {
     output.rigid.translation.z() = -output.scale * estimation.planes.planes.front().height;
@@ -363,7 +359,7 @@ GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoi
       UpOfSegments(normalised, table, FitOptions(options)).begin()->second;
   const Estimation estimation = BestHeld(none, of_cameras, views);
 
-  GroundEstimate result;
+  GroundEstimate result = estimation.result;
   const Similarity output = OutputFromNormalised(estimation);
   result.output_from_input = output * normalised_from_input;
   result.up_in_input =
@@ -372,18 +368,11 @@ GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoi
   result.attitude_tilt_sigma = std::sqrt(TiltCovariance(estimation.attitude).trace());
   result.attitude_tilt =
       AngleBetween(estimation.attitude.up_in_world, estimation.planes.up_in_world);
-  result.attitude = estimation.of_cameras;
-  result.verticals = estimation.uses_verticals;
-  if (estimation.scale) result.scale = Shifted(*estimation.scale, -log_units);
-  if (estimation.scale_of_objects) {
-    result.scale_of_objects = Shifted(*estimation.scale_of_objects, -log_units);
-  }
-  result.known_scales = estimation.known_scales;
+  Shift(-log_units, &result.scale);
+  Shift(-log_units, &result.scale_of_objects);
   for (KnownScale& known : result.known_scales) known.log_scale -= log_units;
   result.holding_of_boxes = of_cameras.holding;
-  result.cameras_are_turned = estimation.cameras_are_turned;
   result.points = static_cast<int>(ground_points.size());
-  result.planes_of_points = estimation.planes_of_points;
   for (const PlaneOfPoints& plane : estimation.planes.planes) {
     result.planes.push_back(OutputPlane(output, plane));
     result.points_on_planes.push_back(static_cast<int>(plane.points_in_world.size()));
