@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planes/estimate_planes.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
-#include "base/error.h"
 #include "base/parallel.h"
 #include "geometry/angles.h"
 #include "planes/plane_heights.h"
@@ -44,17 +42,14 @@ class Estimator {
  public:
   Estimator(const Sequence& sequence, const std::vector<std::optional<ShapePrior>>& priors,
             Mount mount, const UpPrior& attitude, const PlanesOptions& options, int threads)
-      : sequence_(sequence),
-        options_(options),
-        threads_(threads),
-        detections_(DetectionsByObject(sequence)),
-        attitude_(attitude) {
+      : sequence_(sequence), options_(options), threads_(threads), attitude_(attitude) {
+    auto detections = DetectionsByObject(sequence);
     for (size_t i = 0; i < sequence.objects.size(); ++i) {
       // A moving object has no single place in the world.
       const bool takes_part = sequence.objects[i].is_static && MountOf(priors[i]) == mount;
-      if (!takes_part) detections_[i].clear();
-      observations_.push_back(Observe(detections_[i], priors[i]));
-      sparse_.push_back(Observe(SpreadOver(detections_[i], kViewsOfSearch), priors[i]));
+      if (!takes_part) detections[i].clear();
+      observations_.push_back(Observe(detections[i], priors[i]));
+      sparse_.push_back(Observe(SpreadOver(detections[i], kViewsOfSearch), priors[i]));
     }
   }
 
@@ -108,8 +103,8 @@ class Estimator {
       if (deciding_.empty()) return std::nullopt;
       Decide(&reference);
       if (!RefineAll()) return std::nullopt;
-      estimate.settled = before == std::pair(deciding_, deciding_level_);
-      before = {deciding_, deciding_level_};
+      estimate.settled = before == std::pair(deciding_, standing_.plane_of);
+      before = {deciding_, standing_.plane_of};
       reference = standing_.planes.front();
     }
     Write(&estimate);
@@ -163,7 +158,6 @@ class Estimator {
     }
     const PlaneHeights levels = ClusterPlaneHeights(
         evidence, heights, EvidenceOf(attitude_, *reference), kMaxTilt, options_.new_plane_cost);
-    deciding_level_ = levels.level_of;
     standing_ = {own_, levels.level_of, {}, attitude_, options_.height_sigma_fraction};
     for (const double height : levels.heights) {
       standing_.planes.push_back(
@@ -205,14 +199,6 @@ class Estimator {
     return refined.has_value();
   }
 
-  // Covariance of one plane's motion, through refined_'s pivot.
-  Eigen::Matrix3d CovarianceOf(size_t plane) const {
-    const RefinedPlanes& refined = options_.parallel ? refined_.front() : refined_[plane];
-    const auto rise = static_cast<Eigen::Index>(options_.parallel ? 2 + plane : 2);
-    const std::array<Eigen::Index, 3> at = {0, 1, rise};
-    return refined.covariance(at, at);
-  }
-
   void Write(PlanesEstimate* estimate) const {
     estimate->cost = 0.0;
     estimate->attitude_information = attitude_.information;
@@ -236,14 +222,16 @@ class Estimator {
     const Eigen::Vector3d feet = MeanBasePoint(bodies);
     const Eigen::Vector3d point = feet - plane.SignedDistance(feet) * plane.normal;
     const Eigen::Matrix3d level = UprightRotation(plane.normal, 0.0).toRotationMatrix();
+    const RefinedPlanes& refined = options_.parallel ? refined_.front() : refined_[index];
+    const auto rise = static_cast<Eigen::Index>(options_.parallel ? 2 + index : 2);
+    const std::array<Eigen::Index, 3> motion = {0, 1, rise};
+    const Eigen::Matrix3d covariance = refined.covariance(motion, motion);
     // Rotations about the pivot raise the plane at the point.
-    const Eigen::Vector3d& pivot =
-        options_.parallel ? refined_.front().pivot : refined_[index].pivot;
     Eigen::Matrix3d at_point = Eigen::Matrix3d::Identity();
-    const Eigen::Vector3d arm = point - pivot;
+    const Eigen::Vector3d arm = point - refined.pivot;
     at_point(2, 0) = level.col(1).dot(arm);
     at_point(2, 1) = -level.col(0).dot(arm);
-    return {plane, point, level.col(0), at_point * CovarianceOf(index) * at_point.transpose()};
+    return {plane, point, level.col(0), at_point * covariance * at_point.transpose()};
   }
 
   int PlaneOfMost() const {
@@ -294,7 +282,6 @@ class Estimator {
   const Sequence& sequence_;
   const PlanesOptions& options_;
   int threads_;
-  std::vector<std::vector<int>> detections_;
   UpPrior attitude_;
   // Per object; none for an object without detections.
   std::vector<std::optional<MultiViewObservation>> observations_;
@@ -302,7 +289,6 @@ class Estimator {
   // Objects that decide about planes, and their bodies, each on its own plane.
   std::vector<size_t> deciding_;
   std::vector<StandingBody> own_;
-  std::vector<int> deciding_level_;
   StandingBodies standing_;
   std::vector<RefinedPlanes> refined_;  // one for all planes where they are parallel
 };
@@ -340,13 +326,6 @@ std::optional<PlanesEstimate> FindPlanes(const Sequence& sequence,
     if (!has_planes) estimate->objects[i].reason = SupportReason::kNone;
   }
   return estimate;
-}
-
-void ThrowNoPlanes(const Sequence& sequence) {
-  throw NothingUsableError(fmt::format(
-      "{}: no object's boxes determine the height of the plane that it stands on or hangs from; "
-      "expected an object seen from several places, or planes = given",
-      sequence.name));
 }
 
 }  // namespace soslam

@@ -24,9 +24,6 @@ BodyCosts CostsOfUprightBodies(const Sequence& sequence,
                                const std::vector<std::optional<ShapePrior>>& priors,
                                const UpPrior& attitude, const PlanesOptions& options, int threads);
 
-// Throws NothingUsableError: no object's views determine the height of its base.
-[[noreturn]] void ThrowNoPlanes(const Sequence& sequence);
-
 // Estimates the planes that the sequence's upright objects stand on, from their boxes in several
 // frames, the trajectory, the objects' priors and the prior on up. None when no object's views
 // determine the height of its base (one view, or all from the same place).

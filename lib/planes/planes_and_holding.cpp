@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planes/planes_and_holding.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "base/error.h"
 #include "geometry/angles.h"
 #include "geometry/landmark.h"
 #include "planes/estimate_planes.h"
@@ -43,6 +46,12 @@ std::vector<Eigen::Vector2d> SolveChain(double stiffness, std::vector<Eigen::Vec
   return tilts;
 }
 
+UpPrior HeldPrior(const std::vector<Rigid3d>& world_from_camera, double correlation_rad,
+                  CameraHolding holding, const PlanesOptions& options) {
+  return UpPriorFromCameras(world_from_camera, options.camera_roll_sigma_deg * kRadPerDeg,
+                            options.camera_pitch_sigma_deg * kRadPerDeg, correlation_rad, holding);
+}
+
 std::vector<Rigid3d> Joined(const std::vector<Rigid3d>& drifted,
                             const std::vector<Eigen::Vector3d>& ups) {
   std::vector<Rigid3d> levelled = {drifted.front()};
@@ -62,14 +71,9 @@ LevelTrajectory Level(const std::vector<SegmentView>& views, CameraHolding holdi
   const double correlation = options.view_correlation_deg * kRadPerDeg;
   const double vertical_sigma = options.vertical_sigma_deg * kRadPerDeg;
   const double odometry_sigma = options.odometry_rotation_sigma_deg * kRadPerDeg;
-  const auto held = [&](const std::vector<Rigid3d>& poses, double correlation_rad) {
-    return UpPriorFromCameras(poses, options.camera_roll_sigma_deg * kRadPerDeg,
-                              options.camera_pitch_sigma_deg * kRadPerDeg, correlation_rad,
-                              holding);
-  };
   const std::vector<Rigid3d> poses = PosesOf(views);
-  const UpPrior mean =
-      WithVerticals(held(poses, correlation), views, vertical_sigma, correlation, kMaxLevelTilt);
+  const UpPrior mean = WithVerticals(HeldPrior(poses, correlation, holding, options), views,
+                                     vertical_sigma, correlation, kMaxLevelTilt);
   if (!(odometry_sigma > 0.0)) return {poses, mean};
 
   const std::vector<double> shares = CameraWeights(poses, correlation);
@@ -82,7 +86,7 @@ LevelTrajectory Level(const std::vector<SegmentView>& views, CameraHolding holdi
     std::vector<Eigen::Vector2d> right_side;
     for (size_t i = 0; i < views.size(); ++i) {
       const Eigen::Matrix3d all =
-          shares[i] * (held({poses[i]}, 0.0).information +
+          shares[i] * (HeldPrior({poses[i]}, 0.0, holding, options).information +
                        InformationOfVerticals(views[i], vertical_sigma, ups[i]));
       information.push_back(level.transpose() * all * level);
       right_side.push_back(-level.transpose() * all * mean.up_in_world);
@@ -123,9 +127,7 @@ LevelTrajectory LevelFrames(const Sequence& sequence, const std::vector<SegmentV
                             const PlanesOptions& options, CameraHolding holding) {
   if (!views.empty()) return Level(views, holding, options);
   const std::vector<Rigid3d> poses = PosesOf(sequence);
-  return {poses, UpPriorFromCameras(poses, options.camera_roll_sigma_deg * kRadPerDeg,
-                                    options.camera_pitch_sigma_deg * kRadPerDeg,
-                                    options.view_correlation_deg * kRadPerDeg, holding)};
+  return {poses, HeldPrior(poses, options.view_correlation_deg * kRadPerDeg, holding, options)};
 }
 
 Sequence WithPoses(Sequence sequence, const std::vector<Rigid3d>& world_from_camera) {
@@ -272,27 +274,24 @@ bool LeadsToKnownUp(const std::vector<Hypothesis>& followed, const Hypothesis& h
 }
 
 // `tried`: all hypotheses, including those dropped for the cost of their bodies, which are not in
-// `followed`.
-PlanesAndHolding MostProbable(const std::vector<TriedHolding>& tried, bool has_views,
+// `followed`; `place_in_tried`: the place of each followed one.
+PlanesAndHolding MostProbable(std::vector<TriedHolding> tried,
+                              const std::vector<size_t>& place_in_tried,
                               const std::vector<Hypothesis>& followed) {
   const HoldingChoice choice = Choose(followed);
-  PlanesAndHolding best = *followed[choice.best].planes;
-  best.estimate.holdings = tried;
-  best.estimate.holding = followed[choice.best].evidence.holding;
-  best.estimate.verticals = has_views && !followed[choice.best].evidence.ignores_verticals;
-  best.estimate.holding_tilt_variance = choice.tilt_variance;
-  for (TriedHolding& one : best.estimate.holdings) {
-    for (size_t i = 0; i < followed.size(); ++i) {
-      const HoldingEvidence& evidence = followed[i].evidence;
-      const bool verticals = has_views && !evidence.ignores_verticals;
-      if (evidence.holding != one.holding || verticals != one.verticals) continue;
-      one.cost = choice.costs[i];
-      one.probability = choice.probabilities[i];
-      if (followed[i].planes) {
-        one.planes = static_cast<int>(followed[i].planes->estimate.planes.size());
-      }
+  for (size_t i = 0; i < followed.size(); ++i) {
+    TriedHolding& one = tried[place_in_tried[i]];
+    one.cost = choice.costs[i];
+    one.probability = choice.probabilities[i];
+    if (const auto& held = followed[i].planes) {
+      one.planes = static_cast<int>(held->estimate.planes.size());
     }
   }
+  PlanesAndHolding best = *followed[choice.best].planes;
+  best.estimate.holding = tried[place_in_tried[choice.best]].holding;
+  best.estimate.verticals = tried[place_in_tried[choice.best]].verticals;
+  best.estimate.holding_tilt_variance = choice.tilt_variance;
+  best.estimate.holdings = std::move(tried);
   return best;
 }
 
@@ -306,6 +305,7 @@ PlanesAndHolding EstimatePlanesAndHolding(const Sequence& sequence,
   const HoldingChoice by_bodies = Choose(hypotheses);
   std::vector<TriedHolding> tried;
   std::vector<Hypothesis> followed;
+  std::vector<size_t> place_in_tried;  // of each followed one
   for (size_t i = 0; i < hypotheses.size(); ++i) {
     const HoldingEvidence& evidence = hypotheses[i].evidence;
     tried.push_back({evidence.holding, !views.empty() && !evidence.ignores_verticals,
@@ -313,12 +313,19 @@ PlanesAndHolding EstimatePlanesAndHolding(const Sequence& sequence,
     if (by_bodies.costs[i] > kMaxHypothesisCost) continue;
     if (IsIgnoringVerticalsUseless(hypotheses, i, by_bodies.costs)) continue;
     EstimatePlanesOf(sequence, priors, options, threads, &hypotheses[i]);
-    if (!LeadsToKnownUp(followed, hypotheses[i])) followed.push_back(hypotheses[i]);
+    if (LeadsToKnownUp(followed, hypotheses[i])) continue;
+    followed.push_back(hypotheses[i]);
+    place_in_tried.push_back(i);
   }
   const bool has_planes = std::ranges::any_of(
       followed, [](const Hypothesis& hypothesis) { return hypothesis.planes.has_value(); });
-  if (!has_planes) ThrowNoPlanes(sequence);
-  return MostProbable(tried, !views.empty(), followed);
+  if (!has_planes) {
+    throw NothingUsableError(fmt::format(
+        "{}: no object's boxes determine the height of the plane that it stands on or hangs from; "
+        "expected an object seen from several places, or planes = given",
+        sequence.name));
+  }
+  return MostProbable(std::move(tried), place_in_tried, followed);
 }
 
 }  // namespace soslam

@@ -288,7 +288,7 @@ TEST_P(DegenerateTest, SupportPlanes) {
         const UpPrior attitude = UpPriorFromCameras(PosesOf(sequence), 0.1, 0.5, 0.3);
         const auto estimate =
             FindPlanes(sequence, priors, attitude, PlanesOptions(), /*threads=*/1);
-        if (!estimate) ThrowNoPlanes(sequence);
+        if (!estimate) throw NothingUsableError("no planes");
         for (const EstimatedPlane& plane : estimate->planes) {
           EXPECT_TRUE(plane.plane_in_world.normal.allFinite());
           EXPECT_TRUE(std::isfinite(plane.plane_in_world.offset));
