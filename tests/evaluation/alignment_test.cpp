@@ -105,17 +105,6 @@ TEST(AlignTest, FewPoses) {
   ExpectTrue(alignment, one);
 }
 
-TEST(AlignTest, MovesPlanesWithTheirPoints) {
-  const Alignment alignment{AlignmentKind::kSimilarity, CameraPath::kGeneral, 3.0, RandomRigid()};
-  const Plane plane = RandomPlane();
-  const Eigen::Vector3d on_plane =
-      plane.normal.cross(RandomVector(-1, 1)) - plane.offset * plane.normal;
-  EXPECT_NEAR(alignment.Apply(plane).SignedDistance(alignment.Apply(on_plane)), 0.0, 1e-12);
-  EXPECT_NEAR(alignment.Apply(plane).SignedDistance(
-                  alignment.Apply(Eigen::Vector3d(on_plane + 2.0 * plane.normal))),
-              6.0, 1e-12);
-}
-
 class AlignSegmentsTest : public testing::Test {
  protected:
   // A sequence whose odometry is this motion of the truth away.

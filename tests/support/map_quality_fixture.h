@@ -110,14 +110,16 @@ class MapQualityTest : public testing::Test {
     return truth;
   }
 
-  // Moves the estimates of cameras and landmarks away from the truth.
-  void Drift(const Rigid3d& motion) {
+  // Moves the estimates of cameras, landmarks and the plane away from the truth.
+  void Move(const Alignment& away) {
     for (Frame& frame : sequence_.frames) {
-      frame.world_from_camera = motion * frame.world_from_camera;
+      frame.world_from_camera = away.Apply(frame.world_from_camera);
     }
     for (ObjectEstimate& estimate : estimates_) {
-      estimate.landmark_in_world = Transform(motion, *estimate.landmark_in_world);
+      if (!estimate.landmark_in_world) continue;
+      estimate.landmark_in_world = away.Apply(*estimate.landmark_in_world);
     }
+    sequence_.planes[0].plane_in_world = away.Apply(sequence_.planes[0].plane_in_world);
   }
 
   MapQuality Evaluate(AlignmentKind alignment = AlignmentKind::kAuto) {
