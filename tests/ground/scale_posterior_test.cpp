@@ -84,15 +84,6 @@ TEST(ScalePosteriorTest, ContradictionsWidenIt) {
   EXPECT_GT(posterior.log_sigma, 1.2 * 0.1 / std::sqrt(10.0));
 }
 
-TEST(ScalePosteriorTest, SeparateScalesAreReported) {
-  std::vector<ScaleEvidence> objects(3, Object(0.0, 0.1));
-  objects.insert(objects.end(), 3, Object(1.2, 0.1));
-  const ScalePosterior posterior = Posterior(objects);
-  EXPECT_NEAR(posterior.second_mode_share, 0.5, 0.1);
-  EXPECT_LT(posterior.low, 0.1);
-  EXPECT_GT(posterior.high, 1.1);
-}
-
 TEST(ScalePosteriorTest, ObjectsOfOneLabelCountForLess) {
   std::vector<ScaleEvidence> objects(3, Object(0.0, 0.1, "chair"));
   objects.push_back(Object(0.0, 0.1, "sofa"));

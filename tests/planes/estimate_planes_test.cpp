@@ -75,19 +75,6 @@ double NormalisedErrorSquared(const Sequence& sequence, const PlanesEstimate& es
   return error.dot(plane.covariance->ldlt().solve(error));
 }
 
-// Exact boxes leave the rounding of the cuboids' edges, a thousandth of their size, and the pull of
-// the cameras' attitude, which the boxes outweigh a hundred times.
-TEST(EstimatePlanes, FindsTheFloorUnderExactBoxes) {
-  for (int seed = 0; seed < 6; ++seed) {
-    SCOPED_TRACE(seed);
-    const Sequence sequence = SyntheticSequence(CuboidScene(seed, 4), false);
-    const PlanesEstimate estimate = Estimate(sequence);
-    ASSERT_EQ(estimate.planes.size(), 1u);
-    EXPECT_TRUE(estimate.settled);
-    ExpectGiven(sequence, estimate, 0.1 * kRadPerDeg, 0.003);
-  }
-}
-
 TEST(EstimatePlanes, SeparatesAShelfFromTheFloor) {
   for (int seed = 0; seed < 4; ++seed) {
     SCOPED_TRACE(seed);
@@ -160,6 +147,7 @@ TEST(EstimatePlanes, OneObjectIsEnough) {
     const Sequence sequence = SyntheticSequence(CuboidScene(seed, 1), false);
     const PlanesEstimate estimate = Estimate(sequence);
     ASSERT_EQ(estimate.planes.size(), 1u);
+    EXPECT_TRUE(estimate.settled);
     EXPECT_LT(NormalisedErrorSquared(sequence, estimate), 0.5);
     ExpectGiven(sequence, estimate, 5.0 * kRadPerDeg, 0.01);
   }
@@ -228,19 +216,6 @@ TEST(EstimatePlanes, KnownHeightsReplaceParallax) {
     EXPECT_LT(NormalisedErrorSquared(sequence, with), 16.3);
     EXPECT_LT(std::abs(CompareWithGiven(sequence, with, 0)->offset), 0.05);
   }
-}
-
-TEST(EstimatePlanes, HeightsCountOnlyWithSizePrior) {
-  const Sequence sequence = SyntheticSequence(CuboidScene(5, 3), false);
-  const PlanesEstimate without = EstimateWithHeights(sequence, 0.01, false);
-  const PlanesEstimate none = Estimate(sequence);
-  ASSERT_EQ(without.planes.size(), none.planes.size());
-  EXPECT_EQ(without.planes[0].plane_in_world.offset, none.planes[0].plane_in_world.offset);
-  const PlanesEstimate with = EstimateWithHeights(sequence, 0.01, true);
-  const auto rise_sigma = [](const PlanesEstimate& estimate) {
-    return std::sqrt((*estimate.planes[0].covariance)(2, 2));
-  };
-  EXPECT_LT(rise_sigma(with), rise_sigma(without));
 }
 
 // One box fits a body on any plane, nearer and smaller or farther and larger: only the height of

@@ -117,18 +117,6 @@ TEST(EstimatePlanesAndHolding, VerticalsThatBodiesContradictAreDoubted) {
   ExpectTheFloor(sequence, held);
 }
 
-// A cube may lie on any side, but its camera is not below its support plane.
-TEST(EstimatePlanesAndHolding, ACubeLeavesItOpen) {
-  Scene scene = RandomScene(3, 1, 20, {Shape::kBox});
-  scene.objects[0].half_axes.setConstant(0.3);
-  const Sequence cube = SyntheticSequence(scene, false);
-  const PlanesAndHolding level = EstimateHeld(cube);
-  EXPECT_EQ(level.estimate.holding, CameraHolding::kLevel);
-  const PlanesAndHolding rolled = EstimateHeld(Rolled(cube, 1));
-  const bool is_found = rolled.estimate.holding == CameraHolding::kRolled90;
-  EXPECT_TRUE(is_found || rolled.estimate.holding_tilt_variance > 0.0);
-}
-
 TEST(EstimatePlanesAndHolding, RefusesWhatOneViewCannotTell) {
   Sequence sequence = NoisySequence(1, 3);
   std::erase_if(sequence.detections, [&](const Detection& detection) {

@@ -146,7 +146,6 @@ TEST(UpPriorFromCameras, CamerasThatLookDownHaveUpBehindThem) {
 }
 
 constexpr double kSigma = 1.0 * kRadPerDeg;
-constexpr double kSegmentCorrelation = 20.0 * kRadPerDeg;
 constexpr double kMaxVerticalTilt = 12.0 * kRadPerDeg;
 
 // Cameras all around see each of these directions so often, among other edges of any direction.
@@ -163,8 +162,7 @@ std::vector<SegmentView> Room(const std::vector<Eigen::Vector3d>& directions, in
 }
 
 UpPrior HeldAttitude(const std::vector<SegmentView>& views) {
-  return UpPriorFromCameras(PosesOf(views), 5.0 * kRadPerDeg, 30.0 * kRadPerDeg,
-                            kSegmentCorrelation);
+  return UpPriorFromCameras(PosesOf(views), kRollSigma, kPitchSigma, kCorrelation);
 }
 
 // Edges are exact, so only those of other directions and the cameras' attitude disturb: far less
@@ -174,7 +172,7 @@ TEST(WithVerticals, FindsUpAmongOtherEdges) {
   for (int i = 0; i < 10; ++i) {
     const auto views = Room({kZ}, 8, 16);
     const UpPrior held = HeldAttitude(views);
-    const auto found = WithVerticals(held, views, kSigma, kSegmentCorrelation, kMaxVerticalTilt);
+    const auto found = WithVerticals(held, views, kSigma, kCorrelation, kMaxVerticalTilt);
     EXPECT_LT(AngleBetween(found.up_in_world, kZ), 0.3 * kRadPerDeg);
     before += AngleBetween(held.up_in_world, kZ) / 10;
   }
@@ -186,7 +184,7 @@ TEST(WithVerticals, StaysNearTheAttitude) {
   const Eigen::Vector3d slanted(std::sin(0.7), 0.0, std::cos(0.7));
   const auto views = Room({slanted}, 8, 16);
   const UpPrior held = HeldAttitude(views);
-  const auto found = WithVerticals(held, views, kSigma, kSegmentCorrelation, kMaxVerticalTilt);
+  const auto found = WithVerticals(held, views, kSigma, kCorrelation, kMaxVerticalTilt);
   EXPECT_LT(AngleBetween(found.up_in_world, held.up_in_world), 1.5 * kMaxVerticalTilt);
 }
 

@@ -28,7 +28,6 @@ struct PriorScene {
   std::vector<MapPoint> points;
   double metres_per_unit = 1.0;
   Eigen::Vector3d up_in_world;
-  Similarity world_from_room;           // the room has z up, metres, its floor at z = 0
   std::vector<double> plane_heights_m;  // of planes with such objects, ascending
   double median_camera_height_m = 0.0;
   int objects = 0;               // with three boxes at least
@@ -38,8 +37,6 @@ struct PriorScene {
 struct PriorSceneOptions {
   int objects = 8;  // in addition to the table
   bool has_table = true;
-  int frames = 40;
-  double outlier_probability = 0.1;  // of points
   double roll_sigma_deg = 2.0;
 };
 
@@ -66,6 +63,7 @@ class PriorSceneBuilder {
   }
 
  private:
+  static constexpr int kFrames = 40;
   static constexpr double kPixelSigma = 0.7;
 
   double Uniform(double low, double high) {
@@ -141,8 +139,8 @@ class PriorSceneBuilder {
     const double begin = Uniform(0.0, 2.0 * std::numbers::pi);
     const double extent = Uniform(1.0, 2.5);  // rad
     const double eye = Uniform(1.2, 1.7);
-    for (int i = 0; i < options_.frames; ++i) {
-      const double angle = begin + extent * i / options_.frames;
+    for (int i = 0; i < kFrames; ++i) {
+      const double angle = begin + extent * i / kFrames;
       const double radius = 4.0 + 0.5 * std::sin(3.0 * angle);
       const Eigen::Vector3d position(radius * std::cos(angle), radius * std::sin(angle),
                                      eye + 0.1 * std::sin(5.0 * angle));
@@ -187,12 +185,13 @@ class PriorSceneBuilder {
     return nearest;
   }
 
-  bool Sees(const Frame& frame, const Eigen::Vector3d& point) const {
+  // None where the point is hidden or outside the image.
+  std::optional<Eigen::Vector2d> PixelOf(const Frame& frame, const Eigen::Vector3d& point) const {
     const auto pixel = scene_.sequence.camera.Project(frame.world_from_camera.Inverse() * point);
-    if (!pixel || !scene_.sequence.camera.IsInside(*pixel)) return false;
+    if (!pixel || !scene_.sequence.camera.IsInside(*pixel)) return std::nullopt;
     const Eigen::Vector3d& origin = frame.world_from_camera.translation;
     const auto depth = Cast(origin, point - origin);
-    return depth && *depth > 0.999;
+    return depth && *depth > 0.999 ? pixel : std::nullopt;
   }
 
   std::optional<Box> DrawBox(const Frame& frame, size_t body) {
@@ -248,9 +247,8 @@ class PriorSceneBuilder {
     result.position_in_world = point;
     result.reprojection_error_px = kPixelSigma;
     for (const Frame& frame : scene_.sequence.frames) {
-      if (!Sees(frame, point)) continue;
-      const auto pixel = scene_.sequence.camera.Project(frame.world_from_camera.Inverse() * point);
-      result.observations.push_back({frame.id, *pixel});
+      const auto pixel = PixelOf(frame, point);
+      if (pixel) result.observations.push_back({frame.id, *pixel});
     }
     return result;
   }
@@ -268,6 +266,7 @@ class PriorSceneBuilder {
 
   void MakePoints() {
     constexpr int kPerFrame = 35;
+    constexpr double kOutlierProbability = 0.1;
     const int on_table = options_.has_table ? 10 : 0;
     std::vector<MapPoint> points;
     for (const Frame& frame : scene_.sequence.frames) {
@@ -291,7 +290,7 @@ class PriorSceneBuilder {
       const auto triangulated = Triangulate(views, 10.0 * kPixelSigma);
       if (!triangulated) continue;
       point.position_in_world = triangulated->position_in_world;
-      if (Uniform(0.0, 1.0) < options_.outlier_probability) {
+      if (Uniform(0.0, 1.0) < kOutlierProbability) {
         const Eigen::Vector3d origin = views.front().camera_from_world.Inverse().translation;
         point.position_in_world = origin + Uniform(0.5, 1.5) * (point.position_in_world - origin);
       }
@@ -300,7 +299,7 @@ class PriorSceneBuilder {
   }
 
   void TurnWorld() {
-    Similarity& world_from_room = scene_.world_from_room;
+    Similarity world_from_room;  // the room has z up, metres, its floor at z = 0
     world_from_room.scale = std::exp(Uniform(-3.0, 3.0));
     world_from_room.rigid.rotation =
         Eigen::Quaterniond(Normal(), Normal(), Normal(), Normal()).normalized();
