@@ -116,7 +116,7 @@ class AlignSegmentsTest : public testing::Test {
     return sequence;
   }
   static Alignments Of(const Sequence& sequence, AlignmentKind choice) {
-    return AlignSegments(sequence, Fields(sequence.frames, &Frame::world_from_camera), choice);
+    return AlignSegments(sequence, PosesOf(sequence), choice);
   }
   static AlignmentKind AutoKind(const Sequence& sequence) {
     return Of(sequence, AlignmentKind::kAuto).of_segment.at(0).kind;

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "dataset/gate.h"
-#include "support/lists.h"
 #include "support/scene.h"
 #include "synthesis/simulate.h"
 
@@ -80,7 +79,7 @@ TEST_F(HeldOutTest, LabelsMustBeEqual) {
 
 // What the map says of one frame moves the held-out frame after it, and no other.
 TEST_F(HeldOutTest, PosesAreThoseOfTheFrameBeforeAndTheOdometry) {
-  std::vector<Rigid3d> map = Fields(sequence_.frames, &Frame::world_from_camera);
+  std::vector<Rigid3d> map = PosesOf(sequence_);
   constexpr size_t kFrame = 4;
   const Eigen::Vector3d shift(0.1, 0.2, 0.3);
   map[kFrame].translation += shift;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
-#include <limits>
+#include <Eigen/Geometry>
 #include <vector>
 
 #include "geometry/wireframe.h"
@@ -22,14 +21,11 @@ inline std::vector<Eigen::Vector3d> CornersOf(const Landmark& cuboid) {
 
 // The tight box around the corners in TestCamera's image: OutlineBox rounds corners off.
 inline Box BoxAroundCorners(const Landmark& cuboid_in_camera) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  Box box = {kFar, kFar, -kFar, -kFar};
+  Eigen::AlignedBox2d around;
   for (const Eigen::Vector3d& corner : CornersOf(cuboid_in_camera)) {
-    const Eigen::Vector2d pixel = *TestCamera().Project(corner);
-    box = {std::min(box.x_min, pixel.x()), std::min(box.y_min, pixel.y()),
-           std::max(box.x_max, pixel.x()), std::max(box.y_max, pixel.y())};
+    around.extend(*TestCamera().Project(corner));
   }
-  return box;
+  return {around.min().x(), around.min().y(), around.max().x(), around.max().y()};
 }
 
 }  // namespace soslam

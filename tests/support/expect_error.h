@@ -11,17 +11,20 @@
 
 namespace soslam {
 
-// Expects that `action` throws an `ErrorType` whose message is one line and contains all `words`.
+// Expects that `action` throws an `ErrorType` whose message is one line and contains all `words`;
+// returns the message.
 template <typename ErrorType, typename Action>
-void ExpectError(Action action, const std::vector<std::string>& words) {
+std::string ExpectError(Action action, const std::vector<std::string>& words) {
+  std::string message;
   try {
     action();
     ADD_FAILURE() << "nothing was thrown";
   } catch (const ErrorType& error) {
-    const std::string message = error.what();
+    message = error.what();
     for (const std::string& word : words) EXPECT_THAT(message, testing::HasSubstr(word));
     EXPECT_THAT(message, testing::Not(testing::HasSubstr("\n")));
   }
+  return message;
 }
 
 // Texts of a file that is refused, with words of the message.

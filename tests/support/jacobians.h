@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "constraints/parameters.h"
+#include "support/numeric_derivatives.h"
 
 namespace soslam {
 
@@ -62,9 +63,7 @@ inline void ExpectCorrectJacobians(const ceres::CostFunction& residual,
         at[block] = point.data();
         return ResidualsAt(residual, at);
       };
-      const Eigen::VectorXd numeric =
-          (8.0 * (moved(kStep) - moved(-kStep)) - (moved(2.0 * kStep) - moved(-2.0 * kStep))) /
-          (12.0 * kStep);
+      const Eigen::VectorXd numeric = DerivativeAtZero(moved, kStep);
       EXPECT_LT((analytic.col(i) - numeric).norm(), 1e-7 * (1.0 + numeric.norm()))
           << "block " << block << ", tangent " << i << ": analytic " << analytic.col(i).transpose()
           << ", numeric " << numeric.transpose();

@@ -4,10 +4,8 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <string>
 
@@ -58,14 +56,11 @@ struct KittiBox {
   }
   // Around the projections with P2, without regard to the image's border.
   Box Image() const {
-    constexpr double kFar = std::numeric_limits<double>::infinity();
-    Box box{kFar, kFar, -kFar, -kFar};
+    Eigen::AlignedBox2d around;
     for (const Eigen::Vector3d& corner : Corners()) {
-      const Eigen::Vector2d pixel = (KittiP2() * corner.homogeneous()).hnormalized();
-      box = {std::min(box.x_min, pixel.x()), std::min(box.y_min, pixel.y()),
-             std::max(box.x_max, pixel.x()), std::max(box.y_max, pixel.y())};
+      around.extend((KittiP2() * corner.homogeneous()).hnormalized().eval());
     }
-    return box;
+    return {around.min().x(), around.min().y(), around.max().x(), around.max().y()};
   }
   // The 15 columns of the object benchmark.
   std::string Columns(const std::string& type = "Car", const std::string& truncated = "0",

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "constraints/landmark_cost.h"
+#include "support/numeric_derivatives.h"
 
 namespace soslam {
 
@@ -17,10 +18,8 @@ inline void ExpectCorrectGradient(const LandmarkCost& cost, const Landmark& land
     const auto moved = [&](double step) {
       return cost.Value(Moved(landmark, step * LandmarkModel::Vector::Unit(i)));
     };
-    const double numeric =
-        (8.0 * (moved(kStep) - moved(-kStep)) - (moved(2.0 * kStep) - moved(-2.0 * kStep))) /
-        (12.0 * kStep);
-    EXPECT_NEAR(model.gradient[i], numeric, 1e-7 * (1.0 + model.gradient.norm()))
+    EXPECT_NEAR(model.gradient[i], DerivativeAtZero(moved, kStep),
+                1e-7 * (1.0 + model.gradient.norm()))
         << "parameter " << i;
   }
 }

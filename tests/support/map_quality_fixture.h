@@ -10,7 +10,6 @@
 
 #include "evaluation/map_quality.h"
 #include "geometry/angles.h"
-#include "support/lists.h"
 #include "support/random.h"
 
 namespace soslam {
@@ -124,9 +123,8 @@ class MapQualityTest : public testing::Test {
 
   MapQuality Evaluate(AlignmentKind alignment = AlignmentKind::kAuto) {
     std::ranges::stable_sort(sequence_.detections, {}, &Detection::frame_index);
-    return EvaluateMapQuality(sequence_, estimates_,
-                              Fields(sequence_.frames, &Frame::world_from_camera),
-                              {sequence_.planes[0].plane_in_world}, alignment)
+    return EvaluateMapQuality(sequence_, estimates_, PosesOf(sequence_), PlanesOf(sequence_),
+                              alignment)
         .value();
   }
   const TrueObjectRow& RowOf(const MapQuality& quality, int truth) const {

@@ -6,6 +6,14 @@
 
 namespace soslam {
 
+// The derivative of a function of one number at 0, by central differences of fourth order.
+template <typename Function>
+std::invoke_result_t<Function, double> DerivativeAtZero(const Function& function, double step) {
+  return (8.0 * (function(step) - function(-step)) -
+          (function(2.0 * step) - function(-2.0 * step))) /
+         (12.0 * step);
+}
+
 // The derivatives of a function of three numbers by central differences: of a number as a vector,
 // of a vector as the columns of a matrix.
 template <typename Function>

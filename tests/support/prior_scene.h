@@ -13,9 +13,11 @@
 #include <vector>
 
 #include "artefact/files.h"
+#include "base/upper_median.h"
 #include "geometry/angles.h"
 #include "geometry/triangulation.h"
 #include "ground/estimate_ground.h"
+#include "support/lists.h"
 #include "support/looking_at.h"
 #include "synthesis/simulate.h"
 
@@ -155,12 +157,10 @@ class PriorSceneBuilder {
           position};
       scene_.sequence.frames.push_back(frame);
     }
-    std::vector<double> heights;
-    for (const Frame& frame : scene_.sequence.frames) {
-      heights.push_back(frame.world_from_camera.translation.z());
-    }
-    std::ranges::sort(heights);
-    scene_.median_camera_height_m = heights[heights.size() / 2];
+    scene_.median_camera_height_m =
+        UpperMedian(Fields(scene_.sequence.frames, [](const Frame& frame) {
+          return frame.world_from_camera.translation.z();
+        }));
     scene_.sequence.name = "prior_scene";
     scene_.sequence.camera = {640, 480, 500.0, 500.0, 319.5, 239.5};
   }
