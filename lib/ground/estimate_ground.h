@@ -64,7 +64,7 @@ struct GroundEstimate {
   bool cameras_are_turned = false;                         // in many ways: only planes tell up
   bool verticals = false;                                  // vertical edges were used
   std::optional<ScalePosterior> scale;                     // of metres per unit of the input
-  std::vector<KnownScale> known_scales;                    // by the options, of the same unit
+  std::vector<KnownScale> known_scales;                    // by two options, of the same unit
   std::optional<ScalePosterior> scale_of_objects;          // without `scale` and `camera_height_m`
   std::vector<EstimatedPlane> planes;                      // of the output
   std::vector<int> points_on_planes;

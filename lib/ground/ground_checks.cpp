@@ -100,27 +100,22 @@ void CheckObjectsAgainstSettings(const GroundEstimate& estimate, std::vector<Fin
        "check scale and camera_height_m (SCALE and CAMERA_HEIGHT of make map), or leave them out"});
 }
 
-// Settings against each other, whether or not objects tell the scale.
+// The two settings against each other, whether or not objects tell the scale.
 void CheckSettingsAgainstEachOther(const GroundEstimate& estimate, std::vector<Finding>* findings) {
-  const std::vector<KnownScale>& known = estimate.known_scales;
-  for (size_t i = 0; i < known.size(); ++i) {
-    for (size_t k = 0; k < i; ++k) {
-      const double sigma = std::hypot(known[i].log_sigma, known[k].log_sigma);
-      if (std::abs(known[i].log_scale - known[k].log_scale) < kContradictionSigmas * sigma)
-        continue;
-      findings->push_back(
-          {kSettingsAgainstEachOtherCheck, Severity::kWarning,
-           fmt::format("1 unit of the input's world is {:.4g} m by {}, and {:.4g} m by {}",
-                       std::exp(known[k].log_scale), known[k].setting, std::exp(known[i].log_scale),
-                       known[i].setting),
-           fmt::format("values that differ by less than {} of their standard deviations, {:.0f} %",
-                       kContradictionSigmas, 100.0 * sigma),
-           "a scale of a model in another unit, or a camera height above another plane than the "
-           "lowest one of points (a table top where no floor is seen)",
-           "check scale and camera_height_m (SCALE and CAMERA_HEIGHT of make map), or leave one of "
-           "them out"});
-    }
-  }
+  if (estimate.known_scales.size() < 2) return;
+  const KnownScale &one = estimate.known_scales[0], &other = estimate.known_scales[1];
+  const double sigma = std::hypot(one.log_sigma, other.log_sigma);
+  if (std::abs(other.log_scale - one.log_scale) < kContradictionSigmas * sigma) return;
+  findings->push_back(
+      {kSettingsAgainstEachOtherCheck, Severity::kWarning,
+       fmt::format("1 unit of the input's world is {:.4g} m by {}, and {:.4g} m by {}",
+                   std::exp(one.log_scale), one.setting, std::exp(other.log_scale), other.setting),
+       fmt::format("values that differ by less than {} of their standard deviations, {:.0f} %",
+                   kContradictionSigmas, 100.0 * sigma),
+       "a scale of a model in another unit, or a camera height above another plane than the "
+       "lowest one of points (a table top where no floor is seen)",
+       "check scale and camera_height_m (SCALE and CAMERA_HEIGHT of make map), or leave one of "
+       "them out"});
 }
 
 // A wrong up direction has few objects on its planes.

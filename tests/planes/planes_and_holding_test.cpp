@@ -139,14 +139,17 @@ HoldingEvidence Evidence(CameraHolding holding, const Eigen::Vector3d& up,
 const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();
 const Eigen::Vector3d kSide = Eigen::Vector3d::UnitX();
 
+// A clear choice adds no uncertainty.
 TEST(ChooseHolding, WithoutOtherEvidenceCamerasAreLevel) {
-  const HoldingChoice choice = ChooseHolding({Evidence(CameraHolding::kRolled90, kSide, {1.0}),
-                                              Evidence(CameraHolding::kLevel, kUp, {1.0})},
-                                             10.0);
+  const auto rolled = Evidence(CameraHolding::kRolled90, kSide, {1.0});
+  const auto level = Evidence(CameraHolding::kLevel, kUp, {1.0});
+  const HoldingChoice choice = ChooseHolding({rolled, level}, 10.0);
   EXPECT_EQ(choice.best, 1u);
   EXPECT_NEAR(choice.costs[0], std::log(100.0), 1e-12);
   EXPECT_EQ(choice.costs[1], 0.0);
   EXPECT_NEAR(choice.probabilities[0], 1.0 / 101.0, 1e-12);
+  EXPECT_EQ(choice.tilt_variance, 0.0);
+  EXPECT_GT(ChooseHolding({rolled, level}, 10.0, 1e-9).tilt_variance, 0.0);
 }
 
 // One in eleven: far from clear.
@@ -156,13 +159,6 @@ TEST(ChooseHolding, TheUncertaintyIsThatOfAllThatMayBeRight) {
   const HoldingChoice choice = ChooseHolding({level, rolled}, 10.0);
   EXPECT_EQ(choice.best, 1u);
   EXPECT_NEAR(choice.tilt_variance, kRightAngle * kRightAngle / 11.0, 1e-9);
-}
-
-TEST(ChooseHolding, AClearChoiceAddsNoUncertainty) {
-  const auto level = Evidence(CameraHolding::kLevel, kUp, {0.0, 0.0});
-  const auto rolled = Evidence(CameraHolding::kRolled90, kSide, {3.0, 3.0});
-  EXPECT_EQ(ChooseHolding({level, rolled}, 10.0).tilt_variance, 0.0);
-  EXPECT_GT(ChooseHolding({level, rolled}, 10.0, 1e-9).tilt_variance, 0.0);
 }
 
 TEST(ChooseHolding, AnotherWayToTheSameUpIsNoDoubt) {
