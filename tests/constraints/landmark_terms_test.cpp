@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "support/landmark_terms.h"
-
 #include <ceres/loss_function.h>
 #include <gtest/gtest.h>
 

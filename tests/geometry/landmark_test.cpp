@@ -5,7 +5,6 @@
 
 #include <limits>
 
-#include "support/cuboid_corners.h"
 #include "support/shape_exponents.h"
 
 namespace soslam {

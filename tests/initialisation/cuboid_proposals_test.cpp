@@ -9,7 +9,6 @@
 
 #include "geometry/iou.h"
 #include "geometry/wireframe.h"
-#include "support/cuboid_corners.h"
 #include "support/random.h"
 #include "support/shape_exponents.h"
 #include "support/upright_bodies.h"

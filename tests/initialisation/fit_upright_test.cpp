@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "initialisation/upright.h"
-#include "support/landmark_terms.h"
 #include "support/shape_exponents.h"
 #include "support/upright_bodies.h"
 

@@ -9,7 +9,6 @@
 #include "geometry/angles.h"
 #include "initialisation/upright_observation.h"
 #include "initialisation/yaw_sweep.h"
-#include "support/landmark_terms.h"
 #include "support/shape_exponents.h"
 #include "support/upright_bodies.h"
 

@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include "support/saved_folder.h"
+#include "support/finished_run.h"
 #include "support/small_pipeline.h"
 
 namespace soslam {
