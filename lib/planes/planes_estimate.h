@@ -8,9 +8,7 @@
 
 #include "geometry/plane.h"
 #include "model/sequence.h"
-#include "model/shape_prior.h"
 #include "planes/camera_holding.h"
-#include "planes/up_prior.h"
 
 namespace soslam {
 
@@ -97,17 +95,5 @@ PlanesEstimate PlanesBelowCameras(const Sequence& sequence, double height_m);
 
 // The ground plane in the camera's frame.
 Plane GroundInCamera(double height_m);
-
-// Mount of an object with this prior; standing if it has none.
-Mount MountOf(const std::optional<ShapePrior>& prior);
-
-// Attitude for hanging objects, whose z axes point down. Ceilings are parallel to floors, if there
-// are any.
-UpPrior DownOf(const UpPrior& attitude, const std::optional<PlanesEstimate>& floors);
-
-// Floors and ceilings in one estimate, with the objects of each on their own planes; ceilings are
-// made parallel to the floor if `parallel`.
-PlanesEstimate JoinedPlanes(const PlanesEstimate& floors, const PlanesEstimate& ceilings,
-                            bool parallel, const std::vector<std::optional<ShapePrior>>& priors);
 
 }  // namespace soslam
