@@ -12,6 +12,7 @@
 #include "initialisation/yaw_sweep.h"
 #include "support/drawn_cuboids.h"
 #include "support/random.h"
+#include "support/shape_exponents.h"
 
 namespace soslam {
 
