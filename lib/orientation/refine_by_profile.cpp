@@ -11,6 +11,7 @@
 
 #include "geometry/angles.h"
 #include "geometry/landmark.h"
+#include "initialisation/yaw_prior.h"
 #include "initialisation/yaw_sweep.h"
 #include "model/occlusion.h"
 #include "orientation/refine_by_turning.h"
@@ -24,6 +25,7 @@ constexpr size_t kMaxHypotheses = 6;
 // The visible points of an object's edges depend on the landmark, so it is fitted twice.
 constexpr int kEdgeRounds = 2;
 
+// The orientation profile of an object that rests on one face.
 class OrientationProfile {
  public:
   OrientationProfile(const Sequence& sequence, const Detection& detection,
@@ -40,7 +42,40 @@ class OrientationProfile {
     observation_.points = points;
   }
 
-  const UprightObservation& observation() const { return observation_; }
+  // Without the observation's place in the sequence.
+  RefinedObservation Refine() const {
+    RefinedObservation result;
+    const YawObjective objective = Objective();
+    const YawSweep sweep =
+        SweepYaw(observation_, objective, options_.upright.yaw_grid_deg * kRadPerDeg);
+    std::vector<YawSweep::Optimum> optima;
+    for (const UprightSolution& optimum :
+         LocalOptima(observation_, objective, sweep, kMaxHypotheses)) {
+      result.estimate.hypotheses.push_back({optimum.landmark, optimum.cost});
+      optima.push_back({YawOf(optimum.landmark), optimum.cost});
+    }
+    if (result.estimate.hypotheses.empty()) {
+      result.estimate.failure = WhyNoSolution(observation_);
+      return result;
+    }
+    const Landmark& best = result.estimate.hypotheses.front().landmark_in_camera;
+    RecordCurves(sweep, &result.record);
+    RecordPairs(best, &result.record);
+    result.record.refined_yaw = YawOf(best);
+    // The mirror plane of an object on its side is horizontal.
+    if (options_.texture_symmetry && observation_.prior.rests_on != RestingFace::kSide) {
+      result.record.mirror_planes =
+          MirrorPlanes(sweep.yaw, result.record.cost.at("texture_symmetry"),
+                       result.record.refined_yaw, options_.texture);
+    }
+    result.record.yaw_sigma = sweep.StandardDeviation(optima);
+    return result;
+  }
+
+ private:
+  double YawOf(const Landmark& landmark) const {
+    return Yaw(observation_.plane_in_camera.normal, landmark.frame_from_object.rotation);
+  }
 
   YawObjective Objective() const {
     YawObjective objective;
@@ -69,7 +104,20 @@ class OrientationProfile {
     }
   }
 
- private:
+  void RecordCurves(const YawSweep& sweep, SymmetryRecord* record) const {
+    record->yaw = sweep.yaw;
+    record->cost["total"] = sweep.Costs();
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    for (const auto& fit : sweep.fits) {
+      if (options_.edge_alignment) {
+        record->cost["edge_alignment"].push_back(fit ? fit->fitted_cost : none);
+      }
+      if (options_.texture_symmetry) {
+        record->cost["texture_symmetry"].push_back(fit ? fit->compared_cost : none);
+      }
+    }
+  }
+
   LandmarkCosts EdgeCosts(const Landmark& start) const {
     LandmarkCosts costs;
     costs.push_back(
@@ -85,57 +133,6 @@ class OrientationProfile {
   TextureAsymmetry asymmetry_;
 };
 
-void RecordCurves(const YawSweep& sweep, const ProfileOptions& options, SymmetryRecord* record) {
-  record->yaw = sweep.yaw;
-  record->cost["total"] = sweep.Costs();
-  const double none = std::numeric_limits<double>::quiet_NaN();
-  for (const auto& fit : sweep.fits) {
-    if (options.edge_alignment) {
-      record->cost["edge_alignment"].push_back(fit ? fit->fitted_cost : none);
-    }
-    if (options.texture_symmetry) {
-      record->cost["texture_symmetry"].push_back(fit ? fit->compared_cost : none);
-    }
-  }
-}
-
-// The sweep of an object that rests on one face.
-RefinedObservation RefineOnFace(const Sequence& sequence, int detection_index,
-                                const std::shared_ptr<const FrameEdges>& edges,
-                                const ShapePrior& prior, const ProfileOptions& options,
-                                const SymmetryOptions& symmetry_options,
-                                const std::optional<PointEvidence>& points) {
-  const Detection& detection = sequence.detections[detection_index];
-  const Eigen::Vector3d& normal = detection.plane_in_camera.normal;
-  RefinedObservation result;
-  const OrientationProfile profile(sequence, detection, edges, prior, options, symmetry_options,
-                                   points);
-  const YawObjective objective = profile.Objective();
-  const YawSweep sweep =
-      SweepYaw(profile.observation(), objective, options.upright.yaw_grid_deg * kRadPerDeg);
-  std::vector<YawSweep::Optimum> optima;
-  for (const UprightSolution& optimum :
-       LocalOptima(profile.observation(), objective, sweep, kMaxHypotheses)) {
-    result.estimate.hypotheses.push_back({optimum.landmark, optimum.cost});
-    optima.push_back({Yaw(normal, optimum.landmark.frame_from_object.rotation), optimum.cost});
-  }
-  if (result.estimate.hypotheses.empty()) {
-    result.estimate.failure = WhyNoSolution(profile.observation());
-    return result;
-  }
-  const Landmark& best = result.estimate.hypotheses.front().landmark_in_camera;
-  RecordCurves(sweep, options, &result.record);
-  profile.RecordPairs(best, &result.record);
-  result.record.refined_yaw = Yaw(normal, best.frame_from_object.rotation);
-  // The mirror plane of an object on its side is horizontal.
-  if (options.texture_symmetry && prior.rests_on != RestingFace::kSide) {
-    result.record.mirror_planes = MirrorPlanes(sweep.yaw, result.record.cost.at("texture_symmetry"),
-                                               result.record.refined_yaw, options.texture);
-  }
-  result.record.yaw_sigma = sweep.StandardDeviation(optima);
-  return result;
-}
-
 // Joins the hypotheses of two faces; the record is that of the better one, if equal of the first.
 RefinedObservation Joined(RefinedObservation one, RefinedObservation other) {
   const auto rank = [](const RefinedObservation& observation) {
@@ -146,8 +143,8 @@ RefinedObservation Joined(RefinedObservation one, RefinedObservation other) {
   if (rank(other) < rank(one)) std::swap(one, other);
   std::vector<Hypothesis>& hypotheses = one.estimate.hypotheses;
   std::ranges::copy(other.estimate.hypotheses, std::back_inserter(hypotheses));
-  std::ranges::stable_sort(hypotheses, {},
-                           [](const Hypothesis& one) { return RankOfCost(one.cost); });
+  std::ranges::stable_sort(
+      hypotheses, {}, [](const Hypothesis& hypothesis) { return RankOfCost(hypothesis.cost); });
   hypotheses.resize(std::min(hypotheses.size(), kMaxHypotheses));
   return one;
 }
@@ -165,7 +162,8 @@ RefinedObservation RefineByProfile(const Sequence& sequence, int detection_index
   for (const auto& on_face : OnPossibleFaces(prior)) {
     if (!on_face) continue;
     RefinedObservation refined =
-        RefineOnFace(sequence, detection_index, edges, *on_face, options, symmetry_options, points);
+        OrientationProfile(sequence, detection, edges, *on_face, options, symmetry_options, points)
+            .Refine();
     joined = joined ? Joined(std::move(*joined), std::move(refined)) : std::move(refined);
   }
   RefinedObservation result = joined.value_or(RefinedObservation());
