@@ -87,10 +87,8 @@ std::optional<YawPrior> MotionPrior(const Sequence& sequence, const Detection& d
 }
 
 std::optional<YawPrior> TruePrior(const Sequence& sequence, const Detection& detection) {
-  const auto truth = TrueLandmarkInCamera(sequence, detection);
-  if (!truth) return std::nullopt;
-  return YawPrior{Yaw(detection.plane_in_camera.normal, truth->frame_from_object.rotation),
-                  kTrueYawSigma};
+  const auto yaw = TrueYaw(sequence, detection);
+  return yaw ? std::optional(YawPrior{*yaw, kTrueYawSigma}) : std::nullopt;
 }
 
 // For each detection, the detections of its object, itself included, at most `frames` before or
@@ -112,6 +110,12 @@ std::vector<std::vector<int>> Neighbours(const Sequence& sequence, int frames) {
 }
 
 }  // namespace
+
+std::optional<double> TrueYaw(const Sequence& sequence, const Detection& detection) {
+  const auto truth = TrueLandmarkInCamera(sequence, detection);
+  if (!truth) return std::nullopt;
+  return Yaw(detection.plane_in_camera.normal, truth->frame_from_object.rotation);
+}
 
 std::vector<std::optional<YawPrior>> YawPriors(const Sequence& sequence,
                                                const std::vector<std::optional<ShapePrior>>& shapes,

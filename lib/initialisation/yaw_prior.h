@@ -44,6 +44,9 @@ struct YawPriorOptions {
   }
 };
 
+// Yaw of a detection's object in the camera frame, from ground truth; none without ground truth.
+std::optional<double> TrueYaw(const Sequence& sequence, const Detection& detection);
+
 struct InitialiseOptions;
 
 // Prior of each detection, with the frames' estimated poses; none if the source has no information.

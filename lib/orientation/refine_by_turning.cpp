@@ -1,17 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "orientation/refine_by_turning.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <memory>
+#include <numbers>
 #include <utility>
 
 #include "geometry/angles.h"
-#include "geometry/landmark.h"
 #include "initialisation/single_frame.h"
+#include "initialisation/yaw_prior.h"
 #include "orientation/symmetry_samples.h"
-#include "orientation/yaw_profile.h"
 
 namespace soslam {
 namespace {
+
+struct BestTurn {
+  double turn;  // rad
+  double cost;
+};
 
 // One observation, and the data that all steps of its refinement share.
 struct Refinement {
@@ -29,20 +37,53 @@ double YawInCamera(const Refinement& refinement, const Landmark& landmark) {
   return Yaw(refinement.detection.plane_in_camera.normal, landmark.frame_from_object.rotation);
 }
 
-void RecordCurves(const Refinement& refinement, SymmetryRecord* record) {
+// Symmetry costs of the landmark rotated about its z axis by `turn`; centre and half axes stay.
+std::vector<std::optional<double>> CostsAtTurn(const Refinement& refinement, double turn,
+                                               const std::vector<Descriptor>& descriptors) {
+  return SymmetryCosts(*refinement.image, refinement.observation.camera,
+                       RotatedAboutZ(refinement.start, turn), refinement.samples, descriptors,
+                       refinement.options.symmetry);
+}
+
+// The rotation of lowest cost, at most yaw_range_deg either way: the best of a grid of
+// yaw_step_deg, refined on a grid of yaw_resolution_deg between its neighbours. None when the cost
+// is undefined on the whole grid.
+std::optional<BestTurn> FindBestTurn(const Refinement& refinement) {
   const RefineOptions& options = refinement.options;
+  const double range = options.yaw_range_deg * kRadPerDeg;
+  const double step = options.yaw_step_deg * kRadPerDeg;
+  std::optional<BestTurn> best;
+  const auto search = [&](double centre, double half_width, double spacing) {
+    const int count = static_cast<int>(std::ceil(half_width / spacing));
+    for (int i = -count; i <= count; ++i) {
+      const double turn = std::clamp(centre + half_width * i / std::max(1, count), -range, range);
+      const auto cost = CostsAtTurn(refinement, turn, {options.symmetry.descriptor}).front();
+      if (cost && (!best || *cost < best->cost)) best = BestTurn{turn, *cost};
+    }
+  };
+  search(0.0, range, step);
+  if (best) search(best->turn, std::min(step, range), options.yaw_resolution_deg * kRadPerDeg);
+  return best;
+}
+
+// The costs of all descriptors over half a turn (fig. 7); NaN where undefined.
+void RecordCurves(const Refinement& refinement, SymmetryRecord* record) {
   const double initial_yaw = YawInCamera(refinement, refinement.start);
+  const double step = refinement.options.yaw_step_deg * kRadPerDeg;
   std::vector<Descriptor> descriptors;
   for (size_t i = 0; i < kDescriptorNames.size(); ++i) {
     descriptors.push_back(static_cast<Descriptor>(i));
   }
-  const YawProfile profile = ComputeYawProfile(*refinement.image, refinement.observation.camera,
-                                               refinement.start, refinement.samples, descriptors,
-                                               options.symmetry, options.yaw_step_deg * kRadPerDeg);
-  for (size_t i = 0; i < kDescriptorNames.size(); ++i) {
-    record->cost[kDescriptorNames[i]] = profile.costs[i];
+  const int count = std::max(1, static_cast<int>(std::round(std::numbers::pi / step)));
+  for (int i = 0; i < count; ++i) {
+    const double turn = std::numbers::pi * (static_cast<double>(i) / count - 0.5);
+    const auto costs = CostsAtTurn(refinement, turn, descriptors);
+    record->yaw.push_back(initial_yaw + turn);
+    for (size_t k = 0; k < costs.size(); ++k) {
+      record->cost[kDescriptorNames[k]].push_back(
+          costs[k].value_or(std::numeric_limits<double>::quiet_NaN()));
+    }
   }
-  for (const double turn : profile.turns) record->yaw.push_back(initial_yaw + turn);
 }
 
 void RecordPairs(const Refinement& refinement, const Landmark& landmark, SymmetryRecord* record) {
@@ -80,10 +121,7 @@ Refinement ChooseHypothesis(const Sequence& sequence, const Detection& detection
                           start,
                           SamplePixels(*image, camera, start, options.symmetry),
                           std::nullopt};
-    refinement.best_turn =
-        FindBestTurn(*image, camera, start, refinement.samples, options.symmetry,
-                     options.yaw_range_deg * kRadPerDeg, options.yaw_step_deg * kRadPerDeg,
-                     options.yaw_resolution_deg * kRadPerDeg);
+    refinement.best_turn = FindBestTurn(refinement);
     if (!chosen || (refinement.best_turn &&
                     (!chosen->best_turn || refinement.best_turn->cost < chosen->best_turn->cost))) {
       chosen.emplace(std::move(refinement));
@@ -100,10 +138,36 @@ std::string FailureOf(const Refinement& refinement) {
 
 }  // namespace
 
-std::optional<double> TrueYaw(const Sequence& sequence, const Detection& detection) {
-  const auto truth = TrueLandmarkInCamera(sequence, detection);
-  if (!truth) return std::nullopt;
-  return Yaw(detection.plane_in_camera.normal, truth->frame_from_object.rotation);
+std::vector<std::optional<double>> SymmetryCosts(const SymmetryImage& image, const Camera& camera,
+                                                 const Landmark& landmark_in_camera,
+                                                 const std::vector<Eigen::Vector2d>& samples,
+                                                 const std::vector<Descriptor>& descriptors,
+                                                 const SymmetryOptions& options) {
+  struct Sum {
+    SymmetryDescriptor descriptor;
+    double residuals = 0.0;
+    int pairs = 0;
+  };
+  std::vector<Sum> sums;
+  for (const Descriptor descriptor : descriptors) {
+    sums.push_back({{descriptor, image, camera, landmark_in_camera}});
+  }
+  for (const Eigen::Vector2d& pixel : samples) {
+    const auto point = sums.front().descriptor.VisiblePoint(pixel, options.min_viewing_cosine);
+    if (!point) continue;
+    for (Sum& sum : sums) {
+      const auto pair = sum.descriptor.EvaluateAt(pixel, *point, false);
+      if (!pair) continue;
+      sum.residuals += std::abs(pair->residual);
+      ++sum.pairs;
+    }
+  }
+  std::vector<std::optional<double>> costs;
+  for (const Sum& sum : sums) {
+    const bool is_known = sum.pairs >= options.MinPairs(samples.size());
+    costs.push_back(is_known ? std::optional(sum.residuals / sum.pairs) : std::nullopt);
+  }
+  return costs;
 }
 
 RefinedObservation RefineByTurning(const Sequence& sequence, const ObservationEstimate& initial,

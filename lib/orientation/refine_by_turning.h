@@ -3,7 +3,11 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <vector>
 
+#include "constraints/symmetry.h"
+#include "geometry/camera.h"
+#include "geometry/landmark.h"
 #include "image/edge_maps.h"
 #include "model/estimates.h"
 #include "model/sequence.h"
@@ -17,9 +21,16 @@ struct RefinedObservation {
       record;  // of the landmark before refinement: the cost over yaw of every descriptor, fig. 7
 };
 
-// The yaw of a detection's object in the camera frame, from ground truth; none without ground
-// truth.
-std::optional<double> TrueYaw(const Sequence& sequence, const Detection& detection);
+// The symmetry cost of a landmark, eq. (16) under a robust kernel in its linear part: the mean of
+// the absolute descriptor difference (unit of the descriptor) over the pairs of visible points.
+// Absolute, because pairs for which the approximation of eq. (20) fails are few outliers; a mean,
+// because the number of visible pairs depends on the yaw. None when there are fewer pairs than the
+// options require. One cost for each descriptor, of which there is at least one.
+std::vector<std::optional<double>> SymmetryCosts(const SymmetryImage& image, const Camera& camera,
+                                                 const Landmark& landmark_in_camera,
+                                                 const std::vector<Eigen::Vector2d>& samples,
+                                                 const std::vector<Descriptor>& descriptors,
+                                                 const SymmetryOptions& options);
 
 // Refines the yaw of an observation's landmark by the symmetry of its texture, section V; centre
 // and half axes stay. Of the hypotheses that fit the box equally well, the one with the lowest
