@@ -23,18 +23,19 @@ std::array<LineSegment3, 12> UnitCuboidEdges() {
   return edges;
 }
 
-bool IsVisibleCuboidEdge(const LineSegment3& unit_edge,
-                         const Eigen::Vector3d& camera_in_unit_body) {
-  const auto& [start, end] = unit_edge;
-  for (int i = 0; i < 3; ++i) {
-    if (start[i] == end[i] && start[i] * camera_in_unit_body[i] > 1.0) return true;
+std::vector<LineSegment3> VisibleCuboidEdges(const Landmark& landmark_in_camera) {
+  const Eigen::Vector3d camera_in_unit_body =
+      landmark_in_camera.frame_from_object.Inverse().translation.cwiseQuotient(
+          landmark_in_camera.half_axes);
+  std::vector<LineSegment3> visible;
+  for (const LineSegment3& edge : UnitCuboidEdges()) {
+    const auto& [start, end] = edge;
+    const bool is_visible =
+        ((start.array() == end.array()) && (start.cwiseProduct(camera_in_unit_body).array() > 1.0))
+            .any();
+    if (is_visible) visible.push_back(edge);
   }
-  return false;
-}
-
-Eigen::Vector3d CameraInUnitBody(const Landmark& landmark_in_camera) {
-  return landmark_in_camera.frame_from_object.Inverse().translation.cwiseQuotient(
-      landmark_in_camera.half_axes);
+  return visible;
 }
 
 std::vector<Eigen::Vector3d> SilhouettePoints(const Camera& camera,

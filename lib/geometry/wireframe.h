@@ -18,10 +18,8 @@ using LineSegment3 = std::array<Eigen::Vector3d, 2>;
 // The edges of the cuboid |x_i| <= 1: four along x, four along y, four along z, each from -1 to 1.
 std::array<LineSegment3, 12> UnitCuboidEdges();
 
-// True if one of these edges belongs to a face that the camera sees. `camera_in_unit_body`: the
-// camera's centre in the object frame, divided by the half axes.
-bool IsVisibleCuboidEdge(const LineSegment3& unit_edge, const Eigen::Vector3d& camera_in_unit_body);
-Eigen::Vector3d CameraInUnitBody(const Landmark& landmark_in_camera);
+// Those of these edges that belong to a face of the landmark's cuboid which the camera sees.
+std::vector<LineSegment3> VisibleCuboidEdges(const Landmark& landmark_in_camera);
 
 // Points of the landmark that the camera sees on its silhouette, m: the tangent points in evenly
 // spaced image directions, clockwise in the image from its x axis. Empty unless the whole landmark

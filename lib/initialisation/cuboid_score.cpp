@@ -29,13 +29,12 @@ struct ImageEdge {
 
 std::vector<ImageEdge> VisibleEdges(const CuboidView& view, const Landmark& cuboid) {
   std::vector<ImageEdge> visible;
-  const auto edges = UnitCuboidEdges();
-  const Eigen::Vector3d camera_in_unit_body = CameraInUnitBody(cuboid);
-  for (size_t i = 0; i < edges.size(); ++i) {
-    if (!IsVisibleCuboidEdge(edges[i], camera_in_unit_body)) continue;
-    const auto begin = view.camera.Project(PointAt(cuboid, edges[i][0]));
-    const auto end = view.camera.Project(PointAt(cuboid, edges[i][1]));
-    if (begin && end) visible.push_back({static_cast<int>(i / 4), {*begin, *end}});
+  for (const LineSegment3& edge : VisibleCuboidEdges(cuboid)) {
+    const auto begin = view.camera.Project(PointAt(cuboid, edge[0]));
+    const auto end = view.camera.Project(PointAt(cuboid, edge[1]));
+    int axis = 0;
+    (edge[1] - edge[0]).maxCoeff(&axis);
+    if (begin && end) visible.push_back({axis, {*begin, *end}});
   }
   return visible;
 }

@@ -22,55 +22,18 @@ constexpr double kSlopeBlurPx = std::numbers::sqrt2;
 // silhouette.
 constexpr double kMaxEdgyExponent = 1.3;
 
-class PointSampler {
- public:
-  PointSampler(const Camera& camera, const Landmark& landmark_in_camera, double spacing_px)
-      : camera_(camera), landmark_(landmark_in_camera), spacing_px_(spacing_px) {}
-
-  // Adds points along a straight segment, each in the middle of one of equal parts.
-  void AddSegment(const Eigen::Vector3d& unit_start, const Eigen::Vector3d& unit_end) {
-    const auto start = Project(unit_start);
-    const auto end = Project(unit_end);
-    if (!start || !end) return;
-    const double length = (*end - *start).norm();
-    // A segment shorter than the spacing carries its fraction of a point over to the next ones.
-    carried_ += length / spacing_px_;
-    const int count = static_cast<int>(carried_);
-    carried_ -= count;
-    for (int i = 0; i < count; ++i) {
-      const double t = (i + 0.5) / count;
-      points.push_back({unit_start + t * (unit_end - unit_start), (*end - *start) / length});
-    }
-  }
-
-  std::vector<ModelPoint> points;
-
- private:
-  std::optional<Eigen::Vector2d> Project(const Eigen::Vector3d& in_unit_body) const {
-    return camera_.Project(PointAt(landmark_, in_unit_body));
-  }
-
-  const Camera& camera_;
-  const Landmark& landmark_;
-  double spacing_px_;
-  double carried_ = 0.0;
-};
-
-void AddCuboidEdges(const Eigen::Vector3d& camera_in_unit_body, PointSampler* sampler) {
-  for (const LineSegment3& edge : UnitCuboidEdges()) {
-    if (IsVisibleCuboidEdge(edge, camera_in_unit_body)) sampler->AddSegment(edge[0], edge[1]);
-  }
-}
-
-void AddOutline(const Camera& camera, const Landmark& landmark, PointSampler* sampler) {
+// The silhouette as a closed polygon, in the unit body.
+std::vector<LineSegment3> OutlineEdges(const Camera& camera, const Landmark& landmark) {
   const Rigid3d object_from_camera = landmark.frame_from_object.Inverse();
   std::vector<Eigen::Vector3d> silhouette = SilhouettePoints(camera, landmark);
   for (Eigen::Vector3d& point : silhouette) {
     point = (object_from_camera * point).cwiseQuotient(landmark.half_axes);
   }
+  std::vector<LineSegment3> edges;
   for (size_t i = 0; i < silhouette.size(); ++i) {
-    sampler->AddSegment(silhouette[i], silhouette[(i + 1) % silhouette.size()]);
+    edges.push_back({silhouette[i], silhouette[(i + 1) % silhouette.size()]});
   }
+  return edges;
 }
 
 }  // namespace
@@ -78,14 +41,27 @@ void AddOutline(const Camera& camera, const Landmark& landmark, PointSampler* sa
 std::vector<ModelPoint> VisibleModelPoints(const Camera& camera, const Landmark& landmark_in_camera,
                                            double spacing_px) {
   if (!IsInFront(landmark_in_camera)) return {};
-  PointSampler sampler(camera, landmark_in_camera, spacing_px);
   const auto [of_sections, of_curve] = landmark_in_camera.shape_exponents;
-  if (std::max(of_sections, of_curve) <= kMaxEdgyExponent) {
-    AddCuboidEdges(CameraInUnitBody(landmark_in_camera), &sampler);
-  } else {
-    AddOutline(camera, landmark_in_camera, &sampler);
+  const bool is_edgy = std::max(of_sections, of_curve) <= kMaxEdgyExponent;
+  std::vector<ModelPoint> points;
+  double carried = 0.0;
+  for (const auto& [unit_start, unit_end] : is_edgy ? VisibleCuboidEdges(landmark_in_camera)
+                                                    : OutlineEdges(camera, landmark_in_camera)) {
+    const auto start = camera.Project(PointAt(landmark_in_camera, unit_start));
+    const auto end = camera.Project(PointAt(landmark_in_camera, unit_end));
+    if (!start || !end) continue;
+    const double length = (*end - *start).norm();
+    // Points are in the middle of equal parts. An edge shorter than the spacing carries its
+    // fraction of a point over to the next ones.
+    carried += length / spacing_px;
+    const int count = static_cast<int>(carried);
+    carried -= count;
+    for (int i = 0; i < count; ++i) {
+      const double t = (i + 0.5) / count;
+      points.push_back({unit_start + t * (unit_end - unit_start), (*end - *start) / length});
+    }
   }
-  return std::move(sampler.points);
+  return points;
 }
 
 FrameEdges::FrameEdges(EdgeMaps edge_maps) : maps(std::move(edge_maps)) {

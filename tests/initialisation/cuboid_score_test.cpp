@@ -29,8 +29,7 @@ struct SeenCuboid {
 
   std::vector<LineSegment> VisibleEdges() const {
     std::vector<LineSegment> visible;
-    for (const LineSegment3& edge : UnitCuboidEdges()) {
-      if (!IsVisibleCuboidEdge(edge, CameraInUnitBody(truth))) continue;
+    for (const LineSegment3& edge : VisibleCuboidEdges(truth)) {
       visible.push_back({*TestCamera().Project(PointAt(truth, edge[0])),
                          *TestCamera().Project(PointAt(truth, edge[1]))});
     }
