@@ -10,7 +10,6 @@
 #include <array>
 
 #include "geometry/landmark.h"
-#include "geometry/plane.h"
 #include "geometry/rigid3.h"
 
 namespace soslam {
@@ -34,9 +33,6 @@ LandmarkBlock ToParameterBlock(const Landmark& landmark);
 Rigid3d UnpackPose(const double* block);
 Landmark UnpackLandmark(const double* block,
                         const ShapeExponents& shape_exponents = kEllipsoidExponent);
-inline Plane UnpackPlane(const double* normal, const double* offset) {
-  return {Eigen::Map<const Eigen::Vector3d>(normal), *offset};
-}
 
 // Jacobians are derived for a rotation vector w applied from the left, R -> exp(w) R. Ceres expects
 // derivatives by quaternion coefficients; this 3 x 4 matrix, dw / d(qx, qy, qz, qw), converts one

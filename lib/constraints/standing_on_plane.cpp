@@ -37,8 +37,7 @@ bool StandingOnPlaneResidual::Evaluate(double const* const* blocks, double* resi
   const Landmark landmark = UnpackLandmark(blocks[0], shape_exponents_);
   if (!landmark.half_axes.allFinite())
     return false;  // the step was too large: the solver shortens it
-  Plane plane = UnpackPlane(blocks[1], blocks[2]);
-  plane.normal *= side_;
+  const Plane plane{side_ * Eigen::Map<const Eigen::Vector3d>(blocks[1]), *blocks[2]};
   const StandingOnPlane standing(landmark, plane, sigmas_, may_lean_);
   Eigen::Map<Eigen::Vector3d>(residuals, 3) = standing.residuals;
   if (jacobians == nullptr) return true;
