@@ -25,15 +25,4 @@ std::vector<double> DirectionWeights(const std::vector<Eigen::Vector3d>& directi
   return weights;
 }
 
-std::vector<double> ViewWeights(const Sequence& sequence, const std::vector<int>& detections,
-                                const Eigen::Vector3d& centre_in_world, double correlation_rad) {
-  std::vector<Eigen::Vector3d> directions;
-  for (const int index : detections) {
-    const Detection& detection = sequence.detections[index];
-    directions.push_back(centre_in_world -
-                         sequence.FrameOf(detection).world_from_camera.translation);
-  }
-  return DirectionWeights(directions, correlation_rad);
-}
-
 }  // namespace soslam

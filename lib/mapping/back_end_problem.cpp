@@ -90,9 +90,13 @@ void BackEndProblem::WeighViews() {
   for (size_t i = 0; i < detections_by_object.size(); ++i) {
     if (!input_.initial_landmarks[i]) continue;
     const std::vector<int>& detections = detections_by_object[i];
-    const auto weights =
-        ViewWeights(input_.sequence, detections, input_.initial_landmarks[i]->Centre(),
-                    options_.view_correlation_deg * kRadPerDeg);
+    std::vector<Eigen::Vector3d> directions;
+    for (const int index : detections) {
+      directions.push_back(
+          input_.initial_landmarks[i]->Centre() -
+          input_.sequence.FrameOf(input_.sequence.detections[index]).world_from_camera.translation);
+    }
+    const auto weights = DirectionWeights(directions, options_.view_correlation_deg * kRadPerDeg);
     for (size_t k = 0; k < weights.size(); ++k) {
       view_weights_[detections[k]] = weights[k];
     }
