@@ -29,13 +29,13 @@ LandmarkEstimates EstimateObservations(const Sequence& sequence,
   estimates.observations.resize(sequence.detections.size());
   ParallelFor("detections", static_cast<int>(sequence.detections.size()), threads, [&](int i) {
     ObservationEstimate& estimate = estimates.observations[i];
-    estimate.detection_index = i;
     const auto& value = of_objects[sequence.detections[i].object_index];
     if (value) {
-      estimator(*value, &estimate);
+      estimate = estimator(*value, i);
     } else {
       estimate.failure = "no_ratio_for_label";
     }
+    estimate.detection_index = i;
   });
   return estimates;
 }
@@ -92,14 +92,12 @@ std::vector<Hypothesis> SweepFaces(const std::vector<UprightObservation>& on_fac
 LandmarkEstimates InitialiseSingleFrame(const Sequence& sequence,
                                         const std::vector<std::optional<Eigen::Vector2d>>& ratios,
                                         const InitialiseOptions& options, int threads) {
-  const auto estimator = [&](const Eigen::Vector2d& ratio, ObservationEstimate* estimate) {
-    const Detection& detection = sequence.detections[estimate->detection_index];
-    SingleFrameSolution solution = InitialiseFromSingleFrame(
+  const auto estimator = [&](const Eigen::Vector2d& ratio, int index) {
+    const Detection& detection = sequence.detections[index];
+    return InitialiseFromSingleFrame(
         {sequence.CameraOf(detection), detection.box, detection.plane_in_camera, ratio,
          SceneAxisInCamera(sequence, detection)},
         options);
-    estimate->hypotheses = std::move(solution.hypotheses);
-    estimate->failure = std::move(solution.failure);
   };
   return EstimateObservations(sequence, ratios, threads, estimator);
 }
@@ -109,22 +107,23 @@ LandmarkEstimates InitialiseUpright(const Sequence& sequence,
                                     const UprightOptions& options, int threads,
                                     const std::vector<std::optional<YawPrior>>& yaw_priors,
                                     const PointsInFrames* points) {
-  const auto estimator = [&](const ShapePrior& prior, ObservationEstimate* estimate) {
-    const int i = estimate->detection_index;
-    const Detection& detection = sequence.detections[i];
+  const auto estimator = [&](const ShapePrior& prior, int index) {
+    const Detection& detection = sequence.detections[index];
+    ObservationEstimate estimate;
     std::vector<UprightObservation> on_faces;
     for (const auto& on_face : OnPossibleFaces(prior)) {
       on_faces.push_back(MakeUprightObservation(sequence, detection, *on_face, options));
-      if (!yaw_priors.empty()) on_faces.back().yaw_prior = yaw_priors[i];
+      if (!yaw_priors.empty()) on_faces.back().yaw_prior = yaw_priors[index];
     }
     const double yaw_step = options.yaw_grid_deg * kRadPerDeg;
-    estimate->hypotheses = SweepFaces(on_faces, yaw_step);
-    const auto evidence = points ? points->Of(i, estimate->hypotheses) : std::nullopt;
+    estimate.hypotheses = SweepFaces(on_faces, yaw_step);
+    const auto evidence = points ? points->Of(index, estimate.hypotheses) : std::nullopt;
     if (evidence) {
       for (UprightObservation& on_face : on_faces) on_face.points = evidence;
-      estimate->hypotheses = SweepFaces(on_faces, yaw_step);
+      estimate.hypotheses = SweepFaces(on_faces, yaw_step);
     }
-    if (estimate->hypotheses.empty()) estimate->failure = WhyNoSolution(on_faces.back());
+    if (estimate.hypotheses.empty()) estimate.failure = WhyNoSolution(on_faces.back());
+    return estimate;
   };
   return EstimateObservations(sequence, priors, threads, estimator);
 }

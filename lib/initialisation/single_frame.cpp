@@ -126,10 +126,10 @@ double SingleFrameCost(const SingleFrameObservation& observation,
              : std::numeric_limits<double>::infinity();
 }
 
-SingleFrameSolution InitialiseFromSingleFrame(const SingleFrameObservation& observation,
+ObservationEstimate InitialiseFromSingleFrame(const SingleFrameObservation& observation,
                                               const InitialiseOptions& options) {
   auto start = Start(observation);
-  if (!start) return {{}, "support_plane_not_in_view"};
+  if (!start) return {0, {}, "support_plane_not_in_view"};
 
   std::vector<Hypothesis> found;
   for (int i = 0; i < options.yaw_starts; ++i) {
@@ -138,7 +138,7 @@ SingleFrameSolution InitialiseFromSingleFrame(const SingleFrameObservation& obse
         UprightRotation(plane.normal, i * std::numbers::pi / options.yaw_starts);
     const Hypothesis hypothesis = Solve(observation, options, *start);
     if (!IsPlausible(observation, hypothesis)) continue;
-    const auto same = std::find_if(found.begin(), found.end(), [&](const Hypothesis& other) {
+    const auto same = std::ranges::find_if(found, [&](const Hypothesis& other) {
       return IsSame(plane, hypothesis.landmark_in_camera, other.landmark_in_camera);
     });
     if (same == found.end()) {
@@ -147,10 +147,9 @@ SingleFrameSolution InitialiseFromSingleFrame(const SingleFrameObservation& obse
       *same = hypothesis;
     }
   }
-  if (found.empty()) return {{}, "no_solution"};
+  if (found.empty()) return {0, {}, "no_solution"};
 
-  std::sort(found.begin(), found.end(),
-            [](const Hypothesis& one, const Hypothesis& other) { return one.cost < other.cost; });
+  std::ranges::sort(found, {}, &Hypothesis::cost);
   const auto edge_rms = [&](const Hypothesis& hypothesis) {
     return OutlineEdgeRms(observation.camera, hypothesis.landmark_in_camera, observation.box);
   };
@@ -161,10 +160,8 @@ SingleFrameSolution InitialiseFromSingleFrame(const SingleFrameObservation& obse
   const auto oddity = [&](const Hypothesis& hypothesis) {
     return Oddity(observation, hypothesis.landmark_in_camera, options.tie_break);
   };
-  std::stable_sort(found.begin(), tied_end, [&](const Hypothesis& one, const Hypothesis& other) {
-    return oddity(one) < oddity(other);
-  });
-  return {found, ""};
+  std::ranges::stable_sort(found.begin(), tied_end, {}, oddity);
+  return {0, found, ""};
 }
 
 }  // namespace soslam

@@ -2,8 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <string>
-#include <vector>
+#include <optional>
 
 #include "geometry/box.h"
 #include "geometry/camera.h"
@@ -23,19 +22,14 @@ struct SingleFrameObservation {
   std::optional<Eigen::Vector3d> scene_axis_in_camera = std::nullopt;
 };
 
-struct SingleFrameSolution {
-  std::vector<Hypothesis> hypotheses;  // best first
-  std::string failure;                 // reason if there are no hypotheses
-};
-
 // Single-frame initialisation, eq. (12): Levenberg-Marquardt over detection, support and ratio
 // constraints from starting yaws over half a turn. Several yaws can fit one box exactly, typically
 // two, mirrored in the line of sight: all distinct solutions are returned. Solutions that fit the
 // box as well as the best one, to options.tie_edge_px, come first, in the order of
 // options.tie_break; the others follow by cost.
 // Solutions that are not upright above the plane and in front of the camera are dropped. Failures:
-// support_plane_not_in_view, no_solution.
-SingleFrameSolution InitialiseFromSingleFrame(const SingleFrameObservation& observation,
+// support_plane_not_in_view, no_solution. The caller sets the index of the detection.
+ObservationEstimate InitialiseFromSingleFrame(const SingleFrameObservation& observation,
                                               const InitialiseOptions& options);
 
 // The cost of eq. (12): half the sum of squared weighted residuals.
