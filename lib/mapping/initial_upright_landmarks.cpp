@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <compare>
 #include <limits>
 #include <map>
-#include <tuple>
 
 #include "base/parallel.h"
 #include "geometry/angles.h"
@@ -31,9 +31,7 @@ constexpr int kRounds = 2;
 struct FitCost {
   size_t views_behind;
   double cost;
-  bool operator<(const FitCost& other) const {
-    return std::tie(views_behind, cost) < std::tie(other.views_behind, other.cost);
-  }
+  auto operator<=>(const FitCost&) const = default;
 };
 
 struct Candidate {
@@ -77,10 +75,9 @@ class ObjectFit {
 
   std::optional<Candidate> IfCheaperThan(const FitCost& other,
                                          const Landmark& landmark_in_world) const {
-    const auto behind =
-        std::count_if(boxes_.views.begin(), boxes_.views.end(), [&](const BoxView& view) {
-          return !IsInFront(Transform(view.camera_from_world, landmark_in_world));
-        });
+    const auto behind = std::ranges::count_if(boxes_.views, [&](const BoxView& view) {
+      return !IsInFront(Transform(view.camera_from_world, landmark_in_world));
+    });
     FitCost cost{static_cast<size_t>(behind),
                  TotalCost(Terms(landmark_in_world), landmark_in_world)};
     for (const Texture& texture : textures_) {
@@ -179,8 +176,7 @@ std::vector<Candidate> BestOfEachYaw(const std::vector<Landmark>& landmarks, con
   }
   std::vector<Candidate> candidates;
   for (const auto& [bin, candidate] : best) candidates.push_back(candidate);
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const auto& one, const auto& other) { return one.cost < other.cost; });
+  std::ranges::stable_sort(candidates, {}, &Candidate::cost);
   candidates.resize(std::min(candidates.size(), kMaxCandidates));
   return candidates;
 }
