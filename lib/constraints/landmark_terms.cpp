@@ -9,18 +9,18 @@
 namespace soslam {
 namespace {
 
-using Residuals = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, LandmarkTerm::kMaxResiduals>;
+using FewResiduals = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, LandmarkTerm::kMaxResiduals>;
 
 }  // namespace
 
 double LandmarkTerm::Value(const Landmark& landmark) const {
-  Residuals residuals(NumResiduals());
+  FewResiduals residuals(NumResiduals());
   Evaluate(landmark, residuals, nullptr);
   return 0.5 * residuals.squaredNorm();
 }
 
 void LandmarkTerm::AddTo(const Landmark& landmark, LandmarkModel* sum) const {
-  Residuals residuals(NumResiduals());
+  FewResiduals residuals(NumResiduals());
   Jacobian jacobian(NumResiduals(), kLandmarkDof);
   Evaluate(landmark, residuals, &jacobian);
   for (Eigen::Index row = 0; row < residuals.size(); ++row) {
@@ -34,7 +34,7 @@ BoxTerm::BoxTerm(const std::array<BoxEdge, 4>& edges, const Landmark& start_in_c
     depths_[i] = FindTangentDepth(edges[i], start_in_camera);
 }
 
-void BoxTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
+void BoxTerm::Evaluate(const Landmark& landmark_in_camera, Residuals residuals,
                        Jacobian* jacobian) const {
   for (size_t i = 0; i < edges_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
@@ -45,8 +45,8 @@ void BoxTerm::Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::Vec
   }
 }
 
-void OutlineTerm::Evaluate(const Landmark& landmark_in_camera,
-                           Eigen::Ref<Eigen::VectorXd> residuals, Jacobian* jacobian) const {
+void OutlineTerm::Evaluate(const Landmark& landmark_in_camera, Residuals residuals,
+                           Jacobian* jacobian) const {
   if (!IsInFront(landmark_in_camera)) {
     residuals.setConstant(std::numeric_limits<double>::quiet_NaN());
     if (jacobian != nullptr) jacobian->setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -70,24 +70,22 @@ RatioRows::RatioRows(const ShapePrior& prior) {
   at_prior = whiten * prior.ratio.array().log().matrix();
 }
 
-void RatioTerm::Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
-                         Jacobian* jacobian) const {
+void RatioTerm::Evaluate(const Landmark& landmark, Residuals residuals, Jacobian* jacobian) const {
   residuals = rows_.Residuals(landmark.half_axes.array().log());
   if (jacobian == nullptr) return;
   jacobian->setZero();
   jacobian->rightCols<3>() = rows_.d_log_half_axes;
 }
 
-void HeightTerm::Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
-                          Jacobian* jacobian) const {
+void HeightTerm::Evaluate(const Landmark& landmark, Residuals residuals, Jacobian* jacobian) const {
   residuals[0] = HeightResidual(height_m_, landmark.half_axes[axis_]);
   if (jacobian == nullptr) return;
   jacobian->setZero();
   (*jacobian)(0, 6 + axis_) = 1.0 / height_m_.log_sigma;
 }
 
-void RobustViewTerm::Evaluate(const Landmark& landmark_in_reference,
-                              Eigen::Ref<Eigen::VectorXd> residuals, Jacobian* jacobian) const {
+void RobustViewTerm::Evaluate(const Landmark& landmark_in_reference, Residuals residuals,
+                              Jacobian* jacobian) const {
   term_->Evaluate(Transform(camera_from_reference_, landmark_in_reference), residuals, jacobian);
   if (jacobian != nullptr) {
     *jacobian *= LandmarkInCameraJacobian(camera_from_reference_.rotation.toRotationMatrix());
@@ -107,8 +105,7 @@ AxisTerm::AxisTerm(const Plane& plane, const Eigen::Vector3d& axis, double weigh
       axis_yaw_(Yaw(normal_, RotationBetween(Eigen::Vector3d::UnitX(), axis))),
       amplitude_(std::sqrt(2.0 * weight)) {}
 
-void AxisTerm::Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
-                        Jacobian* jacobian) const {
+void AxisTerm::Evaluate(const Landmark& landmark, Residuals residuals, Jacobian* jacobian) const {
   const Eigen::Quaterniond& rotation = landmark.frame_from_object.rotation;
   const double angle = 2.0 * (Yaw(normal_, rotation) - axis_yaw_);
   residuals[0] = amplitude_ * std::sin(angle);
@@ -117,8 +114,7 @@ void AxisTerm::Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> re
   jacobian->leftCols<3>() = 2.0 * amplitude_ * std::cos(angle) * YawJacobian(normal_, rotation);
 }
 
-void YawTerm::Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
-                       Jacobian* jacobian) const {
+void YawTerm::Evaluate(const Landmark& landmark, Residuals residuals, Jacobian* jacobian) const {
   const Eigen::Quaterniond& rotation = landmark.frame_from_object.rotation;
   residuals[0] = YawDifferenceModuloPi(Yaw(normal_, rotation), prior_.yaw) / prior_.sigma;
   if (jacobian == nullptr) return;
@@ -126,7 +122,7 @@ void YawTerm::Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> res
   jacobian->leftCols<3>() = YawJacobian(normal_, rotation) / prior_.sigma;
 }
 
-void LeaningTerm::Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
+void LeaningTerm::Evaluate(const Landmark& landmark, Residuals residuals,
                            Jacobian* jacobian) const {
   const StandingOnPlane standing(landmark, plane_, sigmas_, /*may_lean=*/true);
   residuals = standing.residuals;

@@ -22,11 +22,12 @@ namespace soslam {
 class LandmarkTerm : public LandmarkCost {
  public:
   static constexpr int kMaxResiduals = 4;
+  using Residuals = Eigen::Ref<Eigen::VectorXd>;
   using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, kLandmarkDof, 0, kMaxResiduals>;
 
   virtual int NumResiduals() const = 0;
   // `jacobian` (NumResiduals() x 9) may be null.
-  virtual void Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
+  virtual void Evaluate(const Landmark& landmark, Residuals residuals,
                         Jacobian* jacobian) const = 0;
 
   double Value(const Landmark& landmark) const final;
@@ -39,7 +40,7 @@ class BoxTerm final : public LandmarkTerm {
  public:
   BoxTerm(const std::array<BoxEdge, 4>& edges, const Landmark& start_in_camera);
   int NumResiduals() const override { return 4; }
-  void Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
+  void Evaluate(const Landmark& landmark_in_camera, Residuals residuals,
                 Jacobian* jacobian) const override;
 
  private:
@@ -53,7 +54,7 @@ class OutlineTerm final : public LandmarkTerm {
  public:
   explicit OutlineTerm(const std::array<BoxEdge, 4>& edges) : edges_(edges) {}
   int NumResiduals() const override { return 4; }
-  void Evaluate(const Landmark& landmark_in_camera, Eigen::Ref<Eigen::VectorXd> residuals,
+  void Evaluate(const Landmark& landmark_in_camera, Residuals residuals,
                 Jacobian* jacobian) const override;
 
  private:
@@ -79,8 +80,7 @@ class RatioTerm final : public LandmarkTerm {
  public:
   explicit RatioTerm(const ShapePrior& prior) : rows_(prior) {}
   int NumResiduals() const override { return 2; }
-  void Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
-                Jacobian* jacobian) const override;
+  void Evaluate(const Landmark& landmark, Residuals residuals, Jacobian* jacobian) const override;
 
  private:
   RatioRows rows_;
@@ -98,8 +98,7 @@ class HeightTerm final : public LandmarkTerm {
   explicit HeightTerm(const LogNormal& height_m, RestingFace rests_on = RestingFace::kBottom)
       : height_m_(height_m), axis_(OwnHeightAxis(rests_on)) {}
   int NumResiduals() const override { return 1; }
-  void Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
-                Jacobian* jacobian) const override;
+  void Evaluate(const Landmark& landmark, Residuals residuals, Jacobian* jacobian) const override;
 
  private:
   LogNormal height_m_;
@@ -117,7 +116,7 @@ class RobustViewTerm final : public LandmarkTerm {
         huber_delta_(huber_delta),
         root_weight_(std::sqrt(weight)) {}
   int NumResiduals() const override { return term_->NumResiduals(); }
-  void Evaluate(const Landmark& landmark_in_reference, Eigen::Ref<Eigen::VectorXd> residuals,
+  void Evaluate(const Landmark& landmark_in_reference, Residuals residuals,
                 Jacobian* jacobian) const override;
 
  private:
@@ -133,8 +132,7 @@ class AxisTerm final : public LandmarkTerm {
  public:
   AxisTerm(const Plane& plane, const Eigen::Vector3d& axis, double weight);
   int NumResiduals() const override { return 1; }
-  void Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
-                Jacobian* jacobian) const override;
+  void Evaluate(const Landmark& landmark, Residuals residuals, Jacobian* jacobian) const override;
 
  private:
   Eigen::Vector3d normal_;
@@ -153,8 +151,7 @@ class YawTerm final : public LandmarkTerm {
  public:
   YawTerm(const Plane& plane, const YawPrior& prior) : normal_(plane.normal), prior_(prior) {}
   int NumResiduals() const override { return 1; }
-  void Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
-                Jacobian* jacobian) const override;
+  void Evaluate(const Landmark& landmark, Residuals residuals, Jacobian* jacobian) const override;
 
  private:
   Eigen::Vector3d normal_;
@@ -167,8 +164,7 @@ class LeaningTerm final : public LandmarkTerm {
   explicit LeaningTerm(const Plane& plane, const StandingSigmas& sigmas = StandingSigmas())
       : plane_(plane), sigmas_(sigmas) {}
   int NumResiduals() const override { return 3; }
-  void Evaluate(const Landmark& landmark, Eigen::Ref<Eigen::VectorXd> residuals,
-                Jacobian* jacobian) const override;
+  void Evaluate(const Landmark& landmark, Residuals residuals, Jacobian* jacobian) const override;
 
  private:
   Plane plane_;
