@@ -1,35 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "constraints/symmetry.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace soslam {
-namespace {
-
-// The pixels from one edge of the box to the other, within the image.
-cv::Rect PixelsOf(const Box& box, const cv::Size& image) {
-  const auto first = [](double edge, int size) {
-    return static_cast<int>(std::ceil(std::max(0.0, std::min<double>(size, edge))));
-  };
-  const auto last = [](double edge, int size) {
-    return static_cast<int>(std::floor(std::max(-1.0, std::min(size - 1.0, edge))));
-  };
-  const int x = first(box.x_min, image.width);
-  const int y = first(box.y_min, image.height);
-  return {x, y, std::max(0, last(box.x_max, image.width) + 1 - x),
-          std::max(0, last(box.y_max, image.height) + 1 - y)};
-}
-
-}  // namespace
 
 SymmetryImage::SymmetryImage(EdgeMaps edge_maps, const Box& own_box)
     : box(own_box), maps(std::move(edge_maps)), brief(maps.grey), freak(maps.grey) {
-  const cv::Rect pixels = PixelsOf(box, maps.edges.size());
-  for (int y = pixels.y; y < pixels.y + pixels.height; ++y) {
+  const auto inside = CutToImage(box, maps.edges.cols, maps.edges.rows);
+  if (!inside) return;
+  for (int y = static_cast<int>(std::ceil(inside->y_min)); y <= inside->y_max; ++y) {
     const auto* row = maps.edges.ptr<unsigned char>(y);
-    for (int x = pixels.x; x < pixels.x + pixels.width; ++x) {
+    for (int x = static_cast<int>(std::ceil(inside->x_min)); x <= inside->x_max; ++x) {
       if (row[x] != 0) edge_pixels.emplace_back(x, y);
     }
   }
