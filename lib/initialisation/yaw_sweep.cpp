@@ -214,8 +214,7 @@ std::vector<size_t> CircularMinima(const std::vector<double>& values) {
       minima.push_back(i);
     }
   }
-  std::stable_sort(minima.begin(), minima.end(),
-                   [&](size_t one, size_t other) { return values[one] < values[other]; });
+  std::ranges::stable_sort(minima, {}, height);
   return minima;
 }
 
@@ -233,7 +232,7 @@ std::vector<UprightSolution> LocalOptima(const UprightObservation& observation,
   for (const size_t i : minima) {
     const auto fit = fitter.RefineYaw(*sweep.fits[i], step);
     if (!fit) continue;
-    const bool known = std::any_of(optima.begin(), optima.end(), [&](const auto& other) {
+    const bool known = std::ranges::any_of(optima, [&](const auto& other) {
       return std::abs(YawDifferenceModuloPi(yaw_of(*fit), yaw_of(other))) < kSameOptimumYaw;
     });
     if (!known) optima.push_back(*fit);
@@ -243,8 +242,7 @@ std::vector<UprightSolution> LocalOptima(const UprightObservation& observation,
   const auto rank = [&](const UprightFit& fit) {
     return std::pair(RankOfCost(fit.cost), yaw_of(fit));
   };
-  std::sort(optima.begin(), optima.end(),
-            [&](const auto& one, const auto& other) { return rank(one) < rank(other); });
+  std::ranges::sort(optima, {}, rank);
   optima.resize(std::min(optima.size(), max_count));
   std::vector<UprightSolution> solutions;
   for (const UprightFit& fit : optima) {
