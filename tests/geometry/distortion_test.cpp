@@ -75,23 +75,6 @@ TEST(DistortionTest, UndistortingUndoesDistorting) {
   }
 }
 
-TEST(DistortionTest, WholeImageOfARealCameraCanBeUndistorted) {
-  for (int i = 0; i < 500; ++i) {
-    EXPECT_TRUE(UndistortPixels(kKinect, kKinectLens, {RandomPixel(kKinect)}).front());
-  }
-}
-
-TEST(DistortionTest, ZeroCoefficientsChangeNothing) {
-  const Box box{10.25, 20.5, 300.75, 400.0};
-  const auto same = UndistortBox(kKinect, {}, box);
-  ASSERT_TRUE(same);
-  EXPECT_NEAR(same->x_min, box.x_min, 1e-9);
-  EXPECT_NEAR(same->y_min, box.y_min, 1e-9);
-  EXPECT_NEAR(same->x_max, box.x_max, 1e-9);
-  EXPECT_NEAR(same->y_max, box.y_max, 1e-9);
-  EXPECT_TRUE(UndistortPixels(kKinect, {}, {}).empty());
-}
-
 // x (1 - x^2 / 2) has its largest value 0.544 at x = 0.816: nothing is drawn further out.
 TEST(DistortionTest, BeyondTheLargestDistortedRadiusThereIsNothing) {
   const Camera camera{1000, 1000, 1000.0, 1000.0, 0.0, 0.0};

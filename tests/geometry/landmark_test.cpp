@@ -17,17 +17,6 @@ void ExpectNear(const Box& one, const Box& other, double tolerance) {
   EXPECT_NEAR(one.y_max, other.y_max, tolerance);
 }
 
-TEST(Landmark, TangentPlanesSatisfyTheDualQuadric) {
-  for (int i = 0; i < 100; ++i) {
-    const Landmark landmark{RandomRigid(), RandomVector(0.1, 2.0)};
-    const Eigen::Vector3d point = RandomSurfacePoint(landmark.half_axes, kEllipsoidExponent);
-    const Eigen::Vector3d normal = point.cwiseQuotient(landmark.half_axes.cwiseAbs2()).normalized();
-    const Plane plane = Transform(landmark.frame_from_object, Plane{normal, -normal.dot(point)});
-    const Eigen::Vector4d tangent = plane.Homogeneous();
-    EXPECT_NEAR(tangent.dot(DualQuadric(landmark) * tangent), 0.0, 1e-9);
-  }
-}
-
 TEST(Landmark, ComesBackFromItsDualQuadric) {
   for (int i = 0; i < 100; ++i) {
     const Landmark landmark{RandomRigid(), RandomVector(0.1, 2.0)};
@@ -47,23 +36,6 @@ TEST(Landmark, AHyperboloidIsNotProper) {
   EXPECT_FALSE(LandmarkFromDualQuadric(Eigen::Matrix4d::Zero()));
   EXPECT_FALSE(
       LandmarkFromDualQuadric(Eigen::Matrix4d::Constant(std::numeric_limits<double>::quiet_NaN())));
-}
-
-TEST(FindSupportPoint, MovesWithTheLandmark) {
-  for (const ShapeExponents& p : kShapeExponents) {
-    for (int i = 0; i < 20; ++i) {
-      const Landmark landmark = WithShape({RandomRigid(), RandomVector(0.1, 2.0)}, p);
-      const Eigen::Vector3d direction = RandomVector(-2, 2);
-      const SupportPoint farthest = FindSupportPoint(landmark, direction);
-      EXPECT_NEAR(direction.dot(farthest.point), farthest.extent, 1e-9);
-      const Rigid3d motion = RandomRigid();
-      const SupportPoint moved =
-          FindSupportPoint(Transform(motion, landmark), motion.rotation * direction);
-      EXPECT_LT((moved.point - motion * farthest.point).norm(), 1e-9);
-      EXPECT_NEAR(moved.extent,
-                  farthest.extent + (motion.rotation * direction).dot(motion.translation), 1e-9);
-    }
-  }
 }
 
 TEST(OutlineBox, IsTheTightBoxOfTheProjectedSurface) {
@@ -87,19 +59,6 @@ TEST(OutlineBox, IsTheTightBoxOfTheProjectedSurface) {
       // a thousandth of the size farther.
       ExpectNear(sampled, *box, 0.5);
     }
-  }
-}
-
-TEST(OutlineBox, OfTheCuboidHoldsItsCorners) {
-  const Camera camera = TestCamera();
-  for (int i = 0; i < 100; ++i) {
-    const Landmark landmark = WithShape(RandomLandmarkInCamera(), kCuboidExponent);
-    double nearest = 1e9;
-    for (const Eigen::Vector3d& corner : CornersOf(landmark)) {
-      nearest = std::min(nearest, corner.z());
-    }
-    ExpectNear(*OutlineBox(camera, landmark), BoxAroundCorners(landmark),
-               1.5 * camera.fy * kEdgeRounding * landmark.half_axes.sum() / nearest);
   }
 }
 

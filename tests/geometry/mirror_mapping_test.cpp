@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/landmark_costs.h"
 #include "support/shape_exponents.h"
 
 namespace soslam {
@@ -21,19 +22,6 @@ Landmark CentralLandmark(const ShapeExponents& shape_exponents = kEllipsoidExpon
 
 Eigen::Vector2d RandomPixel() { return {RandomUniform(295, 345), RandomUniform(220, 265)}; }
 
-// Central differences over the nine parameters; their error is about 1e-9 here.
-template <typename Function>
-void ExpectDerivative(const LandmarkJacobian1& analytic, const Landmark& landmark,
-                      const Function& function) {
-  constexpr double kStep = 1e-5;
-  for (int i = 0; i < kLandmarkDof; ++i) {
-    const LandmarkStep step = kStep * LandmarkStep::Unit(i);
-    const double numeric =
-        (function(Moved(landmark, step)) - function(Moved(landmark, -step))) / (2.0 * kStep);
-    EXPECT_NEAR(analytic[i], numeric, 1e-6 * (1.0 + std::abs(numeric))) << i;
-  }
-}
-
 TEST(VisibleSurface, PointIsOnTheSurfaceOnTheRayAndVisible) {
   for (int i = 0; i < 100; ++i) {
     const ShapeExponents p = kTestedExponents[static_cast<size_t>(i) % kTestedExponents.size()];
@@ -50,26 +38,6 @@ TEST(VisibleSurface, PointIsOnTheSurfaceOnTheRayAndVisible) {
         (landmark.frame_from_object * point->in_object - depth * TestCamera().Ray(pixel)).norm(),
         1e-9);
   }
-}
-
-TEST(VisibleSurface, MirrorImageIsTheMirrorOfTheLandmark) {
-  const Landmark landmark = CentralLandmark();
-  const VisibleSurface surface(TestCamera(), landmark);
-  const auto point = surface.FromPixel(RandomPixel());
-  const Eigen::Vector3d mirrored = point->in_object.cwiseProduct(Eigen::Vector3d(1, -1, 1));
-  EXPECT_LT((surface.MirrorImage(*point).in_object - mirrored).norm(), 1e-12);
-}
-
-TEST(VisibleSurface, AMirrorPlaneBesideTheCentreMovesTheMirrorImageByTwiceItsDistance) {
-  const Landmark landmark = CentralLandmark();
-  const VisibleSurface surface(TestCamera(), landmark);
-  const auto point = surface.FromPixel(RandomPixel());
-  const double distance_m = 0.3 * MeanHalfAxis(landmark);
-  const Eigen::Vector3d moved = surface.MirrorImage(*point, 0.3).in_object;
-  EXPECT_LT(
-      (moved - surface.MirrorImage(*point).in_object - Eigen::Vector3d(0.0, 2.0 * distance_m, 0.0))
-          .norm(),
-      1e-12);
 }
 
 TEST(VisibleSurface, TangentPlaneAgreesAtTheContactAndToFirstOrderAround) {
@@ -155,60 +123,6 @@ TEST(VisibleSurface, DerivativesOnTangentPlanesAgreeWithNumbers) {
     }
   }
   EXPECT_GT(checked, 120);
-}
-
-TEST(VisibleSurface, PixelDerivativeOfAFixedPixelIsZero) {
-  for (int i = 0; i < 20; ++i) {
-    const VisibleSurface surface(TestCamera(), CentralLandmark());
-    const auto point = *surface.FromPixel(RandomPixel());
-    EXPECT_TRUE(point.IsOnRay());
-    EXPECT_LT(surface.PixelDerivative(point, {1.0, 1.0}).norm(), 1e-9);
-  }
-}
-
-TEST(VisibleSurface, AFaceOfTheCuboidIsItsTangentPlane) {
-  // Its front looks at the camera.
-  const Landmark landmark{
-      {Eigen::Quaterniond(Eigen::AngleAxisd(0.5 * std::numbers::pi, Eigen::Vector3d::UnitY())),
-       {0, 0, 3}},
-      {0.5, 0.6, 0.7},
-      kCuboidExponent};
-  const VisibleSurface surface(TestCamera(), landmark);
-  const auto contact = surface.FromPixel({300, 230});
-  EXPECT_NEAR(contact->in_object.x(), 0.5, 1e-12);
-  EXPECT_LT((*surface.FromPixelOnTangentPlane({340, 260}, *contact) -
-             surface.FromPixel({340, 260})->in_object)
-                .norm(),
-            1e-12);
-}
-
-TEST(VisibleSurface, HiddenFacesOfTheCuboidLookAway) {
-  for (int i = 0; i < 100; ++i) {
-    const Landmark landmark = CentralLandmark(kCuboidExponent);
-    const VisibleSurface surface(TestCamera(), landmark);
-    const Eigen::Vector3d camera_in_object =
-        landmark.frame_from_object.Inverse() * Eigen::Vector3d::Zero();
-    for (int axis = 0; axis < 3; ++axis) {
-      for (const double side : {-1.0, 1.0}) {
-        VisibleSurface::Point point{landmark.half_axes.cwiseProduct(RandomVector(-0.99, 0.99))};
-        point.in_object[axis] = side * landmark.half_axes[axis];
-        const bool is_hidden = side * camera_in_object[axis] <= landmark.half_axes[axis];
-        // What is not hidden is what the pixel's ray meets first.
-        const auto pixel = surface.ToPixel(point);
-        ASSERT_TRUE(pixel);
-        const auto seen = surface.FromPixel(*pixel);
-        ASSERT_TRUE(seen);
-        EXPECT_EQ((seen->in_object - point.in_object).norm() > 1e-9, is_hidden);
-      }
-    }
-  }
-}
-
-TEST(VisibleSurface, CameraInsideOrLookingPastSeesNothing) {
-  const Landmark around{Rigid3d(), {1, 1, 1}};
-  EXPECT_FALSE(VisibleSurface(TestCamera(), around).FromPixel({320, 240}));
-  const Landmark behind{{Eigen::Quaterniond::Identity(), {0, 0, -3}}, {1, 1, 1}};
-  EXPECT_FALSE(VisibleSurface(TestCamera(), behind).FromPixel({320, 240}));
 }
 
 }  // namespace

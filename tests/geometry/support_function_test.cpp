@@ -106,11 +106,5 @@ TEST(SupportFunction, TouchesTheCuboidAtItsCorners) {
   }
 }
 
-TEST(SupportFunction, IsZeroForAFlatBodySeenFromItsSide) {
-  const SupportValue value = SupportFunction({0, 1, 1}, kEllipsoidExponent, {1, 0, 0});
-  EXPECT_EQ(value.extent, 0.0);
-  EXPECT_TRUE(value.point.isZero());
-}
-
 }  // namespace
 }  // namespace soslam

@@ -8,20 +8,27 @@
 
 namespace soslam {
 
-// The model's cost is the value, and its gradient what central differences of fourth order say.
-inline void ExpectCorrectGradient(const LandmarkCost& cost, const Landmark& landmark) {
+// The derivative of a function of a landmark is what central differences of fourth order say.
+template <typename Function>
+void ExpectDerivative(const LandmarkJacobian1& derivative, const Landmark& landmark,
+                      const Function& function) {
   constexpr double kStep = 1e-4;
+  for (int i = 0; i < kLandmarkDof; ++i) {
+    const auto moved = [&](double step) -> double {
+      return function(Moved(landmark, step * LandmarkStep::Unit(i)));
+    };
+    EXPECT_NEAR(derivative[i], DerivativeAtZero(moved, kStep), 1e-7 * (1.0 + derivative.norm()))
+        << "parameter " << i;
+  }
+}
+
+// The model's cost is the value, and its gradient that of the value.
+inline void ExpectCorrectGradient(const LandmarkCost& cost, const Landmark& landmark) {
   LandmarkModel model;
   cost.AddTo(landmark, &model);
   EXPECT_NEAR(model.cost, cost.Value(landmark), 1e-12 * (1.0 + model.cost));
-  for (int i = 0; i < kLandmarkDof; ++i) {
-    const auto moved = [&](double step) {
-      return cost.Value(Moved(landmark, step * LandmarkModel::Vector::Unit(i)));
-    };
-    EXPECT_NEAR(model.gradient[i], DerivativeAtZero(moved, kStep),
-                1e-7 * (1.0 + model.gradient.norm()))
-        << "parameter " << i;
-  }
+  ExpectDerivative(model.gradient.transpose(), landmark,
+                   [&](const Landmark& moved) { return cost.Value(moved); });
 }
 
 // For a single residual r with gradient g = J^T r: J^T J = g g^T / r^2.
