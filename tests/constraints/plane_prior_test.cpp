@@ -25,13 +25,6 @@ TEST(PlaneNormalPrior, CostIsTheQuadraticForm) {
   }
 }
 
-TEST(PlaneNormalPrior, JacobianAgreesWithNumbers) {
-  for (int i = 0; i < 50; ++i) {
-    const Eigen::Vector3d normal = RandomPlane().normal;
-    ExpectCorrectJacobians(*PlaneNormalPrior(RandomInformation()), {normal.data()});
-  }
-}
-
 TEST(PlaneHeightResidual, IsTheDistanceOfThePointInSigmas) {
   for (int i = 0; i < 50; ++i) {
     const Plane plane = RandomPlane();

@@ -47,21 +47,6 @@ TEST(PointCostTest, GradientAgreesWithNumbers) {
   }
 }
 
-TEST(PointCostTest, ConvergesSlowlyAlsoInAnotherView) {
-  const Landmark body = BodyInCamera(kCuboidExponent);
-  const auto points = [&] {
-    return std::make_unique<PointCost>(RandomPoints(body, 3), body, SizeForPoints(body),
-                                       PointOptions(), 1.0);
-  };
-  LandmarkCosts costs;
-  const double without_points = NegligibleDecrease(costs);
-  costs.push_back(points());
-  const double with_points = NegligibleDecrease(costs);
-  EXPECT_GT(with_points, without_points);
-  costs.front() = std::make_unique<ViewCost>(points(), RandomRigid(), 0.5);
-  EXPECT_EQ(NegligibleDecrease(costs), with_points);
-}
-
 TEST(PointCostTest, CostsNothingWherePointsAreOnTheSurfaceAndElsewhereSomething) {
   const Landmark cuboid = BodyInCamera(kCuboidExponent);
   const PointCost term(PointsOnFaces(cuboid, 60), cuboid, SizeForPoints(cuboid), {}, 1.0);
@@ -198,28 +183,6 @@ TEST(PointCostTest, CostsWithOneSizeCanBeCompared) {
   for (int i = 0; i < 20; ++i) {
     const Landmark other = BodyInCamera(RandomUniform(1.2, 2.0));
     EXPECT_NEAR(PointCost({far}, other, 1.0, {}, 1.0).Value(other), cost, 1e-9);
-  }
-}
-
-// A fit of points on the faces of a cuboid with as many of the background comes back from a
-// disturbed start.
-TEST(PointCostTest, PointsDetermineACuboid) {
-  for (int i = 0; i < 5; ++i) {
-    const Landmark truth = BodyInCamera(kCuboidExponent);
-    std::vector<ObjectPoint> points = PointsOnFaces(truth, 150);
-    while (points.size() < 300) {
-      const Eigen::Vector3d point = truth.Centre() + RandomVector(-3.0, 3.0);
-      if (SurfaceDistance(truth, point, nullptr) > 0.0) points.push_back({point});
-    }
-    Landmark landmark = Moved(truth, 0.03 * LandmarkModel::Vector::Random());
-    const PointCost term(points, landmark, SizeForPoints(landmark), {}, 1.0);
-    for (int step = 0; step < 50; ++step) {
-      LandmarkModel model;
-      term.AddTo(landmark, &model);
-      landmark = Moved(landmark, -model.information.ldlt().solve(model.gradient));
-    }
-    EXPECT_LT((landmark.Centre() - truth.Centre()).norm(), 0.02);
-    EXPECT_LT((landmark.half_axes - truth.half_axes).norm(), 0.04);
   }
 }
 

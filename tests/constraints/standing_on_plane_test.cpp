@@ -27,11 +27,6 @@ Landmark RandomLeaning(const Plane& plane, const ShapeExponents& shape_exponents
   return landmark;
 }
 
-TEST(StandingOnPlane, IsZeroForAnUprightEllipsoidOnThePlane) {
-  ExpectZeroForStandingLandmarks(UprightResiduals);
-  ExpectZeroForStandingLandmarks(LeaningResiduals);
-}
-
 // Unlike pi^T Q* pi, it also tells above the plane from below, and counts metres for any size.
 TEST(StandingOnPlane, CountsTheHeightOverThePlane) {
   for (int i = 0; i < 100; ++i) {

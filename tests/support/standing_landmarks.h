@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <functional>
 #include <numbers>
 
 #include "constraints/parameters.h"
@@ -27,16 +24,6 @@ inline Landmark LyingLandmark() {
   return {{Eigen::Quaterniond(Eigen::AngleAxisd(-std::numbers::pi / 2, Eigen::Vector3d::UnitY())),
            {7, 8, 5}},
           {1, 2, 3}};
-}
-
-// What such residuals have in common, as functions of plane and landmark in the world.
-using PlaneResiduals = std::function<Eigen::Vector3d(const Plane&, const Landmark&)>;
-
-inline void ExpectZeroForStandingLandmarks(const PlaneResiduals& residuals) {
-  for (int i = 0; i < 100; ++i) {
-    const Plane plane = RandomPlane();
-    EXPECT_LT(residuals(plane, RandomStanding(plane)).cwiseAbs().maxCoeff(), 1e-9);
-  }
 }
 
 }  // namespace soslam
