@@ -68,15 +68,6 @@ void ExpectSameCuboid(const Landmark& found, const Landmark& truth) {
   }
 }
 
-TEST(CuboidAt, IsTheTrueCuboidAtItsYawAndCorner) {
-  for (int i = 0; i < 300; ++i) {
-    const TrueCuboid truth = RandomTrueCuboid();
-    const auto found = CuboidAt(truth.view, truth.Yaw(), truth.FarthestColumn());
-    ASSERT_TRUE(found) << i;
-    ExpectSameCuboid(*found, truth.landmark);
-  }
-}
-
 // A camera turned about its optical axis by any angle, also upside down: objects that hang.
 TEST(CuboidAt, IsTheTrueCuboidForACameraInAnyAttitude) {
   for (int i = 0; i < 300; ++i) {
@@ -112,27 +103,6 @@ TEST(CuboidAt, HasTheCornerOnTheLeftAtTheYawThatFacesTheCamera) {
     }
   }
   EXPECT_GT(found_count, 50);
-}
-
-TEST(ProposeCuboids, AllFillTheBoxAndStandOnThePlane) {
-  for (int i = 0; i < 30; ++i) {
-    const TrueCuboid truth = RandomTrueCuboid();
-    const Box box = Disturbed(truth.view.box, 0.1);
-    const CuboidView view = {TestCamera(), box, truth.view.plane_in_camera};
-    const auto proposals = ProposeCuboids(view, 15, 10);
-    EXPECT_GT(proposals.size(), 15u);
-    for (const CuboidProposal& proposal : proposals) {
-      const Landmark& cuboid = proposal.landmark_in_camera;
-      const Box around = BoxAroundCorners(cuboid);
-      EXPECT_NEAR(around.x_min, box.x_min, kTolerancePx);
-      EXPECT_NEAR(around.y_min, box.y_min, kTolerancePx);
-      EXPECT_NEAR(around.x_max, box.x_max, kTolerancePx);
-      EXPECT_NEAR(around.y_max, box.y_max, kTolerancePx);
-      const Plane standing_on = SupportPlaneOf(cuboid);
-      EXPECT_LT((standing_on.normal - view.plane_in_camera.normal).norm(), 1e-9);
-      EXPECT_NEAR(standing_on.offset, view.plane_in_camera.offset, 1e-6);
-    }
-  }
 }
 
 // Planes of any attitude: walls, ceilings, floors that are not in view.

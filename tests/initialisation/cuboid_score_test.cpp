@@ -71,16 +71,6 @@ bool IsPreferred(const SeenCuboid& seen, const CuboidEvidence& evidence) {
 
 constexpr int kTries = 20;
 
-TEST(CuboidCosts, PreferTheTruthWhereEachEdgeIsASegment) {
-  for (int i = 0; i < kTries; ++i) {
-    const SeenCuboid seen = LargeInView();
-    CuboidEvidence evidence = seen.Evidence();
-    evidence.segments = seen.VisibleEdges();
-    const bool shows_one_face = evidence.segments.size() == 4;  // its depth is not seen
-    EXPECT_TRUE(shows_one_face || IsPreferred(seen, evidence)) << i;
-  }
-}
-
 // The segment detector leaves out edges, and joins some that are almost in line.
 TEST(CuboidCosts, MostlyPreferTheTruthInImages) {
   int preferred = 0;

@@ -64,30 +64,5 @@ TEST(FitUpright, LowersTheCostThatItReportsAndKeepsWhatItIsTold) {
   }
 }
 
-// From starts as the sweep over yaw has them, one run of the solver is enough.
-TEST(FitUpright, GainsNothingWhenItIsRunAgain) {
-  constexpr int kBodies = 300;
-  int unfinished = 0;
-  double largest_gain = 0.0;
-  for (int i = 0; i < kBodies; ++i) {
-    const ObservedBody body(RandomUniform(1, 2));
-    const UprightObservation observation = body.Observe(Disturbed(body.box, 0.02));
-    const auto start = SolveAtYaw(observation, body.Yaw() + RandomUniform(-0.05, 0.05));
-    ASSERT_TRUE(start);
-    const auto terms = BoxAndRatio(observation.edges, observation.prior, *start);
-    const auto once = FitUpright(body.plane, *start, terms, /*yaw_is_free=*/true);
-    ASSERT_TRUE(once);
-    auto again = once;
-    for (int run = 0; run < 20 && again; ++run) {
-      again = FitUpright(body.plane, again->landmark, terms, /*yaw_is_free=*/true);
-    }
-    ASSERT_TRUE(again);
-    EXPECT_LE(again->cost, once->cost + 1e-9);
-    unfinished += again->cost < once->cost - 1e-3 ? 1 : 0;
-    largest_gain = std::max(largest_gain, once->cost - again->cost);
-  }
-  EXPECT_LE(unfinished, kBodies / 100) << "largest gain " << largest_gain;
-}
-
 }  // namespace
 }  // namespace soslam

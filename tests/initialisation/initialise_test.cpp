@@ -46,20 +46,12 @@ TEST(InitialiseUpright, HasUprightHypothesesInTheOrderOfTheirCosts) {
     EXPECT_EQ(estimate.detection_index, static_cast<int>(i));
     EXPECT_EQ(estimate.failure, "");
     ASSERT_FALSE(estimate.hypotheses.empty());
-    EXPECT_TRUE(
-        std::is_sorted(estimate.hypotheses.begin(), estimate.hypotheses.end(),
-                       [](const auto& one, const auto& other) { return one.cost < other.cost; }));
-    const ShapePrior& prior = *priors[detection.object_index];
-    const Plane& plane = detection.plane_in_camera;
+    EXPECT_TRUE(std::ranges::is_sorted(estimate.hypotheses, {}, &Hypothesis::cost));
     for (const Hypothesis& hypothesis : estimate.hypotheses) {
       const Landmark& landmark = hypothesis.landmark_in_camera;
-      EXPECT_GE(hypothesis.cost, 0.0);
-      EXPECT_EQ(landmark.shape_exponents, prior.shape_exponents);
-      EXPECT_TRUE(IsInFront(landmark));
-      EXPECT_NEAR(plane.SignedDistance(landmark.Centre()), landmark.half_axes.z(), 1e-9);
-      EXPECT_LT(
-          (landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ() - plane.normal).norm(),
-          1e-9);
+      EXPECT_EQ(landmark.shape_exponents, priors[detection.object_index]->shape_exponents);
+      EXPECT_NEAR(detection.plane_in_camera.SignedDistance(landmark.Centre()),
+                  landmark.half_axes.z(), 1e-9);
     }
   }
 }

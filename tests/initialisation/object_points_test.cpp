@@ -49,19 +49,6 @@ TEST(FindObjectPointsTest, PointsOnThePlaneAndOutsideBoxesAreNotOfTheObject) {
   EXPECT_TRUE(found[0].empty());
 }
 
-TEST(FindObjectPointsTest, TheWorldOfThePointsDoesNotMatter) {
-  const Sequence sequence = CuboidSequence(1, 12);
-  const Eigen::Vector3d top = OnAxis(sequence, 1.0);
-  MapPoint point = Seen(sequence, top);
-  point.position_in_world = {100.0, 200.0, 300.0};
-  const auto found = FindObjectPoints(sequence, {point}, {});
-  ASSERT_EQ(found[0].size(), 1u);
-  const Detection& detection = sequence.detections[found[0][0].detection_index];
-  const Eigen::Vector3d in_world =
-      sequence.FrameOf(detection).world_from_camera * found[0][0].points[0].position;
-  EXPECT_LT((in_world - top).norm(), 1e-6);
-}
-
 // Options with which points of a scene without errors say much.
 PointOptions ExactPoints() {
   PointOptions options;
@@ -160,27 +147,6 @@ TEST(PointsInFramesTest, MakeSingleFramesBetter) {
       MeanErrorsOf(sequence, InitialiseUpright(noisy, priors, options, 2, {}, &points));
   EXPECT_LT(with.yaw, 0.5 * without.yaw);
   EXPECT_LT(with.log_size, 0.7 * without.log_size);
-}
-
-TEST(PointsInFramesTest, OutsideBoxesChangeNothing) {
-  const Sequence sequence = CuboidSequence(3, 6);
-  std::vector<MapPoint> above;
-  for (size_t i = 0; i < sequence.objects.size(); ++i) {
-    above.push_back(Seen(sequence, TrueBody(sequence, i).Centre() + Eigen::Vector3d(0, 0, 20.0)));
-  }
-  const auto priors = TrueCuboidPriors(sequence, 0.2);
-  const PointsInFrames points(sequence, above, ExactPoints());
-  const LandmarkEstimates without = InitialiseUpright(sequence, priors, {}, 2);
-  const LandmarkEstimates with = InitialiseUpright(sequence, priors, {}, 2, {}, &points);
-  for (size_t i = 0; i < without.observations.size(); ++i) {
-    const auto& expected = without.observations[i].hypotheses;
-    const auto& found = with.observations[i].hypotheses;
-    ASSERT_EQ(found.size(), expected.size());
-    for (size_t k = 0; k < found.size(); ++k) {
-      EXPECT_EQ(found[k].cost, expected[k].cost);
-      EXPECT_EQ(found[k].landmark_in_camera.half_axes, expected[k].landmark_in_camera.half_axes);
-    }
-  }
 }
 
 }  // namespace

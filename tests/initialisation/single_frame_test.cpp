@@ -88,18 +88,6 @@ TEST(SingleFrame, RefusesAPlaneThatIsNotInView) {
   EXPECT_EQ(solution.failure, "support_plane_not_in_view");
 }
 
-TEST(SingleFrame, SurvivesBoxesThatNoLandmarkExplains) {
-  for (const Box& box : {Box{300, 200, 300.5, 400}, {10, 300, 630, 301}, {300, 300, 301, 301}}) {
-    Standing standing(0.5, {0.4, 0.2, 0.3});
-    standing.observation.box = box;
-    for (const auto& hypothesis :
-         InitialiseFromSingleFrame(standing.observation, InitialiseOptions()).hypotheses) {
-      EXPECT_TRUE(hypothesis.landmark_in_camera.Centre().allFinite());
-      EXPECT_TRUE(hypothesis.landmark_in_camera.half_axes.allFinite());
-    }
-  }
-}
-
 TEST(InitialiseSvd, RecoversExactQuadricsFromExactViews) {
   const Sequence sequence = SyntheticSequence(RandomScene(3, 5, 20), false);
   const auto detections = DetectionsByObject(sequence);
@@ -119,25 +107,6 @@ TEST(InitialiseSvd, RecoversExactQuadricsFromExactViews) {
     ++recovered;
   }
   EXPECT_GE(recovered, 3);
-}
-
-TEST(InitialiseSingleFrame, NamesWhatItCannotDoAndDoesNotDependOnThreads) {
-  const Sequence sequence = SyntheticSequence(RandomScene(3, 4, 8), false);
-  std::vector<std::optional<Eigen::Vector2d>> ratios =
-      ObjectRatios(sequence, SemanticTable(), RatioPrior::kGroundTruth);
-  const int without = sequence.detections.front().object_index;
-  ratios[without].reset();
-  const auto one = InitialiseSingleFrame(sequence, ratios, InitialiseOptions(), 1);
-  const auto two = InitialiseSingleFrame(sequence, ratios, InitialiseOptions(), 2);
-  for (size_t i = 0; i < one.observations.size(); ++i) {
-    if (sequence.detections[i].object_index == without) {
-      EXPECT_EQ(one.observations[i].failure, "no_ratio_for_label");
-    }
-    ASSERT_EQ(one.observations[i].hypotheses.size(), two.observations[i].hypotheses.size());
-    for (size_t k = 0; k < one.observations[i].hypotheses.size(); ++k) {
-      EXPECT_EQ(one.observations[i].hypotheses[k].cost, two.observations[i].hypotheses[k].cost);
-    }
-  }
 }
 
 }  // namespace

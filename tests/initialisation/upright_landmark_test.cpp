@@ -8,26 +8,6 @@
 namespace soslam {
 namespace {
 
-TEST(UprightLandmark, StandsUprightOnItsPlane) {
-  for (const ShapeExponents& p : kShapeExponents) {
-    for (int i = 0; i < 20; ++i) {
-      const Plane plane = RandomPlane();
-      const Landmark landmark = UprightGround(plane).LandmarkAt(RandomUprightParameters(), p);
-      EXPECT_LT(
-          (landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ() - plane.normal).norm(),
-          1e-12);
-      EXPECT_EQ(landmark.shape_exponents, p);
-      const SupportPoint lowest = FindSupportPoint(landmark, -plane.normal);
-      // Rounded edges reach beyond the body itself by a thousandth of its size.
-      const double rounding = kEdgeRounding * (2.0 - SmallerExponent(p)) * landmark.half_axes.sum();
-      EXPECT_NEAR(-lowest.extent + plane.offset, 0.0, 1e-12 + rounding) << p;
-      for (int k = 0; k < 20; ++k) {
-        EXPECT_GE(plane.SignedDistance(RandomSurfacePoint(landmark)), -1e-12) << p;
-      }
-    }
-  }
-}
-
 TEST(UprightLandmark, HasTheGivenYawFootAndHalfAxesAndTellsThem) {
   for (int i = 0; i < 100; ++i) {
     const Plane plane = RandomPlane();

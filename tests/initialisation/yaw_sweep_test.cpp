@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "initialisation/yaw_sweep.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,14 +10,11 @@
 
 #include "geometry/angles.h"
 #include "initialisation/upright_observation.h"
-#include "support/level_sequence.h"
 #include "support/shape_exponents.h"
 #include "support/upright_bodies.h"
 
 namespace soslam {
 namespace {
-
-using testing::IsEmpty;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -47,8 +43,6 @@ TEST(CircularMinima, AreSortedAndOfPlateausTheFirstIndices) {
   for (const auto& one : cases) EXPECT_EQ(CircularMinima(one.values), one.minima);
 }
 
-constexpr double kStep = 3.0 * kRadPerDeg;
-
 Landmark LandmarkOf(const UprightObservation& observation, const UprightFit& fit) {
   return UprightGround(observation.plane_in_camera)
       .LandmarkAt(fit.parameters, observation.prior.shape_exponents);
@@ -74,25 +68,6 @@ TEST(SweepYaw, CoversHalfATurnWithLandmarksAtTheirYaws) {
       EXPECT_TRUE(IsInFront(landmark));
     }
   }
-}
-
-TEST(SweepYaw, IsEmptyWhereThePlaneIsNotInView) {
-  ObservedBody body(1.5);
-  body.observation.plane_in_camera.offset = -1.0;
-  const YawSweep sweep = SweepYaw(body.observation, {}, kStep);
-  for (const double cost : sweep.Costs()) EXPECT_TRUE(std::isnan(cost));
-  EXPECT_THAT(LocalOptima(body.observation, {}, sweep, /*max_count=*/1000), IsEmpty());
-}
-
-TEST(SceneAxisInCamera, IsThatOfTheObjectsPlane) {
-  Sequence sequence = LevelSequence({{300, 250, 340, 300}});
-  const Detection& detection = sequence.detections.front();
-  sequence.frames.front().world_from_camera = RandomRigid();
-  EXPECT_FALSE(SceneAxisInCamera(sequence, detection));
-  const Eigen::Vector3d axis = RandomDirection();
-  sequence.planes.front().scene_axis_in_world = axis;
-  const Eigen::Vector3d in_camera = SceneAxisInCamera(sequence, detection).value();
-  EXPECT_LT((sequence.frames.front().world_from_camera.rotation * in_camera - axis).norm(), 1e-12);
 }
 
 // A sweep whose costs are a function of the yaw.

@@ -166,15 +166,6 @@ TEST(TangencyBackEnd, WhatMovesIsNoLandmark) {
   EXPECT_EQ(map.solver.residuals.at("support"), 2);
 }
 
-TEST(TangencyBackEnd, ComesBackFromADisturbedStart) {
-  const Sequence sequence = CuboidSequence(5, 20);
-  BackEndInput input = TruthInput(sequence);
-  Disturb(&input);
-  const MapEstimate map = OptimiseMap(input, TangencyOptions());
-  ExpectTruth(sequence, map, 0.97);
-  EXPECT_LT(map.solver.final_cost, 1e-3 * map.solver.initial_cost);
-}
-
 // A bias of all boxes looks like larger or nearer objects: ratios and poses have to be known.
 TEST(TangencyBackEnd, FindsTheBiasOfTheDetector) {
   Sequence sequence = CuboidSequence(5, 20);

@@ -132,12 +132,6 @@ TEST(EdgeCost, PointsInNearerBoxesAndOutsideTheImageCostAsMuchAsCanBe) {
     const double share = 1.0 - static_cast<double>(visible) / static_cast<double>(points.size());
     EXPECT_NEAR(2.0 * term.ConstantCost(), share * LargestCost(image->box, options), 1e-9);
   }
-  const Landmark truth = Cuboid(0.3);
-  const auto hidden = ImageOf(truth, {{0, 0, 640, 480}});
-  const EdgeCost term(hidden, camera, truth, options);
-  EXPECT_EQ(term.NumPoints(), 0);
-  EXPECT_NEAR(2.0 * term.ConstantCost(), LargestCost(hidden->box, options), 1e-9);
-  EXPECT_NEAR(term.Support(truth), 0.0, 1e-12);
 }
 
 // A distance in steps that single precision holds exactly.

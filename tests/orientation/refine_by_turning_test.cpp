@@ -5,7 +5,6 @@
 
 #include <limits>
 #include <opencv2/imgproc.hpp>
-#include <set>
 
 #include "geometry/angles.h"
 #include "orientation/symmetry_samples.h"
@@ -72,26 +71,6 @@ TEST_F(SyntheticTexture, ImprovedDtIsLowestAtTheTrueYaw) {
   }
   EXPECT_GE(observations, 30);
   EXPECT_GE(near_truth, 0.9 * observations) << observations;
-}
-
-TEST_F(SyntheticTexture, DescriptorsTogetherCostWhatEachCostsAlone) {
-  const Detection& detection = sequence_->detections.front();
-  const SymmetryImage image(maps_->at(0), detection.box);
-  const Landmark landmark = RotatedAboutZ(TrueLandmark(detection), 4.0 * kRadPerDeg);
-  const SymmetryOptions options;
-  const auto samples = SamplePixels(image, sequence_->camera, landmark, options);
-  std::vector<Descriptor> all;
-  for (size_t i = 0; i < kDescriptorNames.size(); ++i) all.push_back(static_cast<Descriptor>(i));
-  const auto together = SymmetryCosts(image, sequence_->camera, landmark, samples, all, options);
-  std::set<double> costs;
-  for (size_t i = 0; i < all.size(); ++i) {
-    const auto alone =
-        SymmetryCosts(image, sequence_->camera, landmark, samples, {all[i]}, options);
-    ASSERT_TRUE(alone.front()) << kDescriptorNames[i];
-    EXPECT_EQ(together[i], alone.front()) << kDescriptorNames[i];
-    costs.insert(*alone.front());
-  }
-  EXPECT_EQ(costs.size(), all.size());  // no two of them are the same
 }
 
 // Nearest edges on the surface by what the definition says, edge by edge.

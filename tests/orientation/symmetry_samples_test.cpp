@@ -22,22 +22,17 @@ TEST(SamplePixels, EdgesAreTheEdgePixelsInTheBoxThatShowTheBody) {
   SymmetryOptions options;
   options.sampling = Sampling::kEdges;
   options.max_edge_pixels = 1000000;
-  const auto all = SamplePixels(SymmetryImage(maps, box), TestCamera(), landmark, options);
   const VisibleSurface surface(TestCamera(), landmark);
-  size_t expected = 0;
+  std::vector<Eigen::Vector2d> expected;
   for (int y = 200; y <= 300; ++y) {
     for (int x = 250; x <= 400; ++x) {
-      const bool counts = maps.edges.at<unsigned char>(y, x) != 0 &&
-                          surface.FromPixel(Eigen::Vector2d(x, y)).has_value();
-      expected += counts ? 1 : 0;
+      const Eigen::Vector2d pixel(x, y);
+      const bool is_edge = maps.edges.at<unsigned char>(y, x) != 0;
+      if (is_edge && surface.FromPixel(pixel)) expected.push_back(pixel);
     }
   }
-  EXPECT_EQ(all.size(), expected);
-  EXPECT_GT(expected, 50u);
-  for (const Eigen::Vector2d& pixel : all) {
-    EXPECT_NE(
-        maps.edges.at<unsigned char>(static_cast<int>(pixel.y()), static_cast<int>(pixel.x())), 0);
-  }
+  EXPECT_GT(expected.size(), 50u);
+  EXPECT_EQ(SamplePixels(SymmetryImage(maps, box), TestCamera(), landmark, options), expected);
   options.max_edge_pixels = 60;
   const auto thinned = SamplePixels(SymmetryImage(maps, box), TestCamera(), landmark, options);
   EXPECT_LE(thinned.size(), 60u);

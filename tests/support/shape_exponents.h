@@ -33,10 +33,6 @@ inline std::ostream& operator<<(std::ostream& stream, const ShapeExponents& expo
   return stream << exponents.horizontal << ", " << exponents.vertical;
 }
 
-inline double SmallerExponent(const ShapeExponents& exponents) {
-  return std::min(exponents.horizontal, exponents.vertical);
-}
-
 inline Landmark WithShape(Landmark landmark, const ShapeExponents& exponents) {
   landmark.shape_exponents = exponents;
   return landmark;

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 #include "initialisation/closed_form.h"
 #include "initialisation/yaw_sweep.h"
@@ -101,13 +100,6 @@ inline Box Disturbed(const Box& box, double fraction) {
   const auto shift = [&](double side) { return fraction * side * RandomUniform(-1.0, 1.0); };
   return {box.x_min + shift(box.Width()), box.y_min + shift(box.Height()),
           box.x_max + shift(box.Width()), box.y_max + shift(box.Height())};
-}
-
-// The same body, called by its other horizontal axis.
-inline Landmark WithAxesExchanged(const Landmark& landmark) {
-  Landmark exchanged = RotatedAboutZ(landmark, 0.5 * std::numbers::pi);
-  std::swap(exchanged.half_axes.x(), exchanged.half_axes.y());
-  return exchanged;
 }
 
 // The angle (rad) between the fronts of two upright landmarks, front and back being the same.
