@@ -50,27 +50,6 @@ TEST(SolveAtYaw, StandsOnThePlaneAtTheYawWithThePriorsRatio) {
   }
 }
 
-TEST(SolveAtYaw, HasNoBodyThatIsNotInFrontOfTheCameraForBoxesThatNoneExplains) {
-  int none = 0;
-  constexpr int kBoxes = 1000;
-  for (int i = 0; i < kBoxes; ++i) {
-    const Eigen::Vector4d sides =
-        Eigen::Vector4d::NullaryExpr([] { return RandomUniform(1, 500); });
-    const Box box{300.0 - sides(0), 300.0 - sides(1), 300.0 + sides(2), 300.0 + sides(3)};
-    const ShapePrior prior{{std::exp(RandomUniform(-4, 4)), std::exp(RandomUniform(-4, 4))},
-                           {1, 1},
-                           RandomUniform(1, 2)};
-    const auto landmark = SolveAtYaw(ObservationOf(box, {}, RandomFloor(), prior), RandomYaw());
-    none += landmark ? 0 : 1;
-    if (!landmark) continue;
-    EXPECT_TRUE(landmark->Centre().allFinite() && landmark->half_axes.allFinite());
-    EXPECT_GT(landmark->half_axes.minCoeff(), 0.0);
-    EXPECT_TRUE(IsInFront(*landmark));
-  }
-  EXPECT_GT(none, kBoxes / 100);
-  EXPECT_LT(none, kBoxes / 2);
-}
-
 // Moves one edge outwards (inwards where negative) by a fraction of the box.
 Box WithEdgeMoved(Box box, size_t edge, double fraction) {
   double* sides[] = {&box.x_min, &box.y_min, &box.x_max, &box.y_max};

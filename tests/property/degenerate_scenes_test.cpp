@@ -60,6 +60,14 @@ std::function<void(Sequence*)> Boxes(const std::function<Box(const Box&)>& other
   return Each([=](Detection* detection) { detection->box = other(detection->box); });
 }
 
+std::function<void(Sequence*)> Scaled(double factor) {
+  return [=](Sequence* sequence) {
+    for (Frame& frame : sequence->frames) frame.world_from_camera.translation *= factor;
+    for (SupportPlane& plane : sequence->planes) plane.plane_in_world.offset *= factor;
+    SeePlanesFromPoses(sequence);
+  };
+}
+
 constexpr const char* kNoDegeneracy = "None";  // what has an answer
 
 std::vector<Degeneracy> Degeneracies() {
@@ -139,18 +147,8 @@ std::vector<Degeneracy> Degeneracies() {
          MoveCameras([](size_t i) { return Vector3d(1e6, -1e6, 1e5 + static_cast<double>(i)); },
                      sequence);
        }},
-      {"Huge",
-       [](Sequence* sequence) {
-         for (Frame& frame : sequence->frames) frame.world_from_camera.translation *= 1e6;
-         for (SupportPlane& plane : sequence->planes) plane.plane_in_world.offset *= 1e6;
-         SeePlanesFromPoses(sequence);
-       }},
-      {"Tiny",
-       [](Sequence* sequence) {
-         for (Frame& frame : sequence->frames) frame.world_from_camera.translation *= 1e-6;
-         for (SupportPlane& plane : sequence->planes) plane.plane_in_world.offset *= 1e-6;
-         SeePlanesFromPoses(sequence);
-       }},
+      {"Huge", Scaled(1e6)},
+      {"Tiny", Scaled(1e-6)},
       {"NoDetections", [](Sequence* sequence) { sequence->detections.clear(); }},
   };
 }
