@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "support/numeric_derivatives.h"
 #include "support/shape_exponents.h"
 
 namespace soslam {
@@ -46,29 +45,6 @@ TEST(BodySurface, GradientIsTheOutwardNormal) {
       // The body reaches no farther than the tangent plane, gradient . x = 1.
       const SupportValue support = SupportFunction(ray.half_axes, p, gradient);
       EXPECT_NEAR(support.extent, 1.0, kEdgeRounding * gradient.norm() * ray.half_axes.sum()) << p;
-    }
-  }
-}
-
-TEST(BodySurface, GradientChangesAsItSays) {
-  for (const ShapeExponents& p : kShapeExponents) {
-    for (int i = 0; i < 20; ++i) {
-      const Eigen::Vector3d half_axes = RandomVector(0.2, 1.0);
-      const Eigen::Vector3d point = half_axes.cwiseProduct(RandomVector(-0.9, 0.9));
-      const BodySurface surface(half_axes, p);
-      const Eigen::Matrix3d hessian = surface.Hessian(point);
-      const Eigen::Matrix3d by_axes = -hessian * Eigen::Matrix3d(point.asDiagonal()) -
-                                      Eigen::Matrix3d(surface.Gradient(point).asDiagonal());
-      const auto at_point = [&](const Eigen::Vector3d& at) { return surface.Gradient(at); };
-      const auto of_log_half_axes = [&](const Eigen::Vector3d& at) {
-        return BodySurface(at.array().exp(), p).Gradient(point);
-      };
-      const Eigen::Matrix3d error = hessian - NumericDerivatives(at_point, point);
-      const Eigen::Matrix3d error_by_axes =
-          by_axes - NumericDerivatives(of_log_half_axes, half_axes.array().log());
-      const double tolerance = 1e-5 * (1.0 + hessian.norm());
-      EXPECT_LT(error.colwise().norm().maxCoeff(), tolerance) << p;
-      EXPECT_LT(error_by_axes.colwise().norm().maxCoeff(), tolerance) << p;
     }
   }
 }

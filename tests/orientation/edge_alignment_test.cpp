@@ -162,22 +162,6 @@ TEST(EdgeCost, DerivativesAgreeWithNumbers) {
   }
 }
 
-// So far apart that some bodies have a single one.
-TEST(EdgeCost, InformationOfOnePointIsThatOfItsGradient) {
-  const auto image = ImageOf(LinearMaps(SmallDistance));
-  EdgeOptions options = AnyDirection();
-  options.edge_spacing_px = 1000.0;
-  int checked = 0;
-  for (int i = 0; i < 1000 && checked < 10; ++i) {
-    const Landmark landmark = CuboidView().LandmarkInCamera();
-    const EdgeCost term(image, TestCamera(), landmark, options);
-    if (term.NumPoints() != 1) continue;
-    ExpectInformationOfOneResidual(term, landmark);
-    ++checked;
-  }
-  EXPECT_EQ(checked, 10);
-}
-
 // Seen from right in front, all edges of a cuboid are vertical or horizontal in the image: of a
 // vertical image edge everywhere, the latter are as far away as can be.
 TEST(EdgeCost, EdgesInAnotherDirectionCountAsFarAway) {

@@ -146,22 +146,6 @@ TEST(AsymmetryCost, DerivativesAgreeWithNumbersWithAMirrorPlaneBesideTheCentre) 
   ExpectCorrectGradients(texture, Descriptor::kDistanceTransform);
 }
 
-TEST(AsymmetryCost, InformationOfOnePairIsThatOfItsGradient) {
-  const auto middle = SharedImage({300, 220, 340, 260});
-  SymmetryOptions options = EverywhereInTheImage(Descriptor::kLinearisedDt);
-  options.uniform_columns = 1;
-  options.min_pairs = 1;
-  int checked = 0;
-  for (int i = 0; i < 100; ++i) {
-    const Landmark landmark = FacingView().LandmarkInCamera();
-    const AsymmetryCost term(middle, TestCamera(), landmark, Texture(4.0, 0.3), options, 0.7);
-    if (term.NumPairs() != 1) continue;
-    ExpectInformationOfOneResidual(term, landmark);
-    ++checked;
-  }
-  EXPECT_GT(checked, 10);
-}
-
 TEST(AsymmetryCost, CountsPairsThatLeaveTheSurfaceAsAsymmetric) {
   Landmark landmark = FacingView().LandmarkInCamera();
   const AsymmetryCost term(SharedImage(), TestCamera(), landmark, Texture(4.0, 0.3),

@@ -31,16 +31,6 @@ inline void ExpectCorrectGradient(const LandmarkCost& cost, const Landmark& land
                    [&](const Landmark& moved) { return cost.Value(moved); });
 }
 
-// For a single residual r with gradient g = J^T r: J^T J = g g^T / r^2.
-inline void ExpectInformationOfOneResidual(const LandmarkCost& cost, const Landmark& landmark) {
-  LandmarkModel model;
-  cost.AddTo(landmark, &model);
-  ASSERT_GT(model.gradient.norm(), 0.0);
-  const LandmarkModel::Matrix expected =
-      model.gradient * model.gradient.transpose() / (2.0 * model.cost);
-  EXPECT_LT((model.information - expected).norm(), 1e-9 * expected.norm());
-}
-
 inline void ExpectSameModels(const LandmarkModel& one, const LandmarkModel& other) {
   EXPECT_NEAR(one.cost, other.cost, 1e-9 * (1.0 + other.cost));
   EXPECT_LT((one.gradient - other.gradient).norm(), 1e-9 * (1.0 + other.gradient.norm()));
