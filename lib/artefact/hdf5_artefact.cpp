@@ -61,21 +61,6 @@ nlohmann::json ReadArtefactHeader(const std::filesystem::path& path) {
 
 namespace {
 
-// Pixels are an n x 2 data set of float32.
-void WritePixels(const std::string& name, const std::vector<Eigen::Vector2f>& pixels,
-                 Hdf5File* file) {
-  cv::Mat matrix(static_cast<int>(pixels.size()), 2, CV_32FC1);
-  std::ranges::copy(pixels, matrix.ptr<Eigen::Vector2f>());
-  file->WriteMatrix(name, matrix);
-}
-
-std::vector<Eigen::Vector2f> ReadPixels(const Hdf5File& file, const std::string& name,
-                                        int count = Hdf5File::kAny) {
-  const cv::Mat matrix = file.ReadMatrix(name, CV_32FC1, count, 2);
-  const auto* pixels = matrix.ptr<Eigen::Vector2f>();
-  return {pixels, pixels + matrix.rows};
-}
-
 constexpr const char* kEdgesKind = "edges";
 
 constexpr const char* kFrames = "/frames";
@@ -110,7 +95,7 @@ void EdgesWriter::Write(int frame_id, const EdgeMaps& maps) {
   file_.WriteMatrix(group + "/edges", maps.edges);
   file_.WriteMatrix(group + "/distance", maps.distance);
   file_.WriteMatrix(group + "/nearest_edge", maps.nearest_edge);
-  WritePixels(group + "/corners", maps.corners, &file_);
+  file_.WriteRows(group + "/corners", maps.corners);
 }
 
 void EdgesWriter::Commit() {
@@ -150,7 +135,7 @@ EdgeMaps EdgesReader::Read(int frame_id) const {
   maps.distance = read("/distance", CV_32FC1);
   maps.nearest_edge = read("/nearest_edge", CV_16SC2);
   CheckNearestEdges(maps.nearest_edge, file_.path().string() + ": " + group + "/nearest_edge");
-  maps.corners = ReadPixels(file_, group + "/corners");
+  maps.corners = file_.ReadRows<Eigen::Vector2f>(group + "/corners");
   return maps;
 }
 
@@ -167,8 +152,8 @@ void WriteRecord(const SymmetryRecord& record, Hdf5File* file) {
   for (const auto& [descriptor, cost] : record.cost) {
     file->WriteVector(group + "/cost/" + descriptor, cost);
   }
-  WritePixels(group + "/samples", record.samples, file);
-  WritePixels(group + "/mirrored", record.mirrored, file);
+  file->WriteRows(group + "/samples", record.samples);
+  file->WriteRows(group + "/mirrored", record.mirrored);
   file->WriteNumber(group, "frame_id", record.frame_id);
   file->WriteNumber(group, "object_id", record.object_id);
   file->WriteNumber(group, "initial_yaw", record.initial_yaw);
@@ -196,8 +181,9 @@ SymmetryRecord ReadRecord(const Hdf5File& file, const std::string& group) {
   for (const std::string& descriptor : file.Children(group + "/cost")) {
     record.cost[descriptor] = file.ReadVector<double>(group + "/cost/" + descriptor, yaws);
   }
-  record.samples = ReadPixels(file, group + "/samples");
-  record.mirrored = ReadPixels(file, group + "/mirrored", static_cast<int>(record.samples.size()));
+  record.samples = file.ReadRows<Eigen::Vector2f>(group + "/samples");
+  record.mirrored =
+      file.ReadRows<Eigen::Vector2f>(group + "/mirrored", static_cast<int>(record.samples.size()));
   record.initial_yaw = file.ReadNumber(group, "initial_yaw");
   record.refined_yaw = file.ReadNumber(group, "refined_yaw");
   if (file.HasAttribute(group, "yaw_sigma")) {

@@ -26,6 +26,9 @@ static_assert(std::is_same_v<hid_t, std::int64_t> && std::is_same_v<herr_t, int>
 // Limit beyond any image that can be processed; a damaged size must not exhaust the memory.
 constexpr std::uint64_t kMaxValues = std::uint64_t{1} << 28;
 
+// Largest compression ratio of deflate, reached for zeros.
+constexpr std::uint64_t kMaxPacking = 1032;
+
 constexpr const char* kDamaged = "cannot be read; the file is cut short or damaged";
 
 // The prefixes of "/a/b/c": "/a", "/a/b", "/a/b/c".
@@ -44,6 +47,10 @@ std::string Describe(const std::vector<int>& expected, const char* element) {
     sizes.push_back(size == Hdf5File::kAny ? "any" : std::to_string(size));
   }
   return fmt::format("{} of {}", fmt::join(sizes, " x "), element);
+}
+
+size_t CountOf(const ArrayShape& shape) {
+  return std::accumulate(shape.begin(), shape.end(), size_t{1}, std::multiplies<>());
 }
 
 bool Matches(const ArrayShape& shape, const std::vector<int>& expected) {
@@ -144,33 +151,33 @@ void Hdf5File::WriteArray(const std::string& name, const ArrayShape& shape, int 
   const Hdf5Handle space{H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr),
                          &H5Sclose};
   const Hdf5Handle creation = Hdf5DataSetCreation(shape);
-  Hdf5Handle data_set{H5Dcreate2(file_.id(), name.c_str(), element.file_type, space.id(),
-                                 H5P_DEFAULT, creation.id(), H5P_DEFAULT),
+  Hdf5Handle data_set{H5Dcreate2(file_.id(), name.c_str(), element.type, space.id(), H5P_DEFAULT,
+                                 creation.id(), H5P_DEFAULT),
                       &H5Dclose};
-  const bool written = data_set.valid() && H5Dwrite(data_set.id(), element.memory_type, H5S_ALL,
-                                                    H5S_ALL, H5P_DEFAULT, values) >= 0;
+  const bool written = data_set.valid() && H5Dwrite(data_set.id(), element.type, H5S_ALL, H5S_ALL,
+                                                    H5P_DEFAULT, values) >= 0;
   if (!data_set.Close() || !written) FailWriting(name);
 }
 
-void Hdf5File::WriteAttribute(const std::string& owner, const std::string& name,
-                              std::int64_t file_type, std::int64_t memory_type, const void* value) {
+void Hdf5File::WriteAttribute(const std::string& owner, const std::string& name, std::int64_t type,
+                              const void* value) {
   errno = 0;
   const Hdf5Handle space{H5Screate(H5S_SCALAR), &H5Sclose};
-  const Hdf5Handle attribute{H5Acreate_by_name(file_.id(), owner.c_str(), name.c_str(), file_type,
+  const Hdf5Handle attribute{H5Acreate_by_name(file_.id(), owner.c_str(), name.c_str(), type,
                                                space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                              &H5Aclose};
-  const bool written = attribute.valid() && H5Awrite(attribute.id(), memory_type, value) >= 0;
+  const bool written = attribute.valid() && H5Awrite(attribute.id(), type, value) >= 0;
   if (!written) FailWriting(owner + " attribute " + name);
 }
 
 void Hdf5File::WriteText(const std::string& owner, const std::string& name,
                          const std::string& text) {
   const Hdf5Handle type = Hdf5TextType(text.size());
-  WriteAttribute(owner, name, type.id(), type.id(), text.c_str());
+  WriteAttribute(owner, name, type.id(), text.c_str());
 }
 
 void Hdf5File::WriteNumber(const std::string& owner, const std::string& name, double number) {
-  WriteAttribute(owner, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &number);
+  WriteAttribute(owner, name, H5T_IEEE_F64LE, &number);
 }
 
 void Hdf5File::Close() {
@@ -244,7 +251,6 @@ ArrayShape Hdf5File::ShapeOf(const std::string& name, const Hdf5Handle& data_set
                                     kMaxValues));
     }
   }
-  if (const auto problem = StorageProblem(data_set, shape, Size())) FailReading(name, *problem);
   return shape;
 }
 
@@ -253,7 +259,7 @@ ArrayShape Hdf5File::CheckedShape(const std::string& name, const Hdf5Handle& dat
   const Hdf5Element element = Hdf5ElementOf(depth);
   const Hdf5Handle type{H5Dget_type(data_set.id()), &H5Tclose};
   ArrayShape shape = ShapeOf(name, data_set);
-  const bool same_type = H5Tequal(type.id(), element.file_type) > 0;
+  const bool same_type = H5Tequal(type.id(), element.type) > 0;
   if (!same_type || !Matches(shape, expected)) {
     FailReading(name, fmt::format("is {} of {}; expected {}", fmt::join(shape, " x "),
                                   same_type ? element.name : "another type",
@@ -265,23 +271,25 @@ ArrayShape Hdf5File::CheckedShape(const std::string& name, const Hdf5Handle& dat
 void Hdf5File::ReadArray(const std::string& name, int depth, const std::vector<int>& expected,
                          const std::function<void*(const ArrayShape&)>& allocate) const {
   const auto element_size = static_cast<size_t>(CV_ELEM_SIZE1(depth));
+  ArrayShape shape;
   std::optional<std::string> chunk;
-  std::span<std::byte> values;
   {
     const Hdf5Lock turn;
-    const Hdf5Element element = Hdf5ElementOf(depth);
-    if (!Has(name)) FailReading(name, "missing; expected " + Describe(expected, element.name));
-    const Hdf5Handle data_set{H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), &H5Dclose};
-    const ArrayShape shape = CheckedShape(name, data_set, depth, expected);
-    values = {static_cast<std::byte*>(allocate(shape)),
-              std::accumulate(shape.begin(), shape.end(), element_size, std::multiplies<size_t>())};
-    chunk = ReadChunk(data_set, shape);
-    if (!chunk && H5Dread(data_set.id(), element.memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                          values.data()) < 0) {
-      FailReading(name, kDamaged);
+    if (!Has(name)) {
+      FailReading(name, "missing; expected " + Describe(expected, Hdf5ElementOf(depth).name));
     }
+    const Hdf5Handle data_set{H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), &H5Dclose};
+    shape = CheckedShape(name, data_set, depth, expected);
+    chunk = ReadChunk(data_set, shape, Size());
   }
-  if (chunk && !DecodeChunk(*chunk, element_size, values)) FailReading(name, kDamaged);
+  const size_t bytes = CountOf(shape) * element_size;
+  if (bytes > 0 && (!chunk || bytes > kMaxPacking * chunk->size())) {
+    FailReading(name,
+                "has not the values that its size says, in this file as one chunk, shuffled and "
+                "deflated; the file is cut short, damaged or of another program");
+  }
+  const std::span<std::byte> values(static_cast<std::byte*>(allocate(shape)), bytes);
+  if (bytes > 0 && !DecodeChunk(*chunk, element_size, values)) FailReading(name, kDamaged);
 }
 
 bool Hdf5File::IsGroup(const std::string& name) const {
@@ -292,14 +300,20 @@ bool Hdf5File::IsGroup(const std::string& name) const {
 Hdf5File::Numbers Hdf5File::ReadNumbers(const std::string& name) const {
   const Hdf5Handle data_set{H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), &H5Dclose};
   if (!data_set.valid()) FailReading(name, "is neither a group nor a data set; expected one");
+  const Hdf5Handle type{H5Dget_type(data_set.id()), &H5Tclose};
   Numbers numbers{ShapeOf(name, data_set), {}};
-  numbers.values.resize(std::accumulate(numbers.shape.begin(), numbers.shape.end(), size_t{1},
-                                        std::multiplies<size_t>()));
-  if (H5Dread(data_set.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
-              numbers.values.data()) < 0) {
-    FailReading(name, kDamaged);
+  for (const int depth : {CV_8U, CV_16S, CV_32S, CV_32F, CV_64F}) {
+    if (H5Tequal(type.id(), Hdf5ElementOf(depth).type) <= 0) continue;
+    cv::Mat stored;
+    ReadArray(name, depth, {numbers.shape.begin(), numbers.shape.end()},
+              [&](const ArrayShape& shape) {
+                stored.create(1, static_cast<int>(CountOf(shape)), depth);
+                return stored.data;
+              });
+    stored.convertTo(numbers.values, CV_64F);
+    return numbers;
   }
-  return numbers;
+  FailReading(name, "is of another type; expected numbers as artefacts have them");
 }
 
 cv::Mat Hdf5File::ReadMatrix(const std::string& name, int type, int rows, int columns) const {
@@ -364,7 +378,7 @@ double Hdf5File::ReadNumber(const std::string& owner, const std::string& name) c
     FailReading(where, "is not one float64; expected one");
   }
   double number;
-  if (H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, &number) < 0) FailReading(where, kDamaged);
+  if (H5Aread(attribute.id(), H5T_IEEE_F64LE, &number) < 0) FailReading(where, kDamaged);
   return number;
 }
 

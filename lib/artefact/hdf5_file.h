@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -62,6 +63,12 @@ class Hdf5File {
   void WriteVector(const std::string& name, const std::vector<T>& values) {
     WriteArray(name, {values.size()}, cv::DataType<T>::depth, values.data());
   }
+  // One row per vector.
+  template <typename Number, int kSize>
+  void WriteRows(const std::string& name,
+                 const std::vector<Eigen::Matrix<Number, kSize, 1>>& vectors) {
+    WriteArray(name, {vectors.size(), kSize}, cv::DataType<Number>::depth, vectors.data());
+  }
   // Attributes of the group or data set `owner`, which exists. A text has no '\0'.
   void WriteText(const std::string& owner, const std::string& name, const std::string& text);
   void WriteNumber(const std::string& owner, const std::string& name, double number);
@@ -83,6 +90,16 @@ class Hdf5File {
     });
     return values;
   }
+  template <typename Vector>
+  std::vector<Vector> ReadRows(const std::string& name, int rows = kAny) const {
+    std::vector<Vector> vectors;
+    ReadArray(name, cv::DataType<typename Vector::Scalar>::depth, {rows, Vector::SizeAtCompileTime},
+              [&](const ArrayShape& shape) {
+                vectors.resize(shape[0]);
+                return vectors.data();
+              });
+    return vectors;
+  }
   std::string ReadText(const std::string& owner, const std::string& name) const;
   double ReadNumber(const std::string& owner, const std::string& name) const;
 
@@ -92,8 +109,7 @@ class Hdf5File {
   bool IsGroup(const std::string& name) const;
   std::vector<std::string> Attributes(const std::string& owner) const;  // sorted
   bool IsText(const std::string& owner, const std::string& attribute) const;
-  // A data set of any of the types above, in row-major order. Each of its values is exactly
-  // representable as double.
+  // A data set of any of the types above, in row-major order.
   struct Numbers {
     ArrayShape shape;
     std::vector<double> values;
@@ -107,18 +123,19 @@ class Hdf5File {
  private:
   Hdf5File(std::filesystem::path path, std::int64_t id);
 
-  void WriteAttribute(const std::string& owner, const std::string& name, std::int64_t file_type,
-                      std::int64_t memory_type, const void* value);
+  void WriteAttribute(const std::string& owner, const std::string& name, std::int64_t type,
+                      const void* value);
   Hdf5Handle OpenAttribute(const std::string& owner, const std::string& name) const;
   std::uint64_t Size() const;  // size of the file, bytes
-  // Shape of a data set. Throws if it has too many values, or more than the file can hold.
+  // Shape of a data set. Throws if it has too many values.
   ArrayShape ShapeOf(const std::string& name, const Hdf5Handle& data_set) const;
   // ShapeOf; also throws if shape or element type differ from the expected ones.
   ArrayShape CheckedShape(const std::string& name, const Hdf5Handle& data_set, int depth,
                           const std::vector<int>& expected) const;
 
   void WriteArray(const std::string& name, const ArrayShape& shape, int depth, const void* values);
-  // Reads into the memory that `allocate` returns for the shape that is found.
+  // Reads into the memory that `allocate` returns for the shape that is found. Throws before that
+  // if the stored bytes cannot hold so many values.
   void ReadArray(const std::string& name, int depth, const std::vector<int>& expected,
                  const std::function<void*(const ArrayShape&)>& allocate) const;
 

@@ -18,15 +18,15 @@ Hdf5Handle PropertyList(hid_t list_class) { return {H5Pcreate(list_class), &H5Pc
 Hdf5Element Hdf5ElementOf(int depth) {
   switch (depth) {
     case CV_8U:
-      return {H5T_STD_U8LE, H5T_NATIVE_UINT8, "uint8"};
+      return {H5T_STD_U8LE, "uint8"};
     case CV_16S:
-      return {H5T_STD_I16LE, H5T_NATIVE_INT16, "int16"};
+      return {H5T_STD_I16LE, "int16"};
     case CV_32S:
-      return {H5T_STD_I32LE, H5T_NATIVE_INT32, "int32"};
+      return {H5T_STD_I32LE, "int32"};
     case CV_32F:
-      return {H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, "float32"};
+      return {H5T_IEEE_F32LE, "float32"};
     case CV_64F:
-      return {H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, "float64"};
+      return {H5T_IEEE_F64LE, "float64"};
     default:
       throw std::logic_error(fmt::format("no HDF5 type for OpenCV depth {}", depth));
   }
@@ -71,73 +71,15 @@ Hdf5Handle Hdf5TextType(size_t length) {
 
 namespace {
 
-// Largest compression ratio of deflate, reached for zeros.
-constexpr std::uint64_t kMaxPacking = 1032;
-
-std::uint64_t BytesOf(const Hdf5Handle& data_set, const ArrayShape& shape) {
-  const Hdf5Handle type{H5Dget_type(data_set.id()), &H5Tclose};
-  std::uint64_t bytes = H5Tget_size(type.id());
-  for (const std::uint64_t size : shape) bytes *= size;
-  return bytes;
-}
-
 H5Z_filter_t Filter(const Hdf5Handle& creation, unsigned int index) {
   unsigned int flags = 0;
   size_t parameters = 0;
   return H5Pget_filter2(creation.id(), index, &flags, &parameters, nullptr, 0, nullptr, nullptr);
 }
 
-// Rejects repeated deflate: with it a few bytes would decompress to more than the memory.
-bool IsPackedAtMostOnce(const Hdf5Handle& creation) {
-  const int filters = H5Pget_nfilters(creation.id());
-  int deflates = 0;
-  for (int i = 0; i < filters; ++i) {
-    const H5Z_filter_t filter = Filter(creation, static_cast<unsigned int>(i));
-    if (filter != H5Z_FILTER_DEFLATE && filter != H5Z_FILTER_SHUFFLE) return false;
-    deflates += filter == H5Z_FILTER_DEFLATE ? 1 : 0;
-  }
-  return filters >= 0 && deflates <= 1;
-}
-
-// Largest stored size of `bytes`: deflate slightly enlarges incompressible data.
-std::uint64_t MostStored(std::uint64_t bytes) {
-  constexpr std::uint64_t kSlack = 1 << 16;
-  return bytes + bytes / 16 + kSlack;
-}
-
-// True if no chunk is larger than the data set, as the library reads whole chunks into memory.
-bool HasChunksWithin(const Hdf5Handle& creation, const ArrayShape& shape) {
-  std::vector<hsize_t> chunk(shape.size());
-  const auto rank = static_cast<int>(shape.size());
-  return H5Pget_chunk(creation.id(), rank, chunk.data()) == rank &&
-         std::equal(chunk.begin(), chunk.end(), shape.begin(), std::less_equal<>());
-}
-
-}  // namespace
-
-std::optional<std::string> StorageProblem(const Hdf5Handle& data_set, const ArrayShape& shape,
-                                          std::uint64_t file_bytes) {
+// True for the properties of Hdf5DataSetCreation.
+bool IsOneChunk(const Hdf5Handle& data_set, const ArrayShape& shape) {
   const Hdf5Handle creation{H5Dget_create_plist(data_set.id()), &H5Pclose};
-  const H5D_layout_t layout = H5Pget_layout(creation.id());
-  if (layout == H5D_VIRTUAL || H5Pget_external_count(creation.id()) != 0) {
-    return "has its values in other files; expected them in this one";
-  }
-  if (layout == H5D_CHUNKED && !HasChunksWithin(creation, shape)) {
-    return "has chunks that are larger than itself; the file is damaged";
-  }
-  if (!IsPackedAtMostOnce(creation)) return "is packed by other filters than shuffle and deflate";
-  const std::uint64_t stored = H5Dget_storage_size(data_set.id());
-  const std::uint64_t bytes = BytesOf(data_set, shape);
-  if (stored > std::min(file_bytes, MostStored(bytes)) || bytes > kMaxPacking * stored) {
-    return "has not the values that its size says; the file is cut short or damaged";
-  }
-  return std::nullopt;
-}
-
-namespace {
-
-// True for what Hdf5DataSetCreation asks for.
-bool IsOneChunk(const Hdf5Handle& creation, const ArrayShape& shape) {
   if (H5Pget_layout(creation.id()) != H5D_CHUNKED || H5Pget_nfilters(creation.id()) != 2) {
     return false;
   }
@@ -149,13 +91,12 @@ bool IsOneChunk(const Hdf5Handle& creation, const ArrayShape& shape) {
 
 }  // namespace
 
-std::optional<std::string> ReadChunk(const Hdf5Handle& data_set, const ArrayShape& shape) {
-  const Hdf5Handle creation{H5Dget_create_plist(data_set.id()), &H5Pclose};
-  if (!IsOneChunk(creation, shape)) return std::nullopt;
+std::optional<std::string> ReadChunk(const Hdf5Handle& data_set, const ArrayShape& shape,
+                                     std::uint64_t max_bytes) {
+  if (!IsOneChunk(data_set, shape)) return std::nullopt;
   const std::vector<hsize_t> begin(shape.size());
   hsize_t size = 0;
-  if (H5Dget_chunk_storage_size(data_set.id(), begin.data(), &size) < 0 ||
-      size > H5Dget_storage_size(data_set.id())) {
+  if (H5Dget_chunk_storage_size(data_set.id(), begin.data(), &size) < 0 || size > max_bytes) {
     return std::nullopt;
   }
   std::string bytes(size, '\0');

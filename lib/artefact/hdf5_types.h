@@ -13,11 +13,10 @@
 
 namespace soslam {
 
-// HDF5 types of numbers in files and in memory for an OpenCV depth. Hdf5ElementOf throws
-// std::logic_error for a depth that artefacts do not have.
+// HDF5 type of the numbers of an OpenCV depth, little-endian. Hdf5ElementOf throws std::logic_error
+// for a depth that artefacts do not have.
 struct Hdf5Element {
-  hid_t file_type;
-  hid_t memory_type;
+  hid_t type;
   const char* name;
 };
 Hdf5Element Hdf5ElementOf(int depth);
@@ -35,18 +34,13 @@ Hdf5Handle Hdf5DataSetCreation(const ArrayShape& shape);
 // Texts are of fixed length and UTF-8; HDF5 has no length 0.
 Hdf5Handle Hdf5TextType(size_t length);
 
-// Error message when a data set of this shape must not be read, with found and expected values;
-// none when it may be. Its values must be stored in the file itself and fit in a file of
-// `file_bytes`.
-std::optional<std::string> StorageProblem(const Hdf5Handle& data_set, const ArrayShape& shape,
-                                          std::uint64_t file_bytes);
+// Chunks are read without the HDF5 library's filters: those of version 1.10 do not check that a
+// chunk holds as many values as the data set says, and read beyond it.
 
-// Chunks as Hdf5File writes them, read without the HDF5 library's filters: those of version 1.10 do
-// not check that a chunk holds as many values as the data set says, and read beyond it.
-
-// The stored bytes of a data set of this shape that is one chunk, shuffled and deflated; none of
-// any other.
-std::optional<std::string> ReadChunk(const Hdf5Handle& data_set, const ArrayShape& shape);
+// The stored bytes of a data set of this shape with the properties of Hdf5DataSetCreation. None for
+// other properties, or if its size is more than `max_bytes`.
+std::optional<std::string> ReadChunk(const Hdf5Handle& data_set, const ArrayShape& shape,
+                                     std::uint64_t max_bytes);
 
 // Inflates and unshuffles a chunk of elements of so many bytes. False when it is damaged, or does
 // not fill `values`.

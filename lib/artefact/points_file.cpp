@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
-#include <opencv2/core.hpp>
 #include <string>
 
 #include "artefact/atomic_file.h"
@@ -27,11 +27,15 @@ constexpr const char* kPixel = "/observation_pixel";
 }
 
 // Throws InputError unless all values are finite.
-void CheckFinite(const Hdf5File& file, const char* name, const cv::Mat& matrix) {
-  cv::Point place;
-  if (cv::checkRange(matrix, /*quiet=*/true, &place)) return;
-  Refuse(file, name, static_cast<size_t>(place.y), fmt::format("{}", matrix.at<double>(place)),
-         "a finite number");
+template <typename Vector>
+void CheckFinite(const Hdf5File& file, const char* name, const std::vector<Vector>& rows) {
+  for (size_t i = 0; i < rows.size(); ++i) {
+    for (const double value : rows[i]) {
+      if (!std::isfinite(value)) {
+        Refuse(file, name, i, fmt::format("{}", value), "a finite number");
+      }
+    }
+  }
 }
 
 // Throws InputError unless the indices ascend from 0 to the number of observations.
@@ -60,54 +64,49 @@ void CheckNotNegative(const Hdf5File& file, const char* name, const auto& values
 
 void WritePoints(const std::filesystem::path& path, const std::vector<MapPoint>& points,
                  const ArtefactInfo& info) {
-  const int count = static_cast<int>(points.size());
-  cv::Mat positions(count, 3, CV_64FC1);
+  std::vector<Eigen::Vector3d> positions;
   std::vector<double> errors;
   std::vector<int> begins = {0}, frames;
-  std::vector<double> pixels;
-  for (int i = 0; i < count; ++i) {
-    const MapPoint& point = points[i];
-    for (int k = 0; k < 3; ++k) positions.at<double>(i, k) = point.position_in_world[k];
+  std::vector<Eigen::Vector2d> pixels;
+  for (const MapPoint& point : points) {
+    positions.push_back(point.position_in_world);
     errors.push_back(point.reprojection_error_px);
     for (const PointObservation& observation : point.observations) {
       frames.push_back(observation.frame_id);
-      pixels.insert(pixels.end(), {observation.pixel.x(), observation.pixel.y()});
+      pixels.push_back(observation.pixel);
     }
     begins.push_back(static_cast<int>(frames.size()));
   }
   AtomicFile atomic(path);
   Hdf5File file = Hdf5File::Create(atomic.TemporaryPath(), path);
   WriteArtefactHeader(kPointsKind, info, &file);
-  file.WriteMatrix(kPosition, positions);
+  file.WriteRows(kPosition, positions);
   file.WriteVector(kError, errors);
   file.WriteVector(kBegin, begins);
   file.WriteVector(kFrame, frames);
-  file.WriteMatrix(kPixel, cv::Mat(static_cast<int>(frames.size()), 2, CV_64FC1, pixels.data()));
+  file.WriteRows(kPixel, pixels);
   file.Close();
   atomic.Commit();
 }
 
 std::vector<MapPoint> ReadPoints(const std::filesystem::path& path) {
   const Hdf5File file = OpenArtefact(path, kPointsKind);
-  const cv::Mat positions = file.ReadMatrix(kPosition, CV_64FC1, Hdf5File::kAny, 3);
-  const auto errors = file.ReadVector<double>(kError, positions.rows);
-  const auto begins = file.ReadVector<int>(kBegin, positions.rows + 1);
+  const auto positions = file.ReadRows<Eigen::Vector3d>(kPosition);
+  const int count = static_cast<int>(positions.size());
+  const auto errors = file.ReadVector<double>(kError, count);
+  const auto begins = file.ReadVector<int>(kBegin, count + 1);
   const auto frames = file.ReadVector<int>(kFrame);
-  const cv::Mat pixels = file.ReadMatrix(kPixel, CV_64FC1, static_cast<int>(frames.size()), 2);
+  const auto pixels = file.ReadRows<Eigen::Vector2d>(kPixel, static_cast<int>(frames.size()));
   CheckFinite(file, kPosition, positions);
   CheckFinite(file, kPixel, pixels);
   CheckNotNegative(file, kError, errors);
   CheckNotNegative(file, kFrame, frames);
   CheckBegins(file, begins, frames.size());
-  std::vector<MapPoint> points(errors.size());
-  for (int i = 0; i < positions.rows; ++i) {
-    const auto index = static_cast<size_t>(i);
-    MapPoint& point = points[index];
-    point.position_in_world = {positions.at<double>(i, 0), positions.at<double>(i, 1),
-                               positions.at<double>(i, 2)};
-    point.reprojection_error_px = errors[index];
-    for (int k = begins[index]; k < begins[index + 1]; ++k) {
-      point.observations.push_back({frames[k], {pixels.at<double>(k, 0), pixels.at<double>(k, 1)}});
+  std::vector<MapPoint> points;
+  for (size_t i = 0; i < positions.size(); ++i) {
+    MapPoint& point = points.emplace_back(MapPoint{positions[i], errors[i], {}});
+    for (int k = begins[i]; k < begins[i + 1]; ++k) {
+      point.observations.push_back({frames[k], pixels[k]});
     }
   }
   return points;
