@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 namespace soslam {
 namespace {
@@ -49,56 +48,41 @@ std::vector<Box> NearerBoxes(const Sequence& sequence, const Detection& detectio
 
 namespace {
 
-// Detections in view of a frame, nearest first.
-class FrameByDepth {
- public:
-  FrameByDepth(const Sequence& in_view, int frame_index) {
-    for (const Detection& detection : DetectionsIn(in_view, frame_index)) {
-      entries_.push_back({GroundContactDepth(in_view, detection), &detection});
-    }
-    std::ranges::stable_sort(entries_, {}, &Entry::depth);
-    for (size_t i = 0; i < entries_.size(); ++i) {
-      rank_of_object_[entries_[i].detection->object_index] = static_cast<int>(i);
-    }
-  }
-
-  std::vector<Box> Boxes() const {
-    std::vector<Box> boxes;
-    for (const Entry& entry : entries_) boxes.push_back(entry.detection->box);
-    return boxes;
-  }
-
-  void Decide(const Sequence& sequence, Detection* detection) const {
-    const double depth = GroundContactDepth(sequence, *detection);
-    const auto end = std::ranges::lower_bound(entries_, depth, {}, &Entry::depth);
-    detection->nearer_in_view = static_cast<int>(end - entries_.begin());
-    const auto own = rank_of_object_.find(detection->object_index);
-    if (own != rank_of_object_.end() && own->second < detection->nearer_in_view) {
-      detection->own_in_view = own->second;
-    }
-  }
-
- private:
-  struct Entry {
-    double depth;
-    const Detection* detection;
-  };
-  std::vector<Entry> entries_;
-  std::map<int, int> rank_of_object_;
+struct BoxAtDepth {
+  double depth;  // see GroundContactDepth
+  int object_index;
+  Box box;
 };
+
+// The boxes of a frame, nearest first.
+std::vector<BoxAtDepth> BoxesByDepth(const Sequence& sequence, int frame_index) {
+  std::vector<BoxAtDepth> boxes;
+  for (const Detection& detection : DetectionsIn(sequence, frame_index)) {
+    boxes.push_back(
+        {GroundContactDepth(sequence, detection), detection.object_index, detection.box});
+  }
+  std::ranges::stable_sort(boxes, {}, &BoxAtDepth::depth);
+  return boxes;
+}
 
 }  // namespace
 
 void ListBoxesInView(const Sequence& in_view, Sequence* sequence) {
-  auto detection = sequence->detections.begin();
+  std::vector<std::vector<BoxAtDepth>> boxes_of_frames;
   for (size_t i = 0; i < sequence->frames.size(); ++i) {
-    const auto frame_index = static_cast<int>(i);
-    const FrameByDepth by_depth(in_view, frame_index);
-    sequence->frames[i].boxes_in_view = by_depth.Boxes();
-    for (; detection != sequence->detections.end() && detection->frame_index == frame_index;
-         ++detection) {
-      by_depth.Decide(*sequence, &*detection);
-    }
+    boxes_of_frames.push_back(BoxesByDepth(in_view, static_cast<int>(i)));
+    std::vector<Box>& boxes_in_view = sequence->frames[i].boxes_in_view;
+    boxes_in_view.clear();
+    for (const BoxAtDepth& box : boxes_of_frames.back()) boxes_in_view.push_back(box.box);
+  }
+  for (Detection& detection : sequence->detections) {
+    const std::vector<BoxAtDepth>& boxes = boxes_of_frames[detection.frame_index];
+    const double depth = GroundContactDepth(*sequence, detection);
+    const auto end = std::ranges::lower_bound(boxes, depth, {}, &BoxAtDepth::depth);
+    const auto own =
+        std::ranges::find(boxes.begin(), end, detection.object_index, &BoxAtDepth::object_index);
+    detection.nearer_in_view = static_cast<int>(end - boxes.begin());
+    if (own != end) detection.own_in_view = static_cast<int>(own - boxes.begin());
   }
 }
 
