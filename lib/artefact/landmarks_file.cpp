@@ -83,6 +83,26 @@ void WriteLandmarks(const std::filesystem::path& path, const LandmarkEstimates& 
 
 namespace {
 
+// The values of a list in a map that has one row per item of the sequence, in their order.
+template <typename Value, typename Items>
+std::vector<Value> ValuesOfItems(const json& rows, const std::string& list, const char* item_name,
+                                 const char* value_name, const Items& items) {
+  if (rows.size() != items.size()) {
+    throw InputError(fmt::format("/{} has {} rows; expected {}, one per {} of the sequence", list,
+                                 rows.size(), items.size(), item_name));
+  }
+  std::vector<Value> values;
+  for (size_t i = 0; i < rows.size(); ++i) {
+    const int id = rows[i].at(item_name).get<int>();
+    if (id != items[i].id) {
+      throw InputError(fmt::format("/{}/{}/{} is {}; expected {}, as in the sequence", list, i,
+                                   item_name, id, items[i].id));
+    }
+    values.push_back(rows[i].at(value_name).get<Value>());
+  }
+  return values;
+}
+
 json TrajectoryToJson(const std::vector<Rigid3d>& world_from_camera, const Sequence& sequence) {
   json trajectory = json::array();
   for (size_t i = 0; i < sequence.frames.size(); ++i) {
@@ -93,24 +113,6 @@ json TrajectoryToJson(const std::vector<Rigid3d>& world_from_camera, const Seque
   return trajectory;
 }
 
-std::vector<Rigid3d> TrajectoryFromJson(const json& json, const Sequence& sequence) {
-  if (json.size() != sequence.frames.size()) {
-    throw InputError(
-        fmt::format("/trajectory has {} poses; expected {}, as the sequence has frames",
-                    json.size(), sequence.frames.size()));
-  }
-  std::vector<Rigid3d> world_from_camera;
-  for (size_t i = 0; i < json.size(); ++i) {
-    const int frame_id = json[i].at("frame").get<int>();
-    if (frame_id != sequence.frames[i].id) {
-      throw InputError(fmt::format("/trajectory/{}/frame is {}; expected {}, as in the sequence", i,
-                                   frame_id, sequence.frames[i].id));
-    }
-    world_from_camera.push_back(json[i].at("world_from_camera").get<Rigid3d>());
-  }
-  return world_from_camera;
-}
-
 json PlanesToJson(const std::vector<Plane>& planes_in_world, const Sequence& sequence) {
   json planes = json::array();
   for (size_t i = 0; i < sequence.planes.size(); ++i) {
@@ -119,33 +121,21 @@ json PlanesToJson(const std::vector<Plane>& planes_in_world, const Sequence& seq
   return planes;
 }
 
-// Before version 1.3 all planes were given.
-std::vector<Plane> PlanesFromJson(const json& map, const Sequence& sequence) {
-  std::vector<Plane> planes = PlanesOf(sequence);
-  if (!map.contains("planes")) return planes;
-  const json& found = map["planes"];
-  if (found.size() != planes.size()) {
-    throw InputError(fmt::format("/planes has {}; expected {}, as the sequence has", found.size(),
-                                 planes.size()));
-  }
-  for (size_t i = 0; i < planes.size(); ++i) {
-    const int id = found[i].at("plane").get<int>();
-    if (id != sequence.planes[i].id) {
-      throw InputError(fmt::format("/planes/{}/plane is {}; expected {}, as in the sequence", i, id,
-                                   sequence.planes[i].id));
-    }
-    planes[i] = found[i].at("plane_in_world").get<Plane>();
-  }
-  return planes;
-}
-
 }  // namespace
 
 MapEstimate ReadMap(const std::filesystem::path& path, const Sequence& sequence) {
   return ReadArtefactAs(path, "map", [&](const json& json) {
-    return MapEstimate{ObjectEstimatesFromJson(json.at("objects"), sequence),
-                       TrajectoryFromJson(json.at("trajectory"), sequence),
-                       PlanesFromJson(json, sequence), json.at("solver").get<SolverSummary>()};
+    MapEstimate map;
+    map.objects = ObjectEstimatesFromJson(json.at("objects"), sequence);
+    map.world_from_camera = ValuesOfItems<Rigid3d>(json.at("trajectory"), "trajectory", "frame",
+                                                   "world_from_camera", sequence.frames);
+    // Before version 1.3 all planes were given.
+    map.planes_in_world = json.contains("planes")
+                              ? ValuesOfItems<Plane>(json["planes"], "planes", "plane",
+                                                     "plane_in_world", sequence.planes)
+                              : PlanesOf(sequence);
+    json.at("solver").get_to(map.solver);
+    return map;
   });
 }
 

@@ -217,7 +217,7 @@ TEST_F(EditedFileTest, MapsAreRefused) {
   WriteMap(file, RandomMap(), sequence, {});
   ExpectEditsRefused(
       file,
-      {{"/trajectory", "[]", "has 0 poses; expected 5"},
+      {{"/trajectory", "[]", "has 0 rows; expected 5, one per frame"},
        {"/objects/0/landmark/shape_exponent", "3", "/objects/0/landmark/shape_exponent is 3"},
        {"/objects/0/points/1/responsibility", "1.5", "/objects/0/points/1/responsibility is 1.5"},
        {"/trajectory/2/frame", "21", "/trajectory/2/frame is 21; expected 20"},
