@@ -139,11 +139,11 @@ ObjectEstimate ObjectEstimateFromJson(const json& row) {
 }
 
 std::vector<ObjectEstimate> ObjectEstimatesFromJson(const json& json, const Sequence& sequence) {
-  const IdTable<Object> objects("object", sequence.objects);
   std::vector<ObjectEstimate> estimates;
   for (const auto& row : json) {
     estimates.push_back(ObjectEstimateFromJson(row));
-    estimates.back().object_index = objects.IndexOf(row.at("object").get<int>());
+    estimates.back().object_index =
+        IndexOfId("object", sequence.objects, row.at("object").get<int>());
   }
   return estimates;
 }

@@ -6,6 +6,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -23,35 +25,27 @@
 
 namespace soslam {
 
-// Maps ids to indices. Files refer to frames, planes and objects by id, code by index in a vector
-// sorted by id. `Item` has a member `id`.
+// Files refer to frames, planes and objects by id, code by index in a vector sorted by id. `name`
+// is the name of the items in error messages.
+
+// Throws InputError unless ids ascend.
 template <typename Item>
-class IdTable {
- public:
-  // `name` is the name of the items in error messages. Throws InputError unless ids ascend.
-  IdTable(std::string name, const std::vector<Item>& items) : name_(std::move(name)) {
-    for (const Item& item : items) {
-      if (!ids_.empty() && item.id <= ids_.back()) {
-        throw InputError(fmt::format("{} {} follows {} {}; expected ascending ids", name_, item.id,
-                                     name_, ids_.back()));
-      }
-      ids_.push_back(item.id);
-    }
-  }
+void CheckAscendingIds(const char* name, const std::vector<Item>& items) {
+  const auto pair = std::ranges::adjacent_find(items, std::greater_equal(), &Item::id);
+  if (pair == items.end()) return;
+  throw InputError(fmt::format("{} {} follows {} {}; expected ascending ids", name,
+                               std::next(pair)->id, name, pair->id));
+}
 
-  // Throws InputError when there is no such id.
-  int IndexOf(int id) const {
-    const auto found = std::ranges::lower_bound(ids_, id);
-    if (found == ids_.end() || *found != id) {
-      throw InputError(fmt::format("{} {} is not in the sequence", name_, id));
-    }
-    return static_cast<int>(found - ids_.begin());
+// Throws InputError when there is no such id.
+template <typename Item>
+int IndexOfId(const char* name, const std::vector<Item>& items, int id) {
+  const auto found = std::ranges::lower_bound(items, id, {}, &Item::id);
+  if (found == items.end() || found->id != id) {
+    throw InputError(fmt::format("{} {} is not in the sequence", name, id));
   }
-
- private:
-  std::string name_;
-  std::vector<int> ids_;
-};
+  return static_cast<int>(found - items.begin());
+}
 
 // The list of what `to_json` returns for each item, in its context.
 template <typename Items, typename ToJson, typename... Context>

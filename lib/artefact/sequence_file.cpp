@@ -73,7 +73,7 @@ void AddTruthOfOldVersions(Sequence* sequence) {
   }
 }
 
-TruthInFrame TruthInFrameFromJson(const json& row, const IdTable<Frame>& frames) {
+TruthInFrame TruthInFrameFromJson(const json& row, const std::vector<Frame>& frames) {
   const json pose = {{"rotation_xyzw", {row.at(2), row.at(3), row.at(4), row.at(5)}},
                      {"translation", {row.at(6), row.at(7), row.at(8)}}};
   Landmark landmark;
@@ -81,7 +81,7 @@ TruthInFrame TruthInFrameFromJson(const json& row, const IdTable<Frame>& frames)
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     row.at(9 + axis).get_to(landmark.half_axes[axis]);
   }
-  return {frames.IndexOf(row.at(0).get<int>()), row.at(1).get<int>(), landmark};
+  return {IndexOfId("frame", frames, row.at(0).get<int>()), row.at(1).get<int>(), landmark};
 }
 
 IgnoredThings IgnoredFromJson(const json& json) {
@@ -93,12 +93,12 @@ IgnoredThings IgnoredFromJson(const json& json) {
   return things;
 }
 
-Object ObjectFromJson(const json& json, const IdTable<SupportPlane>& planes) {
+Object ObjectFromJson(const json& json, const std::vector<SupportPlane>& planes) {
   Object object;
   json.at("object").get_to(object.id);
   json.at("label").get_to(object.label);
   const auto& plane = json.at("plane");
-  object.plane_index = plane.is_null() ? kNoPlane : planes.IndexOf(plane.get<int>());
+  object.plane_index = plane.is_null() ? kNoPlane : IndexOfId("plane", planes, plane.get<int>());
   const auto& truth = json.at("ground_truth");
   if (!truth.is_null()) object.ground_truth = GroundTruthFromJson(truth);
   if (json.contains("is_static")) json["is_static"].get_to(object.is_static);  // since version 1.2
@@ -124,11 +124,11 @@ std::array<bool, 4> OneSidedFromJson(const json& names) {
   return is_one_sided;
 }
 
-Detection DetectionFromJson(const json& json, const IdTable<Frame>& frames,
-                            const IdTable<Object>& objects) {
+Detection DetectionFromJson(const json& json, const std::vector<Frame>& frames,
+                            const std::vector<Object>& objects) {
   Detection detection;
-  detection.frame_index = frames.IndexOf(json.at("frame").get<int>());
-  detection.object_index = objects.IndexOf(json.at("object").get<int>());
+  detection.frame_index = IndexOfId("frame", frames, json.at("frame").get<int>());
+  detection.object_index = IndexOfId("object", objects, json.at("object").get<int>());
   json.at("score").get_to(detection.score);
   json.at("box").get_to(detection.box);
   const auto& plane = json.at("plane_in_camera");
@@ -160,14 +160,15 @@ const json& Named(const json& list, const json& row, size_t field, size_t place)
   return list[index];
 }
 
-std::vector<RejectedDetection> RejectedFromJson(const json& json, const IdTable<Frame>& frames) {
+std::vector<RejectedDetection> RejectedFromJson(const json& json,
+                                                const std::vector<Frame>& frames) {
   std::vector<RejectedDetection> all;
   const auto& rows = json.at("rows");
   for (size_t i = 0; i < rows.size(); ++i) {
     const auto& row = rows[i];
     const auto& reason = Named(json.at("reasons"), row, 1, i);
     RejectedDetection rejected;
-    rejected.frame_index = frames.IndexOf(row.at(0).get<int>());
+    rejected.frame_index = IndexOfId("frame", frames, row.at(0).get<int>());
     rejected.stage = EnumFromName<RejectingStage>(kRejectingStageNames, reason.at("stage"));
     reason.at("reason").get_to(rejected.reason);
     Named(json.at("labels"), row, 2, i).get_to(rejected.label);
@@ -262,20 +263,15 @@ void CheckPlanes(const json& json) {
 }
 
 // Ground truth that does not depend on detections; since version 1.7.
-void TruthFromJson(const json& json, const IdTable<Frame>& frames, Sequence* sequence) {
+void TruthFromJson(const json& json, Sequence* sequence) {
   if (json.contains("true_objects")) {
     sequence->true_objects = ListFromJson(json, "true_objects", &TrueObjectFromJson);
   } else {
     AddTruthOfOldVersions(sequence);
   }
-  const auto& objects = sequence->true_objects;
-  const auto unordered = std::ranges::adjacent_find(
-      objects, [](const TrueObject& a, const TrueObject& b) { return a.id >= b.id; });
-  if (unordered != objects.end()) {
-    throw InputError(fmt::format("/true_objects/{}/object is {}; expected ascending ids",
-                                 unordered - objects.begin() + 1, std::next(unordered)->id));
-  }
-  sequence->truth_in_frames = ListFromJson(json, "truth_in_frames", &TruthInFrameFromJson, frames);
+  CheckAscendingIds("true object", sequence->true_objects);
+  sequence->truth_in_frames =
+      ListFromJson(json, "truth_in_frames", &TruthInFrameFromJson, sequence->frames);
   sequence->ignored = ListFromJson(json, "ignored", &IgnoredFromJson);
   sequence->odometry_world =
       EnumFromName<OdometryWorld>(kOdometryWorldNames, json.value("odometry_world", "of_truth"));
@@ -296,11 +292,12 @@ Sequence SequenceFromJson(const json& json) {
   sequence.frames = ListFromJson(json, "frames", &FrameFromJson);
   CheckSegments(sequence.frames);
   sequence.planes = ListFromJson(json, "planes", &SupportPlaneFromJson);
-  const IdTable<SupportPlane> planes("plane", sequence.planes);
-  sequence.objects = ListFromJson(json, "objects", &ObjectFromJson, planes);
-  const IdTable<Frame> frames("frame", sequence.frames);
-  const IdTable<Object> objects("object", sequence.objects);
-  sequence.detections = ListFromJson(json, "detections", &DetectionFromJson, frames, objects);
+  CheckAscendingIds("plane", sequence.planes);
+  sequence.objects = ListFromJson(json, "objects", &ObjectFromJson, sequence.planes);
+  CheckAscendingIds("frame", sequence.frames);
+  CheckAscendingIds("object", sequence.objects);
+  sequence.detections =
+      ListFromJson(json, "detections", &DetectionFromJson, sequence.frames, sequence.objects);
   CheckOrder(sequence.detections);
   CheckBoxesInView(sequence);
   // Versions 1.0 and 1.1 had no possible occluders.
@@ -313,9 +310,9 @@ Sequence SequenceFromJson(const json& json) {
   sequence.held_out = ListFromJson(json, "held_out", &HeldOutFromJson);  // since version 1.3
   CheckHeldOut(sequence);
   json.at("rejected_detections").get_to(sequence.rejected_detections);
-  TruthFromJson(json, frames, &sequence);
+  TruthFromJson(json, &sequence);
   if (json.contains("rejected")) {  // since version 1.7
-    sequence.rejected = RejectedFromJson(json["rejected"], frames);
+    sequence.rejected = RejectedFromJson(json["rejected"], sequence.frames);
   }
   sequence.images_without_pose = json.value("images_without_pose", std::vector<std::string>());
   sequence.findings = FindingsFromJson(json);

@@ -66,9 +66,10 @@ class Importer {
         options_(options),
         sequence_(sequence),
         slots_(ChooseFrames(content.frames, options, &sequence->frames)),
-        object_ids_("object", sequence->objects),
         planes_from_truth_(options.camera_planes == PlanePoses::kGroundTruth &&
-                           content.has_true_poses) {}
+                           content.has_true_poses) {
+    CheckAscendingIds("object", sequence->objects);
+  }
 
   void Import() {
     Rejections rejected;
@@ -149,7 +150,7 @@ class Importer {
     for (const DetectionRow& row : rows) {
       Detection detection;
       detection.frame_index = std::get<int>(slots_.at(row.frame_id));
-      detection.object_index = object_ids_.IndexOf(row.object_id);
+      detection.object_index = IndexOfId("object", sequence_->objects, row.object_id);
       detection.score = row.score;
       detection.box = row.box;
       if (row.plane_in_camera) {
@@ -177,7 +178,6 @@ class Importer {
   const ImportOptions& options_;
   Sequence* sequence_;
   std::map<int, FrameSlot> slots_;
-  IdTable<Object> object_ids_;
   bool planes_from_truth_;
 };
 
