@@ -85,7 +85,7 @@ void CheckNearestEdges(const cv::Mat& nearest_edge, const std::string& where) {
 }  // namespace
 
 EdgesWriter::EdgesWriter(const std::filesystem::path& path, const ArtefactInfo& info)
-    : atomic_(path), file_(Hdf5File::Create(atomic_.TemporaryPath(), path)) {
+    : file_(Hdf5File::Create(path)) {
   WriteArtefactHeader(kEdgesKind, info, &file_);
 }
 
@@ -96,11 +96,6 @@ void EdgesWriter::Write(int frame_id, const EdgeMaps& maps) {
   file_.WriteMatrix(group + "/distance", maps.distance);
   file_.WriteMatrix(group + "/nearest_edge", maps.nearest_edge);
   file_.WriteRows(group + "/corners", maps.corners);
-}
-
-void EdgesWriter::Commit() {
-  file_.Close();
-  atomic_.Commit();
 }
 
 EdgesReader::EdgesReader(const std::filesystem::path& path)
@@ -200,13 +195,11 @@ SymmetryRecord ReadRecord(const Hdf5File& file, const std::string& group) {
 
 void WriteSymmetry(const std::filesystem::path& path, const std::vector<SymmetryRecord>& records,
                    const ArtefactInfo& info) {
-  AtomicFile atomic(path);
-  Hdf5File file = Hdf5File::Create(atomic.TemporaryPath(), path);
+  Hdf5File file = Hdf5File::Create(path);
   WriteArtefactHeader(kSymmetryKind, info, &file);
   file.WriteGroup(kObservations);
   for (const SymmetryRecord& record : records) WriteRecord(record, &file);
   file.Close();
-  atomic.Commit();
 }
 
 std::vector<SymmetryRecord> ReadSymmetry(const std::filesystem::path& path) {

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "artefact/atomic_file.h"
 #include "artefact/hdf5_file.h"
 #include "artefact/json_file.h"
 #include "image/edge_maps.h"
@@ -38,10 +37,9 @@ class EdgesWriter {
   EdgesWriter(const std::filesystem::path& path, const ArtefactInfo& info);
   // Each frame once; the bytes of the file depend on the order.
   void Write(int frame_id, const EdgeMaps& maps);
-  void Commit();
+  void Commit() { file_.Close(); }
 
  private:
-  AtomicFile atomic_;
   Hdf5File file_;
 };
 

@@ -89,14 +89,15 @@ bool Hdf5Handle::Close() {
 Hdf5File::Hdf5File(std::filesystem::path path, std::int64_t id)
     : path_(std::move(path)), file_(id, &H5Fclose) {}
 
-Hdf5File Hdf5File::Create(const std::filesystem::path& path,
-                          const std::filesystem::path& final_path) {
-  errno = 0;
+Hdf5File Hdf5File::Create(const std::filesystem::path& path) {
+  auto atomic = std::make_unique<AtomicFile>(path);
   const Hdf5Handle access = Hdf5FileAccess();
   const Hdf5Handle creation = Hdf5Timeless(H5P_FILE_CREATE);
-  Hdf5File file(final_path.empty() ? path : final_path,
-                H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()));
+  errno = 0;
+  Hdf5File file(
+      path, H5Fcreate(atomic->TemporaryPath().c_str(), H5F_ACC_TRUNC, creation.id(), access.id()));
   if (!file.file_.valid()) file.FailWriting("/");
+  file.atomic_ = std::move(atomic);
   return file;
 }
 
@@ -184,6 +185,7 @@ void Hdf5File::Close() {
   errno = 0;
   const bool flushed = H5Fflush(file_.id(), H5F_SCOPE_LOCAL) >= 0;
   if (!file_.Close() || !flushed) FailWriting("/");
+  atomic_->Commit();
 }
 
 bool Hdf5File::Has(const std::string& name) const {

@@ -5,11 +5,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <opencv2/core/mat.hpp>
 #include <opencv2/core/traits.hpp>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "artefact/atomic_file.h"
 
 namespace soslam {
 
@@ -47,10 +50,8 @@ class Hdf5Handle {
 // any thread may read matrices and vectors: they take turns, and inflate side by side.
 class Hdf5File {
  public:
-  // Creates an empty file; replaces an existing one. Messages use `final_path`, the later name of
-  // the file, unless that is empty.
-  static Hdf5File Create(const std::filesystem::path& path,
-                         const std::filesystem::path& final_path = {});
+  // Creates an empty file, which appears with Close(), see AtomicFile.
+  static Hdf5File Create(const std::filesystem::path& path);
   static Hdf5File Open(const std::filesystem::path& path);
 
   // Creates a group. All writers create missing parent groups.
@@ -72,7 +73,7 @@ class Hdf5File {
   // Attributes of the group or data set `owner`, which exists. A text has no '\0'.
   void WriteText(const std::string& owner, const std::string& name, const std::string& text);
   void WriteNumber(const std::string& owner, const std::string& name, double number);
-  // Finishes writing: the file is complete only after this.
+  // Finishes writing. Errors also as AtomicFile::Commit.
   void Close();
 
   bool Has(const std::string& name) const;
@@ -143,6 +144,7 @@ class Hdf5File {
   [[noreturn]] void FailReading(const std::string& name, const std::string& problem) const;
 
   std::filesystem::path path_;
+  std::unique_ptr<AtomicFile> atomic_;  // while writing
   Hdf5Handle file_;
 };
 

@@ -5,7 +5,6 @@
 #include <limits>
 #include <string>
 
-#include "artefact/atomic_file.h"
 #include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
 #include "base/error.h"
@@ -77,8 +76,7 @@ void WritePoints(const std::filesystem::path& path, const std::vector<MapPoint>&
     }
     begins.push_back(static_cast<int>(frames.size()));
   }
-  AtomicFile atomic(path);
-  Hdf5File file = Hdf5File::Create(atomic.TemporaryPath(), path);
+  Hdf5File file = Hdf5File::Create(path);
   WriteArtefactHeader(kPointsKind, info, &file);
   file.WriteRows(kPosition, positions);
   file.WriteVector(kError, errors);
@@ -86,7 +84,6 @@ void WritePoints(const std::filesystem::path& path, const std::vector<MapPoint>&
   file.WriteVector(kFrame, frames);
   file.WriteRows(kPixel, pixels);
   file.Close();
-  atomic.Commit();
 }
 
 std::vector<MapPoint> ReadPoints(const std::filesystem::path& path) {
