@@ -27,8 +27,11 @@ nlohmann::json HeaderOf(const Hdf5File& file) {
 
 }  // namespace
 
-void WriteArtefactHeader(const std::string& kind, const ArtefactInfo& info, Hdf5File* file) {
-  file->WriteText("/", kHeaderAttribute, JsonText(ArtefactHeader(kind, info)));
+Hdf5File CreateArtefact(const std::filesystem::path& path, const std::string& kind,
+                        const ArtefactInfo& info) {
+  Hdf5File file = Hdf5File::Create(path);
+  file.WriteText("/", kHeaderAttribute, JsonText(ArtefactHeader(kind, info)));
+  return file;
 }
 
 Hdf5File OpenArtefact(const std::filesystem::path& path, const std::string& kind) {
@@ -85,9 +88,7 @@ void CheckNearestEdges(const cv::Mat& nearest_edge, const std::string& where) {
 }  // namespace
 
 EdgesWriter::EdgesWriter(const std::filesystem::path& path, const ArtefactInfo& info)
-    : file_(Hdf5File::Create(path)) {
-  WriteArtefactHeader(kEdgesKind, info, &file_);
-}
+    : file_(CreateArtefact(path, kEdgesKind, info)) {}
 
 void EdgesWriter::Write(int frame_id, const EdgeMaps& maps) {
   const std::string group = FrameGroup(frame_id);
@@ -195,8 +196,7 @@ SymmetryRecord ReadRecord(const Hdf5File& file, const std::string& group) {
 
 void WriteSymmetry(const std::filesystem::path& path, const std::vector<SymmetryRecord>& records,
                    const ArtefactInfo& info) {
-  Hdf5File file = Hdf5File::Create(path);
-  WriteArtefactHeader(kSymmetryKind, info, &file);
+  Hdf5File file = CreateArtefact(path, kSymmetryKind, info);
   file.WriteGroup(kObservations);
   for (const SymmetryRecord& record : records) WriteRecord(record, &file);
   file.Close();

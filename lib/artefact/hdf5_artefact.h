@@ -16,7 +16,10 @@ namespace soslam {
 // Name of the text attribute of the root that holds the header of an HDF5 artefact, the same header
 // as in JSON artefacts (ArtefactHeader).
 inline constexpr const char* kHeaderAttribute = "artefact";
-void WriteArtefactHeader(const std::string& kind, const ArtefactInfo& info, Hdf5File* file);
+
+// Creates an artefact that has its header only.
+Hdf5File CreateArtefact(const std::filesystem::path& path, const std::string& kind,
+                        const ArtefactInfo& info);
 
 // Opens an artefact for reading. Throws InputError when it is not of this kind or newer than this
 // software supports.

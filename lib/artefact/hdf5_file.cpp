@@ -49,6 +49,13 @@ std::string Describe(const std::vector<int>& expected, const char* element) {
   return fmt::format("{} of {}", fmt::join(sizes, " x "), element);
 }
 
+// Callback of iterations over names, in which `list` is a vector of texts.
+template <typename Info>
+herr_t AppendName(hid_t /*owner*/, const char* name, const Info* /*info*/, void* list) {
+  static_cast<std::vector<std::string>*>(list)->emplace_back(name);
+  return 0;
+}
+
 size_t CountOf(const ArrayShape& shape) {
   return std::accumulate(shape.begin(), shape.end(), size_t{1}, std::multiplies<>());
 }
@@ -201,12 +208,8 @@ bool Hdf5File::HasAttribute(const std::string& owner, const std::string& name) c
 
 std::vector<std::string> Hdf5File::Children(const std::string& group) const {
   std::vector<std::string> names;
-  const auto append = [](hid_t, const char* name, const H5L_info_t*, void* list) -> herr_t {
-    static_cast<std::vector<std::string>*>(list)->emplace_back(name);
-    return 0;
-  };
-  if (H5Literate_by_name(file_.id(), group.c_str(), H5_INDEX_NAME, H5_ITER_INC, nullptr, append,
-                         &names, H5P_DEFAULT) < 0) {
+  if (H5Literate_by_name(file_.id(), group.c_str(), H5_INDEX_NAME, H5_ITER_INC, nullptr,
+                         AppendName<H5L_info_t>, &names, H5P_DEFAULT) < 0) {
     FailReading(group, Has(group) ? kDamaged : "missing; expected a group");
   }
   return names;
@@ -331,12 +334,8 @@ cv::Mat Hdf5File::ReadMatrix(const std::string& name, int type, int rows, int co
 
 std::vector<std::string> Hdf5File::Attributes(const std::string& owner) const {
   std::vector<std::string> names;
-  const auto append = [](hid_t, const char* name, const H5A_info_t*, void* list) -> herr_t {
-    static_cast<std::vector<std::string>*>(list)->emplace_back(name);
-    return 0;
-  };
-  if (H5Aiterate_by_name(file_.id(), owner.c_str(), H5_INDEX_NAME, H5_ITER_INC, nullptr, append,
-                         &names, H5P_DEFAULT) < 0) {
+  if (H5Aiterate_by_name(file_.id(), owner.c_str(), H5_INDEX_NAME, H5_ITER_INC, nullptr,
+                         AppendName<H5A_info_t>, &names, H5P_DEFAULT) < 0) {
     FailReading(owner, kDamaged);
   }
   return names;

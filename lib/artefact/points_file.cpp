@@ -76,8 +76,7 @@ void WritePoints(const std::filesystem::path& path, const std::vector<MapPoint>&
     }
     begins.push_back(static_cast<int>(frames.size()));
   }
-  Hdf5File file = Hdf5File::Create(path);
-  WriteArtefactHeader(kPointsKind, info, &file);
+  Hdf5File file = CreateArtefact(path, kPointsKind, info);
   file.WriteRows(kPosition, positions);
   file.WriteVector(kError, errors);
   file.WriteVector(kBegin, begins);

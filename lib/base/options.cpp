@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -37,13 +38,13 @@ class Reader : public OptionVisitor {
   void Flag(const char* name, bool* value, const char*) override {
     if (const auto* found = Find(name)) {
       if (!found->is_boolean()) Refuse(name, *found, "true or false");
-      *value = found->get<bool>();
+      found->get_to(*value);
     }
   }
   void Text(const char* name, std::string* value, const char*) override {
     if (const auto* found = Find(name)) {
       if (!found->is_string()) Refuse(name, *found, "a string");
-      *value = found->get<std::string>();
+      found->get_to(*value);
     }
   }
 
@@ -60,13 +61,11 @@ class Reader : public OptionVisitor {
   void ChoiceIndex(const char* name, int* index, std::span<const char* const> names,
                    const char*) override {
     if (const auto* found = Find(name)) {
-      for (size_t i = 0; i < names.size(); ++i) {
-        if (*found == names[i]) {
-          *index = static_cast<int>(i);
-          return;
-        }
+      const auto choice = std::ranges::find(names, *found);
+      if (choice == names.end()) {
+        Refuse(name, *found, fmt::format("one of {}", fmt::join(names, " | ")));
       }
-      Refuse(name, *found, fmt::format("one of {}", fmt::join(names, " | ")));
+      *index = static_cast<int>(choice - names.begin());
     }
   }
 
@@ -114,14 +113,10 @@ class Lister : public OptionVisitor {
 
   void Group(const char* heading) override { group_ = heading; }
   void Real(const char* name, double* value, Range range, const char* doc) override {
-    OptionRow& row = Add(name, "number", *value, doc);
-    row.range = range;
-    row.unit = UnitOf(name);
+    Add(name, "number", *value, doc).range = range;
   }
   void Integer(const char* name, int* value, Range range, const char* doc) override {
-    OptionRow& row = Add(name, "integer", *value, doc);
-    row.range = range;
-    row.unit = UnitOf(name);
+    Add(name, "integer", *value, doc).range = range;
   }
   void Flag(const char* name, bool* value, const char* doc) override {
     Add(name, "boolean", *value, doc);
@@ -139,7 +134,7 @@ class Lister : public OptionVisitor {
 
  private:
   OptionRow& Add(const char* name, const char* type, const nlohmann::json& value, const char* doc) {
-    return rows.emplace_back(OptionRow{name, type, value, {}, {}, {}, group_, doc});
+    return rows.emplace_back(OptionRow{name, type, value, {}, {}, UnitOf(name), group_, doc});
   }
 
   std::string group_;

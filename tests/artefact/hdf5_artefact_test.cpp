@@ -209,8 +209,7 @@ class PointsFileTest : public FolderTest {
 
   // A file with two points and an observation each.
   void WriteArrays(const std::vector<int>& begins, int pixel_rows = 2) {
-    Hdf5File file = Hdf5File::Create(folder_ / "points.h5");
-    WriteArtefactHeader("points", {}, &file);
+    Hdf5File file = CreateArtefact(folder_ / "points.h5", "points", {});
     file.WriteMatrix("/position", cv::Mat::zeros(2, 3, CV_64FC1));
     file.WriteVector("/reprojection_error_px", std::vector<double>{0.0, 0.0});
     file.WriteVector("/observation_begin", begins);
