@@ -29,14 +29,8 @@ TEST(MinimiseSquares, FollowsACurvedValleyToItsMinimum) {
   const Model model = MinimiseSquares(Rosenbrock, Plus, {}, &at);
   EXPECT_LT(model.cost, 1e-12);
   EXPECT_LT((at - Eigen::Vector2d(1.0, 1.0)).norm(), 1e-4);
-}
-
-TEST(MinimiseSquares, StopsAfterItsIterations) {
-  Eigen::Vector2d at(-1.2, 1.0);
-  const double before = Rosenbrock(at).cost;
-  const Model one = MinimiseSquares(Rosenbrock, Plus, {.max_iterations = 1}, &at);
-  EXPECT_LE(one.cost, before);
-  EXPECT_GT(one.cost, 1e-3);
+  at = {-1.2, 1.0};
+  EXPECT_GT(MinimiseSquares(Rosenbrock, Plus, {.max_iterations = 1}, &at).cost, 1e-3);
 }
 
 TEST(MinimiseSquares, LeavesUnknownsWithoutInfluenceAsTheyAre) {

@@ -44,13 +44,6 @@ TEST_P(ParallelForTest, BeginsNothingMoreAfterAnError) {
   EXPECT_LT(tried, 10'000);
 }
 
-TEST_P(ParallelForTest, MayBeNested) {
-  std::atomic<int> sum = 0;
-  ParallelFor(4, GetParam(),
-              [&](int i) { ParallelFor(5, GetParam(), [&](int j) { sum += 10 * i + j; }); });
-  EXPECT_EQ(sum, 5 * 10 * (0 + 1 + 2 + 3) + 4 * (0 + 1 + 2 + 3 + 4));
-}
-
 INSTANTIATE_TEST_SUITE_P(Threads, ParallelForTest, testing::Values(-1, 1, 2, 16));
 
 }  // namespace

@@ -77,14 +77,6 @@ TEST_F(WorldTest, PlanesOfTheMapAreItsSupports) {
   EXPECT_EQ(world.objects[0].support_normal, map_.planes_in_world[0].normal);
 }
 
-TEST_F(WorldTest, OdometryHasPosesOnly) {
-  const std::vector<World> worlds = WorldsOfOdometry(sequence_);
-  ASSERT_EQ(worlds.size(), 2u);
-  EXPECT_TRUE(worlds[0].objects.empty());
-  EXPECT_EQ(worlds[1].frames[1].world_from_camera.translation,
-            sequence_.frames[4].world_from_camera.translation);
-}
-
 TEST_F(WorldTest, TruthHasWhatIsKnown) {
   const World world = WorldsOfTruth(sequence_)[0];
   EXPECT_THAT(FrameIds(world), ElementsAre(10, 20));

@@ -138,14 +138,5 @@ TEST(BoxesInFrontTest, TheNearestIsFirst) {
   EXPECT_THAT(LeftEdges(BoxesInFront(sequence, sequence.detections[0])), ElementsAre(12, 11));
 }
 
-TEST(BoxesInFrontTest, AnotherBoxOfTheSameObjectDoesNotHideIt) {
-  const Sequence in_view = LevelSequence({{10, 100, 20, 340}, {11, 100, 20, 320}});
-  Sequence used = in_view;
-  used.detections[0].box = {12, 100, 20, 300};
-  ListBoxesInView(in_view, &used);
-  EXPECT_EQ(used.detections[0].own_in_view, 0);
-  EXPECT_THAT(LeftEdges(BoxesInFront(used, used.detections[0])), ElementsAre(11));
-}
-
 }  // namespace
 }  // namespace soslam
