@@ -139,21 +139,6 @@ TEST_F(RunFileTest, ReadsWhatWasWritten) {
   EXPECT_EQ(FileBytes(file_), bytes);
 }
 
-TEST_F(RunFileTest, KeepsAFailure) {
-  RunRecord record = SmallRecord();
-  record.settings.reset();
-  record.seed.reset();
-  record.outputs.clear();
-  record.exit_code = 2;
-  record.error = "settings.json: \xff is not a number";
-  WriteRun(file_, record);
-  const RunRecord read = ReadRun(file_);
-  EXPECT_FALSE(read.settings);
-  EXPECT_FALSE(read.seed);
-  EXPECT_EQ(read.exit_code, 2);
-  EXPECT_EQ(read.error, "settings.json: \xef\xbf\xbd is not a number");
-}
-
 TEST_F(RunFileTest, RefusesDamagedRecordsByName) {
   WriteRun(file_, SmallRecord());
   ExpectEditsRefused(file_,

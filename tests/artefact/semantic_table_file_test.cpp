@@ -103,21 +103,11 @@ TEST_F(SemanticTableFileTest, WhatIsMountedCannotLie) {
       {"table.json: labels/cup: attitude is any_face and mount on_wall"});
 }
 
-TEST_F(SemanticTableFileTest, EdgeBiasIsWrittenWhereThereIsOne) {
-  const SemanticRow plain = {"plain", {}, {}, 0, "the test"};
-  SemanticRow biased = {"biased", {}, {}, 0, "the test"};
-  biased.prior.edge_bias = {-0.02, 0.0, 0.01, -0.15};
-  WriteSemanticRows(file_, {"", {}, {biased, plain}}, {});
-  EXPECT_EQ(ReadSemanticRows(file_).rows[0].prior.edge_bias, biased.prior.edge_bias);
-  const json labels = json::parse(FileBytes(file_)).at("labels");
-  EXPECT_TRUE(labels.at("biased").contains("edge_bias"));
-  EXPECT_FALSE(labels.at("plain").contains("edge_bias"));
-}
-
 TEST_F(SemanticTableFileTest, WrittenRowsAreReadAsTheyWere) {
   SemanticRow cup = {
       "cup", {"mug"}, {{1.2, 0.9}, {0.1, 0.2}, 1.4, 0.5, LogNormal{0.1, 0.3}}, 7, "the test"};
   cup.prior.attitude = Attitude::kFree;
+  cup.prior.edge_bias = {-0.02, 0.0, 0.01, -0.15};
   const SemanticRow any = {"default", {}, {{1.0, 1.0}, {0.5, 0.5}, 1.1}, 0, "no preference"};
   WriteSemanticRows(file_, {"about cups", any, {cup}}, {});
   const SemanticRows rows = ReadSemanticRows(file_);
@@ -130,9 +120,11 @@ TEST_F(SemanticTableFileTest, WrittenRowsAreReadAsTheyWere) {
   EXPECT_EQ(row.prior.log_correlation, 0.5);
   EXPECT_EQ(row.prior.height_m.value().log_sigma, 0.3);
   EXPECT_EQ(row.prior.attitude, Attitude::kFree);
+  EXPECT_EQ(row.prior.edge_bias, cup.prior.edge_bias);
   EXPECT_EQ(row.samples, 7);
   EXPECT_EQ(row.source, "the test");
   EXPECT_EQ(rows.default_row.value().prior.shape_exponents, 1.1);
+  EXPECT_FALSE(json::parse(FileBytes(file_)).at("default").contains("edge_bias"));
 }
 
 TEST_F(SemanticTableFileTest, ArtefactsOfAnotherKindAreRefused) {
