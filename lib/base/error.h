@@ -28,25 +28,15 @@ class Error : public std::runtime_error {
   ExitCode exit_code_;
 };
 
-class SettingsError : public Error {
+template <ExitCode kExitCode>
+class ErrorWith : public Error {
  public:
-  explicit SettingsError(const std::string& message) : Error(ExitCode::kSettings, message) {}
+  explicit ErrorWith(const std::string& message) : Error(kExitCode, message) {}
 };
 
-class InputError : public Error {
- public:
-  explicit InputError(const std::string& message) : Error(ExitCode::kInput, message) {}
-};
-
-class NothingUsableError : public Error {
- public:
-  explicit NothingUsableError(const std::string& message)
-      : Error(ExitCode::kNothingUsable, message) {}
-};
-
-class NumericalError : public Error {
- public:
-  explicit NumericalError(const std::string& message) : Error(ExitCode::kNumerical, message) {}
-};
+using SettingsError = ErrorWith<ExitCode::kSettings>;
+using InputError = ErrorWith<ExitCode::kInput>;
+using NothingUsableError = ErrorWith<ExitCode::kNothingUsable>;
+using NumericalError = ErrorWith<ExitCode::kNumerical>;
 
 }  // namespace soslam

@@ -61,16 +61,6 @@ TEST_F(AtomicFileTest, AppearsOnlyWhenCommitted) {
   EXPECT_EQ(FilesInFolder(), 1);
 }
 
-TEST_F(AtomicFileTest, WithoutCommitTheOldFileStays) {
-  WriteTextFile(file, "old");
-  {
-    AtomicFile atomic(file);
-    std::ofstream(atomic.TemporaryPath()) << "half-wri";
-  }
-  EXPECT_EQ(FileBytes(file), "old");
-  EXPECT_EQ(FilesInFolder(), 1);
-}
-
 TEST_F(AtomicFileTest, IdenticalContentKeepsItsTime) {
   WriteTextFile(file, "same");
   const auto long_ago = fs::last_write_time(file) - std::chrono::hours(5);

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <limits>
 
 #include "base/error.h"
 #include "support/expect_error.h"
@@ -100,15 +99,6 @@ TEST_F(JsonFileTest, WritingWhatTheSchemaForbidsIsOurBug) {
   EXPECT_THROW(WriteArtefact(file, "landmarks", {}, {{"objects", 3}}), std::logic_error);
   EXPECT_THROW(WriteArtefact(file, "no such kind", {}, json::object()), std::logic_error);
   EXPECT_FALSE(std::filesystem::exists(file));
-}
-
-TEST_F(JsonFileTest, NonFiniteSettingsAreRefusedToo) {
-  ExpectError<NumericalError>(
-      [&] {
-        WriteArtefact(file, "landmarks",
-                      {{{"weight", std::numeric_limits<double>::infinity()}}, {}}, kEmptyLandmarks);
-      },
-      {"/artefact/settings/weight would be inf"});
 }
 
 // A misspelt keyword in a schema would silently check nothing. What has a default came after
