@@ -98,12 +98,6 @@ Landmark LandmarkFromJson(const json& json, const std::string& frame) {
 
 namespace {
 
-json PointToJson(const PointPosterior& point) {
-  return {{"point", point.index},
-          {"distance", point.distance},
-          {"responsibility", point.responsibility}};
-}
-
 json EstimateToJson(const ObjectEstimate& estimate, const Sequence& sequence) {
   const auto& landmark = estimate.landmark_in_world;
   const Object& object = sequence.objects.at(estimate.object_index);
@@ -114,7 +108,7 @@ json EstimateToJson(const ObjectEstimate& estimate, const Sequence& sequence) {
               {"failure", estimate.failure},
               {"proper_ellipsoid", estimate.proper_ellipsoid}};
   if (!object.labels.empty()) row["labels"] = object.labels;
-  if (!estimate.points.empty()) row["points"] = ListToJson(estimate.points, PointToJson);
+  if (!estimate.points.empty()) row["points"] = estimate.points;
   return row;
 }
 
@@ -132,9 +126,7 @@ ObjectEstimate ObjectEstimateFromJson(const json& row) {
   row.at("covariance").get_to(estimate.covariance);
   row.at("failure").get_to(estimate.failure);
   row.at("proper_ellipsoid").get_to(estimate.proper_ellipsoid);
-  estimate.points = ListFromJson(row, "points", [](const json& point) {
-    return PointPosterior{point.at("point"), point.at("distance"), point.at("responsibility")};
-  });
+  estimate.points = row.value("points", std::vector<PointPosterior>());
   return estimate;
 }
 

@@ -125,6 +125,7 @@ Landmark LandmarkFromJson(const nlohmann::json& json, const std::string& frame);
 ShapeExponents ShapeExponentsFromJson(const nlohmann::json& json, double absent);
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LabelProbability, label, probability)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PointPosterior, point, distance, responsibility)
 
 // The field "objects" of the artefacts "landmarks" and "map": the estimates of each object from all
 // its observations.

@@ -132,7 +132,7 @@ std::vector<PointPosterior> BackEndProblem::PointsOf(size_t object_index) const 
     std::ranges::copy(PointCostOf(object_index, view, in_camera).Posteriors(in_camera),
                       std::back_inserter(points));
   }
-  std::ranges::stable_sort(points, {}, &PointPosterior::index);
+  std::ranges::stable_sort(points, {}, &PointPosterior::point);
   return points;
 }
 

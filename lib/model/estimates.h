@@ -38,7 +38,7 @@ using Covariance9 = Eigen::Matrix<double, 9, 9>;
 
 // Sparse point that may be of an object, and what the object's landmark says of it.
 struct PointPosterior {
-  int index = 0;                // in the list of all points
+  int point = 0;                // index in the list of all points
   double distance = 0.0;        // from the surface, m, positive outside
   double responsibility = 0.0;  // posterior probability that it is of the object
 };

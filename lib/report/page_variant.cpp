@@ -183,7 +183,7 @@ json PagePoints(const MapEstimate& map, const std::vector<MapPoint>& points,
   std::vector<json> page(selection.detections.size());
   for (const ObjectEstimate& estimate : map.objects) {
     for (const PointPosterior& posterior : estimate.points) {
-      for (const PointObservation& observation : PointAt(posterior.index, points).observations) {
+      for (const PointObservation& observation : PointAt(posterior.point, points).observations) {
         const auto frame = FrameIndexOf(sequence, observation);
         if (!frame) continue;
         const auto place = places.find({static_cast<int>(*frame), estimate.object_index});

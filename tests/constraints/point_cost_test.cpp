@@ -107,7 +107,7 @@ TEST(PointCostTest, ResponsibilitiesArePosteriorProbabilities) {
       point.index = 7;
       const auto posteriors = PointCost({point}, cuboid, 1.0, options, 0.5).Posteriors(cuboid);
       ASSERT_EQ(posteriors.size(), 1u);
-      EXPECT_EQ(posteriors[0].index, 7);
+      EXPECT_EQ(posteriors[0].point, 7);
       EXPECT_NEAR(posteriors[0].distance, distance, 1e-9);
       EXPECT_NEAR(posteriors[0].responsibility,
                   1.0 - std::exp(CostAtDistance(distance, prior, 1.0, options) - far), 1e-9);
