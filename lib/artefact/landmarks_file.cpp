@@ -11,11 +11,9 @@
 
 namespace soslam {
 
-// Before version 1.1 there was no bias of the detector, before 1.9 no cost of boxes.
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(SolverSummary, initial_cost, final_cost, box_cost,
-                                                expected_box_cost, iterations, converged,
-                                                cost_per_iteration, residuals, gated,
-                                                detector_bias_px)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SolverSummary, initial_cost, final_cost, box_cost,
+                                   expected_box_cost, iterations, converged, cost_per_iteration,
+                                   residuals, gated, detector_bias_px)
 
 namespace {
 
@@ -129,11 +127,8 @@ MapEstimate ReadMap(const std::filesystem::path& path, const Sequence& sequence)
     map.objects = ObjectEstimatesFromJson(json.at("objects"), sequence);
     map.world_from_camera = ValuesOfItems<Rigid3d>(json.at("trajectory"), "trajectory", "frame",
                                                    "world_from_camera", sequence.frames);
-    // Before version 1.3 all planes were given.
-    map.planes_in_world = json.contains("planes")
-                              ? ValuesOfItems<Plane>(json["planes"], "planes", "plane",
-                                                     "plane_in_world", sequence.planes)
-                              : PlanesOf(sequence);
+    map.planes_in_world = ValuesOfItems<Plane>(json.at("planes"), "planes", "plane",
+                                               "plane_in_world", sequence.planes);
     json.at("solver").get_to(map.solver);
     return map;
   });

@@ -10,7 +10,7 @@ namespace soslam {
 using nlohmann::json;
 
 std::vector<Finding> FindingsFromJson(const json& artefact) {
-  return artefact.value("findings", std::vector<Finding>());  // since version 1.6
+  return artefact.value("findings", std::vector<Finding>());
 }
 
 namespace {

@@ -12,7 +12,6 @@
 #include "artefact/model_json.h"
 #include "base/error.h"
 #include "geometry/image_size.h"
-#include "model/occlusion.h"
 
 namespace soslam {
 namespace {
@@ -26,10 +25,9 @@ Frame FrameFromJson(const json& json) {
   if (!json.at("image").is_null()) json["image"].get_to(frame.image);
   json.at("world_from_camera").get_to(frame.world_from_camera);
   json.at("true_world_from_camera").get_to(frame.true_world_from_camera);
-  // Before version 1.2 all frames were of one segment and one camera.
-  if (json.contains("segment")) json["segment"].get_to(frame.segment);
+  json.at("segment").get_to(frame.segment);
   if (json.contains("camera")) frame.camera = json["camera"].get<Camera>();
-  frame.boxes_in_view = json.value("boxes_in_view", std::vector<Box>());  // since version 1.6
+  frame.boxes_in_view = json.value("boxes_in_view", std::vector<Box>());
   return frame;
 }
 
@@ -40,11 +38,10 @@ GroundTruth GroundTruthFromJson(const json& json) {
 }
 
 SupportPlane SupportPlaneFromJson(const json& json) {
-  return {
-      json.at("plane").get<int>(), json.at("plane_in_world").get<Plane>(),
-      json.value("attitude_information", std::optional<Eigen::Matrix3d>()),  // since version 1.3
-      json.value("height_prior", std::optional<HeightPrior>()),              // since version 1.7
-      json.value("scene_axis", std::optional<Eigen::Vector3d>())};           // since version 1.7
+  return {json.at("plane").get<int>(), json.at("plane_in_world").get<Plane>(),
+          json.value("attitude_information", std::optional<Eigen::Matrix3d>()),
+          json.value("height_prior", std::optional<HeightPrior>()),
+          json.value("scene_axis", std::optional<Eigen::Vector3d>())};
 }
 
 TrueObject TrueObjectFromJson(const json& json) {
@@ -54,23 +51,6 @@ TrueObject TrueObjectFromJson(const json& json) {
           json.at("segment").get<int>(),
           json.at("is_static").get<bool>(),
           json.value("is_ignored", false)};
-}
-
-// Fills true_objects of files before version 1.7, in which only detected objects had a ground
-// truth.
-void AddTruthOfOldVersions(Sequence* sequence) {
-  for (const Object& object : sequence->objects) {
-    if (!object.ground_truth) continue;
-    sequence->true_objects.push_back(
-        {object.id, object.label, *object.ground_truth, 0, object.is_static});
-  }
-  for (Detection& detection : sequence->detections) {
-    const int id = sequence->ObjectOf(detection).id;
-    const auto found = std::ranges::find(sequence->true_objects, id, &TrueObject::id);
-    if (found == sequence->true_objects.end()) continue;
-    detection.true_object_id = id;
-    found->segment = sequence->FrameOf(detection).segment;
-  }
 }
 
 TruthInFrame TruthInFrameFromJson(const json& row, const std::vector<Frame>& frames) {
@@ -101,12 +81,11 @@ Object ObjectFromJson(const json& json, const std::vector<SupportPlane>& planes)
   object.plane_index = plane.is_null() ? kNoPlane : IndexOfId("plane", planes, plane.get<int>());
   const auto& truth = json.at("ground_truth");
   if (!truth.is_null()) object.ground_truth = GroundTruthFromJson(truth);
-  if (json.contains("is_static")) json["is_static"].get_to(object.is_static);  // since version 1.2
-  object.labels = json.value("labels", std::vector<LabelProbability>());       // since version 1.7
+  json.at("is_static").get_to(object.is_static);
+  object.labels = json.value("labels", std::vector<LabelProbability>());
   return object;
 }
 
-// Coefficients of the distortion: 5 in all versions; 8, 12 or 14 since version 1.6.
 Distortion DistortionFromJson(const json& json) {
   const auto coefficients = json.get<std::vector<double>>();
   const auto distortion = DistortionOfCoefficients(coefficients);
@@ -133,15 +112,13 @@ Detection DetectionFromJson(const json& json, const std::vector<Frame>& frames,
   json.at("box").get_to(detection.box);
   const auto& plane = json.at("plane_in_camera");
   if (!plane.is_null()) plane.get_to(detection.plane_in_camera);
-  // Schema version 1.0 had no bounds: every edge counted as the object's own.
-  if (json.contains("bounds")) detection.is_one_sided = OneSidedFromJson(json["bounds"]);
-  detection.nearer_boxes = json.value("nearer_boxes", std::vector<Box>());
-  detection.nearer_in_view = json.value("nearer_in_view", 0);  // since version 1.6
+  detection.is_one_sided = OneSidedFromJson(json.at("bounds"));
+  json.at("nearer_in_view").get_to(detection.nearer_in_view);
   if (json.contains("own_in_view")) detection.own_in_view = json["own_in_view"].get<int>();
-  if (json.contains("true_landmark")) {  // since version 1.2
+  if (json.contains("true_landmark")) {
     detection.true_landmark_in_camera = LandmarkFromJson(json["true_landmark"], "camera");
   }
-  detection.true_object_id = json.value("true_object", std::optional<int>());  // since version 1.7
+  detection.true_object_id = json.value("true_object", std::optional<int>());
   return detection;
 }
 
@@ -262,32 +239,27 @@ void CheckPlanes(const json& json) {
   }
 }
 
-// Ground truth that does not depend on detections; since version 1.7.
+// Ground truth that does not depend on detections.
 void TruthFromJson(const json& json, Sequence* sequence) {
-  if (json.contains("true_objects")) {
-    sequence->true_objects = ListFromJson(json, "true_objects", &TrueObjectFromJson);
-  } else {
-    AddTruthOfOldVersions(sequence);
-  }
+  sequence->true_objects = ListFromJson(json, "true_objects", &TrueObjectFromJson);
   CheckAscendingIds("true object", sequence->true_objects);
   sequence->truth_in_frames =
       ListFromJson(json, "truth_in_frames", &TruthInFrameFromJson, sequence->frames);
   sequence->ignored = ListFromJson(json, "ignored", &IgnoredFromJson);
   sequence->odometry_world =
-      EnumFromName<OdometryWorld>(kOdometryWorldNames, json.value("odometry_world", "of_truth"));
+      EnumFromName<OdometryWorld>(kOdometryWorldNames, json.at("odometry_world"));
 }
 
 Sequence SequenceFromJson(const json& json) {
   Sequence sequence;
   json.at("name").get_to(sequence.name);
   json.at("camera").get_to(sequence.camera);
-  sequence.odometry_source = json.value("odometry_source", "");  // since version 1.7
-  if (json.contains("image_distortion")) {                       // since version 1.3
+  sequence.odometry_source = json.value("odometry_source", "");
+  if (json.contains("image_distortion")) {
     sequence.image_distortion = DistortionFromJson(json["image_distortion"]);
   }
-  // Before version 1.6 images were read as stored.
-  sequence.image_orientation = EnumFromName<ImageOrientation>(
-      kImageOrientationNames, json.value("image_orientation", "stored"));
+  sequence.image_orientation =
+      EnumFromName<ImageOrientation>(kImageOrientationNames, json.at("image_orientation"));
   CheckPlanes(json);
   sequence.frames = ListFromJson(json, "frames", &FrameFromJson);
   CheckSegments(sequence.frames);
@@ -300,18 +272,11 @@ Sequence SequenceFromJson(const json& json) {
       ListFromJson(json, "detections", &DetectionFromJson, sequence.frames, sequence.objects);
   CheckOrder(sequence.detections);
   CheckBoxesInView(sequence);
-  // Versions 1.0 and 1.1 had no possible occluders.
-  for (size_t i = 0; i < sequence.detections.size(); ++i) {
-    Detection& detection = sequence.detections[i];
-    const auto& fields = json.at("detections")[i];
-    if (fields.contains("nearer_boxes") || fields.contains("nearer_in_view")) continue;
-    detection.nearer_boxes = NearerBoxes(sequence, detection);
-  }
-  sequence.held_out = ListFromJson(json, "held_out", &HeldOutFromJson);  // since version 1.3
+  sequence.held_out = ListFromJson(json, "held_out", &HeldOutFromJson);
   CheckHeldOut(sequence);
   json.at("rejected_detections").get_to(sequence.rejected_detections);
   TruthFromJson(json, &sequence);
-  if (json.contains("rejected")) {  // since version 1.7
+  if (json.contains("rejected")) {
     sequence.rejected = RejectedFromJson(json["rejected"], sequence.frames);
   }
   sequence.images_without_pose = json.value("images_without_pose", std::vector<std::string>());

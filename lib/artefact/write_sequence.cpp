@@ -97,7 +97,6 @@ json DetectionToJson(const Detection& detection, const Sequence& sequence) {
                  {"bounds", OneSidedToJson(detection.is_one_sided)},
                  {"nearer_in_view", detection.nearer_in_view}};
   if (detection.own_in_view) fields["own_in_view"] = *detection.own_in_view;
-  if (!detection.nearer_boxes.empty()) fields["nearer_boxes"] = detection.nearer_boxes;
   if (detection.true_landmark_in_camera) {
     fields["true_landmark"] = LandmarkToJson(*detection.true_landmark_in_camera, "camera");
   }

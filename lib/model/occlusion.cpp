@@ -88,8 +88,7 @@ void ListBoxesInView(const Sequence& in_view, Sequence* sequence) {
 
 std::vector<Box> BoxesInFront(const Sequence& sequence, const Detection& detection) {
   const std::vector<Box>& in_view = sequence.FrameOf(detection).boxes_in_view;
-  std::vector<Box> boxes = detection.nearer_boxes;
-  boxes.reserve(boxes.size() + static_cast<size_t>(detection.nearer_in_view));
+  std::vector<Box> boxes;
   for (int i = 0; i < detection.nearer_in_view; ++i) {
     if (i != detection.own_in_view) boxes.push_back(in_view[i]);
   }

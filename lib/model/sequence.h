@@ -153,7 +153,6 @@ struct Detection {
   // except `own_in_view`, the box of the object itself, if it is among them. Computed at import.
   int nearer_in_view = 0;
   std::optional<int> own_in_view = std::nullopt;
-  std::vector<Box> nearer_boxes = {};  // possible occluders in files before version 1.6
   // Exact object pose in this frame, also while it moves; where the dataset has it per frame.
   std::optional<Landmark> true_landmark_in_camera = std::nullopt;
   // Id of the object in Sequence::true_objects, where the dataset gives it.

@@ -55,7 +55,6 @@ TEST_F(ArtefactFilesTest, MapsSayWhatAnObjectMayBe) {
 TEST_F(ArtefactFilesTest, WhatASequenceMayHaveComesBack) {
   ListBoxesInView(sequence, &sequence);
   sequence.detections[1].own_in_view = 0;
-  sequence.detections[2].nearer_boxes = {{1.0, 2.0, 3.0, 4.0}};  // of an older file
   const GroundTruth truth{RandomLandmarkInCamera(), false, true, true};
   HeldOutFrame held_out{sequence.frames.back(), {{"cup", 0.7, {10.5, 20.0, 30.0, 40.25}}}};
   held_out.frame.id = sequence.frames.back().id + 1;
@@ -95,7 +94,6 @@ TEST_F(ArtefactFilesTest, RowsOfRejectedDetectionsAreChecked) {
                      [&] { ReadSequence(file); });
 }
 
-// Files of older versions have values that the golden tests compare one by one.
 TEST_F(ArtefactFilesTest, WhatIsReadIsWrittenAgainBitForBit) {
   const auto expect_same = [&] { EXPECT_EQ(FileBytes(file), FileBytes(again)); };
   WriteSequence(file, sequence, {});

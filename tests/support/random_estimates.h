@@ -47,7 +47,6 @@ inline Sequence RandomSequence() {
                                      box,
                                      RandomPlane(),
                                      {(i & 1) != 0, (i & 2) != 0, (i & 4) != 0, (i & 8) != 0}});
-      sequence.detections.back().nearer_boxes.assign(i % 3, box);
       if (i % 3 == 0) sequence.detections.back().true_landmark_in_camera = RandomLandmark();
     }
   }

@@ -12,10 +12,10 @@
 namespace soslam {
 namespace {
 
-// The sequence that tests/golden/{landmarks,map}-1.1.json belong to.
-const Sequence& GoldenSequence() {
+// The sequence that the corpus `estimates` belongs to.
+const Sequence& SequenceOfEstimates() {
   static const Sequence sequence =
-      ReadSequence(SOSLAM_SOURCE_DIR "/tests/golden/sequence-1.1.json");
+      ReadSequence(SOSLAM_SOURCE_DIR "/tests/fuzz/corpus/sequence/of_estimates");
   return sequence;
 }
 
@@ -23,7 +23,7 @@ const Sequence& GoldenSequence() {
 const FuzzTarget kArtefacts("artefacts", [](const HostileInput& input) {
   const auto file = input.AsFile("artefact.json");
   IsAccepted(file, [&] { FormatInspection(Inspect(file, std::nullopt), false); });
-  IsAccepted(file, [&] { Inspect(file, GoldenSequence()); });
+  IsAccepted(file, [&] { Inspect(file, SequenceOfEstimates()); });
   IsAccepted(file, [&] { CompareArtefacts(file, file, 0.0); });
 });
 
@@ -39,12 +39,12 @@ const FuzzTarget kSequence("sequence", [](const HostileInput& input) {
 const FuzzTarget kEstimates("estimates", [](const HostileInput& input) {
   const auto file = input.AsFile("estimates.json");
   IsAccepted(file, [&] {
-    const LandmarkEstimates landmarks = ReadLandmarks(file, GoldenSequence());
-    WriteLandmarks(input.Output("landmarks.json"), landmarks, GoldenSequence(), {});
+    const LandmarkEstimates landmarks = ReadLandmarks(file, SequenceOfEstimates());
+    WriteLandmarks(input.Output("landmarks.json"), landmarks, SequenceOfEstimates(), {});
   });
   IsAccepted(file, [&] {
-    const MapEstimate map = ReadMap(file, GoldenSequence());
-    WriteMap(input.Output("map.json"), map, GoldenSequence(), {});
+    const MapEstimate map = ReadMap(file, SequenceOfEstimates());
+    WriteMap(input.Output("map.json"), map, SequenceOfEstimates(), {});
   });
 });
 

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include "artefact/files.h"
+#include "support/edited_json.h"
+#include "support/folder_test.h"
+#include "support/random_estimates.h"
+
+namespace soslam {
+namespace {
+
+// The three JSON artefacts of the model: a file with a mistake is refused.
+class EditedFileTest : public FolderTest {
+ protected:
+  const std::filesystem::path file = folder_ / "artefact.json";
+  const Sequence sequence = RandomSequence();
+};
+
+TEST_F(EditedFileTest, SequencesAreRefused) {
+  WriteSequence(file, sequence, {});
+  ExpectEditsRefused(
+      file,
+      {{"/frames/1/colour", "3", "/frames/1"},
+       {"/camera/fx", nullptr, "/camera"},
+       {"/detections/2/box/1", "\"7\"", "/detections/2/box/1 is \"7\""},
+       {"/detections/2/score", "null", "/detections/2/score is null"},
+       {"/detections/2/nearer_in_view", nullptr, "/detections/2"},
+       {"/frames/0/world_from_camera/translation", "[1, 2]",
+        "/frames/0/world_from_camera/translation is [1,2]"},
+       {"/camera/fx", "0", "/camera/fx is 0"},
+       {"/objects/0/ground_truth/landmark/half_axes/2", "-1",
+        "/objects/0/ground_truth/landmark/half_axes/2 is -1"},
+       {"/objects/0/ground_truth/landmark/shape_exponent", "0.99",
+        "/objects/0/ground_truth/landmark/shape_exponent is 0.99"},
+       {"/detections/1/bounds", R"(["left", "front"])", "/detections/1/bounds/1 is \"front\""},
+       {"/detections/1/bounds", R"(["left", "left"])",
+        "/detections/1/bounds is [\"left\",\"left\"]"},
+       {"/objects/0/object", "4294967297", "/objects/0/object is 4294967297"},
+       {"/frames/0/world_from_camera/rotation_xyzw", "[0, 0, 0, 2]", "norm 2"},
+       {"/planes/0/plane_in_world/normal", "[0, 0, 0]", "norm 0"},
+       {"/objects/0/plane", "99", "plane 99 is not in the sequence"},
+       {"/detections/0/frame", "11", "frame 11 is not in the sequence"},
+       {"/frames/1/frame", "10", "frame 10 follows frame 10"},
+       {"/detections/1/plane_in_camera", "null",
+        "/detections/1/plane_in_camera is null; expected a plane"},
+       {"/detections/1/nearer_in_view", "1",
+        "/detections/1/nearer_in_view is 1; expected at most the 0 boxes_in_view"},
+       {"/detections/3/frame", "10", "/detections/3 is out of order"}},
+      [&] { ReadSequence(file); });
+}
+
+TEST_F(EditedFileTest, LandmarksAreRefused) {
+  WriteLandmarks(file, RandomLandmarkEstimates(), sequence, {});
+  ExpectEditsRefused(file,
+                     {{"/observations/1/object", "99",
+                       "/observations/1: the sequence has no detection of object 99"},
+                      {"/objects/0/object", "99", "object 99 is not in the sequence"},
+                      {"/objects/0/landmark/shape_exponent", "\"cuboid\"",
+                       "/objects/0/landmark/shape_exponent is \"cuboid\""},
+                      {"/observations/0/hypotheses/0/landmark/shape_exponent", "2.01",
+                       "/observations/0/hypotheses/0/landmark/shape_exponent is 2.01"},
+                      {"/objects/0/covariance/4", "[1]", "/objects/0/covariance/4 is [1]"},
+                      {"/observations/0/hypotheses/0/landmark/camera_from_object", nullptr,
+                       "/observations/0/hypotheses/0/landmark"}},
+                     [&] { ReadLandmarks(file, sequence); });
+}
+
+TEST_F(EditedFileTest, MapsAreRefused) {
+  WriteMap(file, RandomMap(), sequence, {});
+  ExpectEditsRefused(
+      file,
+      {{"/trajectory", "[]", "has 0 rows; expected 5, one per frame"},
+       {"/objects/0/landmark/shape_exponent", "3", "/objects/0/landmark/shape_exponent is 3"},
+       {"/objects/0/points/1/responsibility", "1.5", "/objects/0/points/1/responsibility is 1.5"},
+       {"/trajectory/2/frame", "21", "/trajectory/2/frame is 21; expected 20"},
+       {"/solver/iterations", "1.5", "/solver/iterations is 1.5"}},
+      [&] { ReadMap(file, sequence); });
+}
+
+}  // namespace
+}  // namespace soslam
