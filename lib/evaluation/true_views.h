@@ -29,7 +29,7 @@ class TrueViews {
   std::optional<Landmark> FromPose(const Rigid3d& world_from_camera, int frame_index,
                                    const TrueObject& object) const;
 
-  // Of the true objects that have poses per frame, by id, by frame.
+  // True landmarks that have poses per frame, by id, by frame.
   std::map<int, std::map<int, const Landmark*>> of_frames_;
 };
 
