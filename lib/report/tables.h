@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "base/table.h"
-#include "model/sequence.h"
 #include "report/results_tree.h"
 
 namespace soslam {
@@ -114,11 +113,21 @@ struct LandmarkTime {
   double observations = 0.0;  // mean number per landmark
 };
 
+// Counts of a sequence.json.
+struct SequenceCounts {
+  int observations = 0;
+  int objects = 0;  // objects that were observed
+};
+
+// Throws InputError for a file that cannot be read or has no detections of objects.
+SequenceCounts CountObservations(const std::filesystem::path& sequence_file);
+
 // None without metrics, observations, or the timing of one of these stages.
-std::optional<LandmarkTime> TimePerLandmark(const VariantResult& variant, const Sequence& sequence);
+std::optional<LandmarkTime> TimePerLandmark(const VariantResult& variant,
+                                            const SequenceCounts& counts);
 
 // Table V of the paper: datasets by variants, with the published times; without rows when no
-// variant has a time. Throws InputError for a sequence.json that is not valid.
+// variant has a time. Throws InputError as CountObservations.
 Table TimeTable(const std::vector<DatasetResult>& datasets, const Published& published);
 
 // A comparison of two variants: the errors of `variant` minus those of `baseline`.

@@ -6,12 +6,15 @@
 #include <map>
 #include <set>
 
-#include "artefact/files.h"
+#include "artefact/json_file.h"
+#include "base/error.h"
 #include "base/paths.h"
 #include "report/tables.h"
 
 namespace soslam {
 namespace {
+
+using nlohmann::json;
 
 constexpr std::array kLandmarkStages = {"edges", "track", "initialise", "refine"};
 constexpr const char* kMapStage = "optimise";
@@ -46,15 +49,15 @@ constexpr std::array<TimeRow, 3> kTimeRows = {{{"wall ms", &LandmarkTime::wall_m
 // Times in the order of kKnownVariants. Variants share sequences, which can be large: each is read
 // once.
 std::vector<std::optional<LandmarkTime>> TimesOf(const DatasetResult& dataset) {
-  std::map<std::filesystem::path, Sequence> sequences;
+  std::map<std::filesystem::path, SequenceCounts> counts;
   std::vector<std::optional<LandmarkTime>> times;
   for (const char* name : kKnownVariants) {
     const VariantResult* const variant = dataset.Evaluated(name);
     times.emplace_back();
     if (!variant || !Exists(variant->folder / "sequence.json")) continue;
     const auto file = std::filesystem::canonical(variant->folder / "sequence.json");
-    if (!sequences.contains(file)) sequences[file] = ReadSequence(file, PlaneNeed::kNotNeeded);
-    times.back() = TimePerLandmark(*variant, sequences[file]);
+    if (!counts.contains(file)) counts[file] = CountObservations(file);
+    times.back() = TimePerLandmark(*variant, counts[file]);
   }
   return times;
 }
@@ -90,8 +93,20 @@ void AddPublishedTimes(const PublishedTimes& published, Table* table) {
 
 }  // namespace
 
+SequenceCounts CountObservations(const std::filesystem::path& sequence_file) {
+  const json sequence = ParseJsonFile(sequence_file);
+  std::set<json> objects;
+  try {
+    for (const json& detection : sequence.at("detections")) objects.insert(detection.at("object"));
+    return {static_cast<int>(sequence.at("detections").size()), static_cast<int>(objects.size())};
+  } catch (const json::exception& error) {
+    throw InputError(fmt::format("{}: expected detections, each of an object: {}",
+                                 sequence_file.string(), error.what()));
+  }
+}
+
 std::optional<LandmarkTime> TimePerLandmark(const VariantResult& variant,
-                                            const Sequence& sequence) {
+                                            const SequenceCounts& counts) {
   if (variant.metrics.is_null()) return std::nullopt;
   const bool is_map =
       std::ranges::find(variant.stages, kMapStage, &StageRun::stage) != variant.stages.end();
@@ -106,13 +121,11 @@ std::optional<LandmarkTime> TimePerLandmark(const VariantResult& variant,
     wall_s += run.timing->wall_s;
     cpu_s += run.timing->cpu_s;
   }
-  std::set<int> objects;
-  for (const Detection& detection : sequence.detections) objects.insert(detection.object_index);
   const bool is_single_frame = !variant.metrics.at("first_observation").is_null();
-  const auto observations = static_cast<double>(sequence.detections.size());
-  const auto landmarks = is_single_frame ? observations : static_cast<double>(objects.size());
-  if (runs.empty() || objects.empty()) return std::nullopt;
-  return LandmarkTime{1e3 * wall_s / landmarks, 1e3 * cpu_s / landmarks, observations / landmarks};
+  const int landmarks = is_single_frame ? counts.observations : counts.objects;
+  if (runs.empty() || landmarks == 0) return std::nullopt;
+  return LandmarkTime{1e3 * wall_s / landmarks, 1e3 * cpu_s / landmarks,
+                      static_cast<double>(counts.observations) / landmarks};
 }
 
 Table TimeTable(const std::vector<DatasetResult>& datasets, const Published& published) {

@@ -11,7 +11,6 @@
 #include "report/results_tree.h"
 #include "support/expect_error.h"
 #include "support/results_folder.h"
-#include "support/scene.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {
@@ -225,15 +224,19 @@ TEST(QualityTables, TitlesSayWhatAlignedTheMaps) {
   EXPECT_EQ(title({{unknown}}), "alignment none");
 }
 
+// Eight observations of two objects.
+constexpr const char* kSequence = R"({"detections": [
+  {"object": 1}, {"object": 1}, {"object": 2}, {"object": 1},
+  {"object": 2}, {"object": 2}, {"object": 2}, {"object": 2}]})";
+
 class TimingTableTest : public testing::Test {
  protected:
-  TimingTableTest() { sequence_.detections.resize(8); }
   // A variant made of these runs, of which `optimise-4` takes 4 s of wall and 4.5 s of CPU time.
   void Write(const std::string& variant, const std::vector<std::string>& runs,
              bool is_single_frame) {
     results_.WriteMetrics("room", variant, {{.id = 1}, {.id = 2}}, is_single_frame);
     results_.WriteStages("room", variant, runs);
-    WriteSequence(results_.VariantFolder("room", variant) / "sequence.json", sequence_, {});
+    WriteBytes(results_.VariantFolder("room", variant) / "sequence.json", kSequence);
     for (const std::string& run : runs) {
       const double seconds = std::stod(run.substr(run.rfind('-') + 1));
       results_.WriteTiming("room", run, seconds, seconds + 0.5);
@@ -242,11 +245,10 @@ class TimingTableTest : public testing::Test {
   std::vector<DatasetResult> Read() const { return ReadResults(results_.path()); }
   std::optional<LandmarkTime> TimeOf(const std::string& variant) const {
     const DatasetResult dataset = Read().front();
-    return TimePerLandmark(*dataset.Evaluated(variant), sequence_);
+    return TimePerLandmark(*dataset.Evaluated(variant), {.observations = 8, .objects = 2});
   }
 
   ResultsFolder results_;
-  Sequence sequence_ = CuboidSequence(2, 6);  // eight observations of two objects
 };
 
 // Single frames count from edges and tracks to refinement, per observation; initialisation from all
@@ -298,6 +300,13 @@ TEST_F(TimingTableTest, MeasuredAndPublishedTimesOnTheirMachines) {
             "Measured on: A CPU, 4 cores, 2 threads. Stages that ran side by side have longer wall "
             "times.");
   EXPECT_EQ(table.notes.back(), "Published: A paper, on A laptop.");
+}
+
+TEST(CountObservations, RefusesASequenceWithoutDetectionsByName) {
+  const TemporaryFolder folder;
+  WriteBytes(folder / "sequence.json", R"({"frames": []})");
+  ExpectError<InputError>([&] { CountObservations(folder / "sequence.json"); },
+                          {"sequence.json", "detections"});
 }
 
 using testing::HasSubstr;
