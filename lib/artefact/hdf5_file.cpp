@@ -288,10 +288,13 @@ void Hdf5File::ReadArray(const std::string& name, int depth, const std::vector<i
     chunk = ReadChunk(data_set, shape, Size());
   }
   const size_t bytes = CountOf(shape) * element_size;
-  if (bytes > 0 && (!chunk || bytes > kMaxPacking * chunk->size())) {
+  if (bytes > 0 && !chunk) {
     FailReading(name,
-                "has not the values that its size says, in this file as one chunk, shuffled and "
-                "deflated; the file is cut short, damaged or of another program");
+                "is not stored in this file as one chunk, shuffled and deflated; the file is of "
+                "another program, cut short or damaged");
+  }
+  if (bytes > 0 && bytes > kMaxPacking * chunk->size()) {
+    FailReading(name, "has fewer bytes than its size needs; the file is cut short or damaged");
   }
   const std::span<std::byte> values(static_cast<std::byte*>(allocate(shape)), bytes);
   if (bytes > 0 && !DecodeChunk(*chunk, element_size, values)) FailReading(name, kDamaged);

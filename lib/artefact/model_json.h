@@ -116,8 +116,7 @@ inline constexpr std::array kEdgeNames = {"left", "top", "right", "bottom"};
 
 // {"<frame>_from_object": rigid, "half_axes": [a, b, c] in metres, "shape_exponent": 1 to 2,
 // "vertical_exponent": 1 to 2, the same if absent, "rests_on": a name of kRestingFaceNames,
-// "bottom" if absent}; `frame` is "world" or "camera". Schema version 1.0 had no exponents: all
-// were ellipsoids.
+// "bottom" if absent}; `frame` is "world" or "camera".
 nlohmann::json LandmarkToJson(const Landmark& landmark, const std::string& frame);
 Landmark LandmarkFromJson(const nlohmann::json& json, const std::string& frame);
 

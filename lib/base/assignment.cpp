@@ -9,17 +9,24 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // A matching that is optimal for the rows added so far: reduced costs (those minus both potentials)
-// are zero in it and non-negative elsewhere.
+// are zero in it and non-negative elsewhere. Behind the given columns there is one dummy column per
+// row, which stands for no column, so that a row can always be added.
 struct Matching {
-  Eigen::MatrixXd costs;
+  const Eigen::MatrixXd& costs;
+  const Eigen::VectorXd& unassigned_costs;
   Eigen::VectorXd row_potentials, column_potentials;
   std::vector<int> row_of_column;
+
+  double Cost(int row, int column) const {
+    if (column < costs.cols()) return costs(row, column);
+    return column - costs.cols() == row ? unassigned_costs[row] : kInfinity;
+  }
 };
 
 // Adds a row along the shortest path (by reduced costs) from it to a free column.
 void Add(int row, Matching* matching) {
-  auto& [costs, row_potentials, column_potentials, row_of_column] = *matching;
-  const auto columns = static_cast<int>(costs.cols());
+  auto& [costs, unassigned_costs, row_potentials, column_potentials, row_of_column] = *matching;
+  const auto columns = static_cast<int>(column_potentials.size());
   Eigen::VectorXd distances = Eigen::VectorXd::Constant(columns, kInfinity);
   std::vector<int> before(row_of_column.size(), kUnassigned);  // predecessor on the path
   std::vector<bool> reached(row_of_column.size(), false);
@@ -30,8 +37,8 @@ void Add(int row, Matching* matching) {
     int nearest = kUnassigned;
     for (int column = 0; column < columns; ++column) {
       if (reached[column]) continue;
-      const double distance =
-          length + costs(end_row, column) - row_potentials[end_row] - column_potentials[column];
+      const double distance = length + matching->Cost(end_row, column) - row_potentials[end_row] -
+                              column_potentials[column];
       if (distance < distances[column]) {
         distances[column] = distance;
         before[column] = end;
@@ -60,13 +67,9 @@ void Add(int row, Matching* matching) {
 std::vector<int> Assign(const Eigen::MatrixXd& costs, const Eigen::VectorXd& unassigned_costs) {
   const auto rows = unassigned_costs.size();
   const auto columns = costs.cols();
-  // Behind the given columns there is one dummy column per row, which stands for no column, so that
-  // a row can always be added.
-  Matching matching = {Eigen::MatrixXd::Constant(rows, columns + rows, kInfinity),
-                       Eigen::VectorXd::Zero(rows), Eigen::VectorXd::Zero(columns + rows),
+  Matching matching = {costs, unassigned_costs, Eigen::VectorXd::Zero(rows),
+                       Eigen::VectorXd::Zero(columns + rows),
                        std::vector<int>(static_cast<size_t>(columns + rows), kUnassigned)};
-  matching.costs.leftCols(columns) = costs;
-  matching.costs.rightCols(rows).diagonal() = unassigned_costs;
   for (int row = 0; row < rows; ++row) Add(row, &matching);
   std::vector<int> column_of_row(static_cast<size_t>(rows), kUnassigned);
   for (int column = 0; column < columns; ++column) {

@@ -27,9 +27,12 @@ DatasetContent ReadContent(const std::filesystem::path& folder, const ImportOpti
       return ReadKittiObject(folder, options);
     case DatasetFormat::kSlamSynthetic:
       return ReadSlamSynthetic(folder, options);
-    default:
+    case DatasetFormat::kSoslam:
+    case DatasetFormat::kTumRgbd:
+    case DatasetFormat::kIclNuim:
       return ReadSoslamFolder(folder, options);
   }
+  throw std::logic_error("format without a reader");
 }
 
 // Position of a dataset frame in Sequence::frames, or the reason why it is not used.

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 #include "base/text.h"
@@ -100,7 +99,7 @@ std::vector<Finding> CheckReconstruction(const ReconstructionSummary& summary,
   std::vector<Finding> findings;
   if (summary.registered < kRegistered * summary.images) {
     std::string causes = "images that are blurred, show little texture, or overlap too little";
-    // They may be renamed if the model has at least as many that are not listed.
+    // Images without a pose may be renamed if the model has at least as many that are not listed.
     if (unlisted.size() >= summary.images_without_pose.size()) {
       causes += "; or other names than in the model, which has images that are not listed: " +
                 NamesInWords(unlisted);

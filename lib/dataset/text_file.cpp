@@ -40,13 +40,33 @@ void CheckEncoding(std::string_view text, const std::string& place) {
 
 bool IsComment(std::string_view line) { return Trimmed(line).starts_with('#'); }
 
+// The lines of a text, all of them or neither blank ones nor comments.
+std::vector<TextLine> LinesOf(const std::string& text, const std::string& name, bool all) {
+  if (!text.empty()) CheckIsNotUtf16(static_cast<unsigned char>(text.front()), name);
+  std::string_view rest = text;
+  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
+  const char line_end = rest.find('\n') == rest.npos ? '\r' : '\n';
+  std::vector<TextLine> lines;
+  for (size_t number = 1; !rest.empty(); ++number) {
+    std::string line(rest.substr(0, rest.find(line_end)));
+    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+    line.erase(line.find_last_not_of('\r') + 1);
+    const bool is_comment = IsComment(line);
+    if (!all && (is_comment || Trimmed(line).empty())) continue;
+    lines.push_back({fmt::format("{}:{}", name, number), std::move(line)});
+    if (!is_comment) CheckEncoding(lines.back().text, lines.back().place);
+    constexpr size_t kMaxLines = 4'000'000;  // blank lines take much more memory than in the file
+    if (all && number > kMaxLines) {
+      throw InputError(fmt::format("{}: has more than {} lines", name, kMaxLines));
+    }
+  }
+  return lines;
+}
+
 // Lines without the characters of `blanks` at both ends; neither blank lines nor comments.
 std::vector<TextLine> LinesWithout(std::string_view blanks, const std::string& text,
                                    const std::string& name) {
-  std::vector<TextLine> lines = RawLines(text, name);
-  std::erase_if(lines, [](const TextLine& line) {
-    return Trimmed(line.text).empty() || IsComment(line.text);
-  });
+  std::vector<TextLine> lines = LinesOf(text, name, /*all=*/false);
   for (TextLine& line : lines) {
     line.text.erase(line.text.find_last_not_of(blanks) + 1);
     line.text.erase(0, line.text.find_first_not_of(blanks));
@@ -78,10 +98,11 @@ std::string ReadWholeFile(const std::filesystem::path& path, const char* kind) {
   RecordInput(path);
   std::ifstream stream;
   if (IsFile(path)) stream.open(path, std::ios::binary);  // opening a pipe would block
-  if (!stream.is_open()) {
+  std::error_code failed;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, failed);
+  if (!stream.is_open() || failed) {
     throw InputError(fmt::format("{}: cannot be read; expected a {}", path.string(), kind));
   }
-  const std::uintmax_t bytes = std::filesystem::file_size(path);
   if (bytes > kMaxBytes) {
     throw InputError(fmt::format("{}: has {} bytes; expected a {} of at most {}", path.string(),
                                  bytes, kind, kMaxBytes));
@@ -98,23 +119,7 @@ std::vector<TextLine> TextLines(const std::string& text, const std::string& name
 }
 
 std::vector<TextLine> RawLines(const std::string& text, const std::string& name) {
-  constexpr size_t kMaxLines = 20'000'000;
-  if (!text.empty()) CheckIsNotUtf16(static_cast<unsigned char>(text.front()), name);
-  std::string_view rest = text;
-  if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
-  const char line_end = rest.find('\n') == rest.npos ? '\r' : '\n';
-  std::vector<TextLine> lines;
-  while (!rest.empty()) {
-    if (lines.size() == kMaxLines) {
-      throw InputError(fmt::format("{}: has more than {} lines", name, kMaxLines));
-    }
-    std::string line(rest.substr(0, rest.find(line_end)));
-    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
-    line.erase(line.find_last_not_of('\r') + 1);
-    lines.push_back({fmt::format("{}:{}", name, lines.size() + 1), std::move(line)});
-    if (!IsComment(lines.back().text)) CheckEncoding(lines.back().text, lines.back().place);
-  }
-  return lines;
+  return LinesOf(text, name, /*all=*/true);
 }
 
 double ParseReal(std::string_view text, const std::string& place, const std::string& field) {

@@ -6,10 +6,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "geometry/angles.h"
-#include "model/segments.h"
 
 namespace soslam {
 namespace {
@@ -183,21 +181,28 @@ Alignment Align(const std::vector<PosePair>& pairs, AlignmentKind kind) {
 
 Alignments AlignSegments(const Sequence& sequence, const std::vector<Rigid3d>& world_from_camera,
                          AlignmentKind choice) {
-  std::set<int> segments;
-  for (const Frame& frame : sequence.frames) segments.insert(frame.segment);
+  struct Segment {
+    std::vector<PosePair> odometry, estimated;
+  };
+  std::map<int, Segment> segments;
+  for (size_t i = 0; i < sequence.frames.size(); ++i) {
+    const Frame& frame = sequence.frames[i];
+    Segment& segment = segments[frame.segment];
+    if (!frame.true_world_from_camera) continue;
+    segment.odometry.push_back({frame.world_from_camera, *frame.true_world_from_camera});
+    segment.estimated.push_back({world_from_camera[i], *frame.true_world_from_camera});
+  }
   Alignments alignments;
-  for (const int segment : segments) {
-    const AlignmentKind asked =
-        ChosenKind(choice, sequence, PosePairs(sequence, PosesOf(sequence), segment));
-    const auto poses = PosePairs(sequence, world_from_camera, segment);
-    const Alignment alignment = Align(poses, asked);
+  for (const auto& [segment, poses] : segments) {
+    const AlignmentKind asked = ChosenKind(choice, sequence, poses.odometry);
+    const Alignment alignment = Align(poses.estimated, asked);
     alignments.of_segment[segment] = alignment;
     if (alignment.kind != asked) {
       alignments.findings.push_back(NotAsAsked(alignment, asked, segment));
     }
-    if (poses.empty() || alignment.kind == AlignmentKind::kSimilarity) continue;
-    const Alignment similarity = Align(poses, AlignmentKind::kSimilarity);
-    if (HaveOtherScale(Align(poses, AlignmentKind::kRigid), similarity)) {
+    if (poses.estimated.empty() || alignment.kind == AlignmentKind::kSimilarity) continue;
+    const Alignment similarity = Align(poses.estimated, AlignmentKind::kSimilarity);
+    if (HaveOtherScale(Align(poses.estimated, AlignmentKind::kRigid), similarity)) {
       alignments.findings.push_back(OtherScale(alignment, similarity, segment));
     }
   }
@@ -209,13 +214,14 @@ AlignedMap ApplyAlignments(const Sequence& sequence, const std::vector<ObjectEst
                            const std::vector<Plane>& planes_in_world,
                            const Alignments& alignments) {
   AlignedMap map;
-  const auto segments = SegmentsOfObjects(sequence);
+  const auto detections = DetectionsByObject(sequence);
   for (const ObjectEstimate& estimate : estimates) {
-    const auto& segment = segments[estimate.object_index];
-    if (!estimate.landmark_in_world || !segment) continue;
-    const Alignment& alignment = alignments.of_segment.at(*segment);
+    const std::vector<int>& own = detections[estimate.object_index];
+    if (!estimate.landmark_in_world || own.empty()) continue;
+    const int segment = sequence.FrameOf(sequence.detections[own.front()]).segment;
+    const Alignment& alignment = alignments.of_segment.at(segment);
     map.landmarks.push_back(
-        {estimate.object_index, *segment, alignment.Apply(*estimate.landmark_in_world)});
+        {estimate.object_index, segment, alignment.Apply(*estimate.landmark_in_world)});
     const int plane = sequence.objects[estimate.object_index].plane_index;
     if (plane >= 0 && static_cast<size_t>(plane) < planes_in_world.size()) {
       map.landmarks.back().plane_in_world = alignment.Apply(planes_in_world[plane]);

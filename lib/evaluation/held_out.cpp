@@ -7,7 +7,6 @@
 #include "base/assignment.h"
 #include "evaluation/map_reasons.h"
 #include "evaluation/statistics.h"
-#include "model/segments.h"
 
 namespace soslam {
 namespace {
@@ -24,12 +23,13 @@ struct Judged {
 
 std::vector<Judged> JudgedLandmarks(const Sequence& sequence,
                                     const std::vector<ObjectEstimate>& estimates) {
-  const auto segments = SegmentsOfObjects(sequence);
+  const auto detections = DetectionsByObject(sequence);
   std::vector<Judged> judged;
   for (const ObjectEstimate& estimate : estimates) {
-    const auto& segment = segments[estimate.object_index];
-    if (!estimate.landmark_in_world || !segment) continue;
-    judged.push_back({estimate.object_index, *estimate.landmark_in_world, *segment});
+    const std::vector<int>& own = detections[estimate.object_index];
+    if (!estimate.landmark_in_world || own.empty()) continue;
+    const int segment = sequence.FrameOf(sequence.detections[own.front()]).segment;
+    judged.push_back({estimate.object_index, *estimate.landmark_in_world, segment});
   }
   return judged;
 }

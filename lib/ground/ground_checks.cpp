@@ -136,7 +136,7 @@ void CheckSupport(const GroundEstimate& estimate, std::vector<Finding>* findings
                        "look at the map from the side; more images of the ground"});
 }
 
-// Each CameraHolding in words.
+// Each CameraHolding in words, in their order.
 constexpr std::array kHoldingWords = {
     "level, as is usual",
     "turned clockwise by a quarter turn",
@@ -144,6 +144,7 @@ constexpr std::array kHoldingWords = {
     "turned anticlockwise by a quarter turn",
     "looking straight down, with upright images",
     "looking straight down, with images turned by a quarter turn"};
+static_assert(kHoldingWords.size() == kCameraHoldingNames.size());
 
 constexpr const char* kSeeWhetherUpright =
     "see in the map from the side whether objects stand upright. If not, take photos with the "

@@ -43,7 +43,8 @@ VideoReader::VideoReader(const std::filesystem::path& path) : path_(path) {
     throw InputError(
         fmt::format("{}: is no video that can be read; expected {}", path.string(), kFormats));
   }
-  // FFmpeg says on stderr what our own error says: AV_LOG_QUIET.
+  // AV_LOG_QUIET: FFmpeg's own messages do not name the file. Frames that it leaves out are
+  // counted.
   ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", /*overwrite=*/0);
   // FFmpeg takes relative names with a colon for addresses.
   capture_ = std::make_unique<cv::VideoCapture>(PlainPath(path).string(), cv::CAP_FFMPEG);

@@ -105,11 +105,14 @@ std::vector<std::string> DoubtsOfMap(const fs::path& folder, const MapEstimate& 
                                      const Sequence& sequence) {
   std::map<int, Sightings> sightings = ReadSightings(folder / "associations.json");
   const std::vector<std::optional<int>> segments = SegmentsOfObjects(sequence);
+  std::map<int, Eigen::Vector3d> up_of_segment;
   std::vector<std::string> doubts;
   for (const ObjectEstimate& estimate : map.objects) {
-    doubts.push_back(
-        DoubtsInWords(estimate, sightings[sequence.objects[estimate.object_index].id],
-                      UpOfSegment(sequence, segments[estimate.object_index].value_or(0))));
+    const int segment = segments[estimate.object_index].value_or(0);
+    if (!up_of_segment.contains(segment)) up_of_segment[segment] = UpOfSegment(sequence, segment);
+    doubts.push_back(DoubtsInWords(estimate,
+                                   sightings[sequence.objects[estimate.object_index].id],
+                                   up_of_segment[segment]));
   }
   return doubts;
 }

@@ -21,11 +21,12 @@ using InstanceIds = std::map<std::string, std::string>;
 // What a stage of a variant reads, in which these instances come before it.
 std::map<std::string, ArtefactSource> InputsOf(const std::string& stage, const json& settings,
                                                const InstanceIds& before) {
-  // The output of the first of these stages that the variant has; the last one it always has.
+  // The output of the first of these stages that the variant has.
   const auto latest = [&](const std::vector<std::string>& stages) -> ArtefactSource {
-    const std::string& maker = *std::ranges::find_if(
-        stages, [&](const std::string& name) { return before.contains(name); });
-    return {before.at(maker), OutputsOfStage(maker).front().file};
+    for (const std::string& maker : stages) {
+      if (before.contains(maker)) return {before.at(maker), OutputsOfStage(maker).front().file};
+    }
+    throw std::logic_error(stage + " has no input");  // settings are checked before
   };
   if (stage == "import") return {};
   // Neither edge maps nor points depend on the world or its unit.

@@ -67,7 +67,7 @@ class Hdf5ChecksTest : public FolderTest {
 TEST_F(Hdf5ChecksTest, SizeWithoutValues) {
   const ArrayShape shape = {100'000'000};
   WriteChunk(CreateDataSet(shape, Hdf5DataSetCreation(shape).id()), Packed(100));
-  ExpectRefused({"bad.h5", "/values", "has not the values that its size says"});
+  ExpectRefused({"bad.h5", "/values", "has fewer bytes than its size needs"});
 }
 
 TEST_F(Hdf5ChecksTest, SizeBeyondMemory) {
