@@ -90,7 +90,7 @@ RunRecord RunFromJson(const json& document) {
   auto record = document.get<RunRecord>();
   record.software = {document.at("artefact").at("software"), document.at("compiler"),
                      document.at("libraries")};
-  record.called_in = document.value("called_in", std::string());
+  record.called_in = document.at("called_in").get<std::string>();
   CheckBases(record.inputs, record, "/inputs");
   CheckBases(record.outputs, record, "/outputs");
   if (!document.at("error").is_null()) record.error = document.at("error");

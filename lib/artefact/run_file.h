@@ -48,7 +48,7 @@ struct RunRecord {
   std::optional<std::map<std::string, RunSetting>> settings;  // none: they were not valid
   bool allow_outside_paths = false;
   std::optional<int> seed;
-  std::filesystem::path called_in;  // absolute; empty in records from before 1.5
+  std::filesystem::path called_in;                       // absolute
   std::map<std::string, std::filesystem::path> folders;  // arguments that are folders, as called
   std::vector<RunFile> inputs;
   std::vector<RunFile> outputs;

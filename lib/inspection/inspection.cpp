@@ -58,8 +58,7 @@ const std::vector<Maker>& Makers() {
   return makers;
 }
 
-// Headers do not name the stage. It is the one whose options share most names with the settings
-// (older versions may have fewer).
+// Headers do not name the stage. It is the one whose options share most names with the settings.
 const Maker* MakerOf(const std::string& kind, const json& settings) {
   const Maker* best = nullptr;
   size_t most = 0;

@@ -101,8 +101,7 @@ TEST_F(JsonFileTest, WritingWhatTheSchemaForbidsIsOurBug) {
   EXPECT_FALSE(std::filesystem::exists(file));
 }
 
-// A misspelt keyword in a schema would silently check nothing. What has a default came after
-// version 1.0 and may be absent.
+// A misspelt keyword in a schema would silently check nothing. What has a default may be absent.
 TEST(SchemaTest, EverySchemaDescribesEveryField) {
   ASSERT_TRUE(EmbeddedSchemas().contains("sequence"));
   for (const char* kind : {"sequence", "landmarks", "map"}) {

@@ -23,6 +23,20 @@ TEST(DetectionResidual, IsZeroForTheOutlineBox) {
   }
 }
 
+// A unit sphere 2 m ahead; the left edge through the principal point: the plane x = 0 is 0 from the
+// centre, so the residual is 1^2 - 0^2. The right edge at infinity: the plane z = 0, 1^2 - 2^2 =
+// -3.
+TEST(DetectionResidual, WorkedByHand) {
+  RandomView view;
+  view.world_from_camera = Rigid3d();
+  view.landmark_in_world = {{Eigen::Quaterniond::Identity(), {0, 0, 2}}, {1, 1, 1}};
+  view.Move(Rigid3d());
+  const Camera camera{640, 480, 500, 500, 320, 240};
+  const Box box{320, 240, 320 + 500e9, 240 + 500e9};
+  const Eigen::Vector4d residuals = Residuals(DetectionResidual(camera, box, 4.0), view);
+  EXPECT_TRUE(residuals.isApprox(Eigen::Vector4d(1, 1, -3, -3) / 2.0, 1e-6)) << residuals;
+}
+
 TEST(DetectionResidual, EqualsTheDualQuadricForm) {
   const RandomView view;
   const Box box{100, 120, 400, 350};

@@ -2,8 +2,12 @@
 // The back end for bodies of any shape.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "evaluation/metrics.h"
 #include "evaluation/result_checks.h"
+#include "geometry/angles.h"
 #include "mapping/initial_landmarks.h"
 #include "support/cuboid_map.h"
 #include "support/random.h"
@@ -234,6 +238,35 @@ TEST(TangencyBackEnd, AllSolvesTogetherKeepToTheLimitOfIterations) {
   const SolverSummary solver = OptimiseMap(input, options).solver;
   EXPECT_EQ(solver.iterations, 3);
   EXPECT_FALSE(solver.converged);
+}
+
+// The weight of a view is one over the sum of exp(-(angle / correlation)^2 / 2) over all views of
+// the object, by the angle between the lines from the cameras to its centre, wherever the world's
+// origin is.
+TEST(TangencyBackEnd, ViewsFromAboutOneSideShareTheirWeight) {
+  constexpr double kCorrelationDeg = 20.0;
+  const Sequence sequence = Moved(RandomRigid(), CuboidSequence(2, 6));
+  const auto line_of_sight = [&](const Detection& detection) {
+    const Eigen::Vector3d line =
+        sequence.ObjectOf(detection).ground_truth->landmark_in_world.Centre() -
+        sequence.FrameOf(detection).world_from_camera.translation;
+    return line.normalized();
+  };
+  double sum_of_weights = 0.0;
+  for (const Detection& one : sequence.detections) {
+    double similar = 0.0;
+    for (const Detection& other : sequence.detections) {
+      if (other.object_index != one.object_index) continue;
+      const double cosine = std::min(1.0, line_of_sight(one).dot(line_of_sight(other)));
+      similar += std::exp(-0.5 * std::pow(kDegPerRad * std::acos(cosine) / kCorrelationDeg, 2));
+    }
+    sum_of_weights += 1.0 / similar;
+  }
+  OptimiseOptions options = TangencyOptions();
+  options.view_correlation_deg = kCorrelationDeg;
+  const SolverSummary solver = OptimiseMap(TruthInput(sequence), options).solver;
+  EXPECT_LT(sum_of_weights, 0.9 * static_cast<double>(sequence.detections.size()));
+  EXPECT_NEAR(solver.expected_box_cost, 0.5 * 4.0 * sum_of_weights, 1e-6);
 }
 
 // Views from about one side share the errors of the body's shape: together they cost as one.

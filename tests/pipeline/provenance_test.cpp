@@ -81,6 +81,16 @@ TEST_F(ProvenanceTest, AFailedRunIsRecordedAndFound) {
                     ContainsRegex("not rerun .*refine-[0-9a-f]+: .*edges.h5, which it reads")));
 }
 
+// A program that crashes cannot write a record; make writes down that it failed.
+TEST_F(ProvenanceTest, ACrashKeepsTheRecordOfTheRunBefore) {
+  const std::string record = FileBytes(RunOf("refine") / "run.json");
+  EXPECT_NE(pipeline_.Run(kVariants, {"BIN=" + pipeline_.ProgramsWithACrashIn("refine")}).exit_code,
+            0);
+  EXPECT_EQ(FileBytes(RunOf("refine") / "run.json"), record);
+  EXPECT_THAT(ExpectExit(1, Verify()).output,
+              ContainsRegex("refine-[0-9a-f]+: its last run failed: exit code 139"));
+}
+
 TEST_F(ProvenanceTest, ReproducesEveryByteAndLeavesTheResultsAlone) {
   // What is recorded counts, not what the pipelines say now.
   nlohmann::json settings = SmallPipeline::TrueRatios();

@@ -132,6 +132,20 @@ class SmallPipeline {
     return MakeWords(words);
   }
 
+  // A folder with all programs, where that of a stage crashes.
+  std::string ProgramsWithACrashIn(const std::string& stage) const {
+    const std::filesystem::path programs = folder_ / "programs";
+    std::filesystem::create_directory(programs);
+    for (const auto& program : std::filesystem::directory_iterator(SOSLAM_BINARY_DIR)) {
+      std::filesystem::create_symlink(program.path(), programs / program.path().filename());
+    }
+    const std::filesystem::path crashing = programs / ("soslam-" + stage);
+    std::filesystem::remove(crashing);
+    WriteBytes(crashing, "#!/bin/sh\nkill -SEGV $$\n");
+    std::filesystem::permissions(crashing, std::filesystem::perms::owner_all);
+    return programs.string();
+  }
+
   // The bytes of all artefacts (JSON, HDF5) below a folder, by path, links as well; without the
   // records of runs, which hold times.
   static std::map<std::string, std::string> Artefacts(const std::filesystem::path& folder) {
