@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <vector>
 
 #include "geometry/angles.h"
@@ -43,6 +44,18 @@ TEST(DirectionWeights, OnlyTheSameDirectionsShareWithHardlyAnyCorrelation) {
   EXPECT_EQ(WeightsOnCircle({0.7, 0.7, 0.8}, 0.0), std::vector<double>(3, 1.0));
   const Eigen::Vector3d one(0.7, 0.6, 0.0), other(0.8, 0.5, 0.0);
   EXPECT_EQ(DirectionWeights({one, one, other}, 1e-200), (std::vector<double>{0.5, 0.5, 1.0}));
+}
+
+// More frames along the same way do not say more.
+TEST(DirectionWeights, TheSumDoesNotGrowWithTheFrameRate) {
+  const auto sum = [](int frames) {
+    std::vector<double> angles;
+    for (int i = 0; i < frames; ++i) angles.push_back(0.8 * i / (frames - 1));
+    const auto weights = WeightsOnCircle(angles, 15 * kRadPerDeg);
+    return std::accumulate(weights.begin(), weights.end(), 0.0);
+  };
+  EXPECT_NEAR(sum(400), sum(40), 0.05 * sum(400));
+  EXPECT_GT(sum(40), 1.0);
 }
 
 }  // namespace
