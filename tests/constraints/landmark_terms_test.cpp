@@ -176,6 +176,7 @@ struct ReferenceView {
 };
 
 TEST(RobustViewTerm, HalfOfItsSquareIsTheWeightedHuberLoss) {
+  int within = 0, beyond = 0;
   for (int i = 0; i < 100; ++i) {
     const ReferenceView view;
     const Eigen::VectorXd plain = view.PlainResiduals();
@@ -187,8 +188,12 @@ TEST(RobustViewTerm, HalfOfItsSquareIsTheWeightedHuberLoss) {
       huber.Evaluate(plain[k] * plain[k], loss);
       EXPECT_NEAR(robust[k] * robust[k], view.weight * loss[0], 1e-8 * (1.0 + loss[0]));
       EXPECT_GE(robust[k] * plain[k], 0.0);
+      within += plain[k] != 0.0 && std::abs(plain[k]) < view.delta ? 1 : 0;
+      beyond += std::abs(plain[k]) > view.delta ? 1 : 0;
     }
   }
+  EXPECT_GT(within, 50);
+  EXPECT_GT(beyond, 50);
 }
 
 TEST(ViewCost, IsTheViewTermWithoutALoss) {

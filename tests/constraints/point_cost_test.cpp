@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
 #include "constraints/surface_distance.h"
 #include "support/landmark_costs.h"
@@ -45,6 +46,21 @@ TEST(PointCostTest, GradientAgreesWithNumbers) {
     const PointCost term(RandomPoints(body, 30), body, SizeForPoints(body), {}, 0.3);
     ExpectCorrectGradient(term, Moved(body, 0.02 * LandmarkModel::Vector::Random()));
   }
+}
+
+TEST(PointCostTest, ConvergesSlowlyAlsoInAnotherView) {
+  const Landmark body = BodyInCamera(kCuboidExponent);
+  const auto points = [&] {
+    return std::make_unique<PointCost>(RandomPoints(body, 3), body, SizeForPoints(body),
+                                       PointOptions(), 1.0);
+  };
+  LandmarkCosts costs;
+  const double without_points = NegligibleDecrease(costs);
+  costs.push_back(points());
+  const double with_points = NegligibleDecrease(costs);
+  EXPECT_GT(with_points, without_points);
+  costs.front() = std::make_unique<ViewCost>(points(), RandomRigid(), 0.5);
+  EXPECT_EQ(NegligibleDecrease(costs), with_points);
 }
 
 TEST(PointCostTest, CostsNothingWherePointsAreOnTheSurfaceAndElsewhereSomething) {
