@@ -158,6 +158,11 @@ TEST(WithoutObjectsOf, DropsTheModelsThatLieInTheScene) {
   EXPECT_TRUE(WithoutObjectsOf(sequence, {}, {{"lying", "", own.half_axes}}).empty());
 }
 
+TEST(WithoutObjectsOf, DropsTheModelsThatHangInTheScene) {
+  const SemanticTable table{{{"cup", {.mount = Mount::kOnWall}}}, {}};
+  EXPECT_TRUE(WithoutObjectsOf(OneTrueCup(), table, {{"on wall", "", {0.2, 0.05, 0.1}}}).empty());
+}
+
 TEST(PriorErrors, CountLogarithmsAndSigmas) {
   SemanticTable table;
   table.priors["cup"] = {{1.0, 0.25}, {0.5, 0.5}, 1.0};

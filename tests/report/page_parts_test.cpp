@@ -216,6 +216,14 @@ TEST(EncodeImages, AreFewerWhenTheSmallestAreTooLarge) {
   EXPECT_TRUE(EncodeImages(frames, kNoises, 100, 2).images.empty());
 }
 
+TEST(EncodeImages, LeaveOutWhatIsNotThereAndNameWhatIsDamaged) {
+  const EncodedImages encoded = EncodeImages({0, 1, 2, 3}, kFaulty, 10'000'000, 2);
+  ASSERT_EQ(encoded.images.size(), 2u);
+  EXPECT_EQ(encoded.images[1].frame_index, 3);
+  EXPECT_EQ(encoded.failures, std::vector<std::string>{"2.png: is empty"});
+  EXPECT_EQ(encoded.left_out, 0u);
+}
+
 // The size of a JPEG file in base 64.
 cv::Size SizeOf(const std::string& base64) {
   const auto* text = reinterpret_cast<const unsigned char*>(base64.data());

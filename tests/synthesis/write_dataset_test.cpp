@@ -95,10 +95,14 @@ TEST_F(WriteDatasetTest, ImportGivesTheSyntheticSequence) {
   }
 }
 
+// Also in place of a longer dataset, in a folder whose name ends with a slash.
 TEST_F(WriteDatasetTest, SameBytesForAnyNumberOfThreads) {
   WriteDataset(SmallScene(), true, folder_, 1);
   const auto first = Contents(folder_);
-  WriteDataset(SmallScene(), true, folder_, 4);
+  Scene longer = SmallScene();
+  longer.trajectory.frames += 2;
+  WriteDataset(longer, true, folder_, 1);
+  WriteDataset(SmallScene(), true, folder_ / "", 4);
   EXPECT_EQ(first, Contents(folder_));
 }
 
