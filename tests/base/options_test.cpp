@@ -67,6 +67,8 @@ TEST(Options, TheSchemaTakesWhatTheyTake) {
     }
   }
   EXPECT_EQ(taken, 13);  // size_m 6, count 2, on 1, name 3, colour 1
+  EXPECT_EQ(schema["properties"]["size_m"].value("unit", ""), "m");
+  EXPECT_EQ(schema["properties"]["on"].value("group", ""), "Others");
 }
 
 }  // namespace
