@@ -155,6 +155,7 @@ TEST_F(FetchTest, WhatIsWholeIsNotFetchedAgainButItsAnnotationIsLaid) {
 
 TEST_F(FetchTest, AFolderThatIsThereCanBeLeftOut) {
   ExpectFailed(Fetch("WITHOUT=images"), 2, {"WITHOUT=images", "expected", "rgb/"});
+  EXPECT_THAT(server_.Requests(), IsEmpty());
   ExpectSuccess(Fetch("WITHOUT=rgb"));
   EXPECT_TRUE(fs::exists(Target() / "poses.txt"));
   EXPECT_FALSE(fs::exists(Target() / "rgb"));

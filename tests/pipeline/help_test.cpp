@@ -54,6 +54,7 @@ class HelpTest : public testing::TestWithParam<std::string> {
 };
 
 TEST_P(HelpTest, SettingsThatTheSchemaTakesAreAccepted) {
+  EXPECT_THAT(help_, HasSubstr("\nExample:\n  soslam-" + GetParam() + " "));
   json defaults = json::object();
   for (const auto& [name, property] : schema_["properties"].items()) {
     defaults[name] = property["default"];

@@ -198,6 +198,16 @@ TEST_F(MapTest, RefusesWhatIsMissing) {
   EXPECT_FALSE(fs::exists(marker));
 }
 
+TEST_F(MapTest, GoesIntoTheFolderOfMapsByDefault) {
+  std::vector<std::string> words =
+      Words({"IMAGES=" + photos_.string(), "NETWORK=x", "VARIANT=OursS OursSTE", "-n"});
+  std::erase(words, "MAPS=" + maps_.string());
+  EXPECT_THAT(ExpectSuccess(RunCommand(words)),
+              testing::AllOf(HasSubstr("MAP_ROOT=maps/"), HasSubstr("'OursS OursSTE'")));
+  std::erase(words, "VARIANT=OursS OursSTE");
+  EXPECT_THAT(RunCommand(words).output, HasSubstr("MAP_VARIANT='OursSP'"));
+}
+
 TEST_F(SlowMapTest, KilledAnywhereItGoesOn) {
   const auto begin = std::chrono::steady_clock::now();
   ExpectSuccess(MapPhotos());
