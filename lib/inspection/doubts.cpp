@@ -110,8 +110,7 @@ std::vector<std::string> DoubtsOfMap(const fs::path& folder, const MapEstimate& 
   for (const ObjectEstimate& estimate : map.objects) {
     const int segment = segments[estimate.object_index].value_or(0);
     if (!up_of_segment.contains(segment)) up_of_segment[segment] = UpOfSegment(sequence, segment);
-    doubts.push_back(DoubtsInWords(estimate,
-                                   sightings[sequence.objects[estimate.object_index].id],
+    doubts.push_back(DoubtsInWords(estimate, sightings[sequence.objects[estimate.object_index].id],
                                    up_of_segment[segment]));
   }
   return doubts;
