@@ -10,7 +10,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // A matching that is optimal for the rows added so far: reduced costs (those minus both potentials)
 // are zero in it and non-negative elsewhere. Behind the given columns there is one dummy column per
-// row, which stands for no column, so that a row can always be added.
+// row, which stands for no column, so that a row can always be added. The costs must outlive it.
 struct Matching {
   const Eigen::MatrixXd& costs;
   const Eigen::VectorXd& unassigned_costs;
@@ -25,7 +25,9 @@ struct Matching {
 
 // Adds a row along the shortest path (by reduced costs) from it to a free column.
 void Add(int row, Matching* matching) {
-  auto& [costs, unassigned_costs, row_potentials, column_potentials, row_of_column] = *matching;
+  Eigen::VectorXd& row_potentials = matching->row_potentials;
+  Eigen::VectorXd& column_potentials = matching->column_potentials;
+  std::vector<int>& row_of_column = matching->row_of_column;
   const auto columns = static_cast<int>(column_potentials.size());
   Eigen::VectorXd distances = Eigen::VectorXd::Constant(columns, kInfinity);
   std::vector<int> before(row_of_column.size(), kUnassigned);  // predecessor on the path

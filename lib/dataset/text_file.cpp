@@ -55,8 +55,8 @@ std::vector<TextLine> LinesOf(const std::string& text, const std::string& name, 
     if (!all && (is_comment || Trimmed(line).empty())) continue;
     lines.push_back({fmt::format("{}:{}", name, number), std::move(line)});
     if (!is_comment) CheckEncoding(lines.back().text, lines.back().place);
-    constexpr size_t kMaxLines = 4'000'000;  // blank lines take much more memory than in the file
-    if (all && number > kMaxLines) {
+    constexpr size_t kMaxLines = 20'000'000;  // short lines take much more memory than in the file
+    if (lines.size() > kMaxLines) {
       throw InputError(fmt::format("{}: has more than {} lines", name, kMaxLines));
     }
   }

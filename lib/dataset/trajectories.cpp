@@ -102,8 +102,11 @@ std::vector<TimedPose> SortedTrajectory(std::vector<TimedPose> trajectory,
     throw InputError(fmt::format("{}: timestamp {} twice with different poses; expected one pose",
                                  path.string(), twice->timestamp));
   }
-  const auto repeated = std::ranges::unique(trajectory, {}, &TimedPose::timestamp);
-  trajectory.erase(repeated.begin(), repeated.end());
+  const auto is_repeated = [](const TimedPose& a, const TimedPose& b) {
+    return a.timestamp == b.timestamp;
+  };
+  trajectory.erase(std::unique(trajectory.begin(), trajectory.end(), is_repeated),
+                   trajectory.end());
   return trajectory;
 }
 

@@ -181,16 +181,16 @@ Alignment Align(const std::vector<PosePair>& pairs, AlignmentKind kind) {
 
 Alignments AlignSegments(const Sequence& sequence, const std::vector<Rigid3d>& world_from_camera,
                          AlignmentKind choice) {
-  struct Segment {
+  struct PosesOfSegment {
     std::vector<PosePair> odometry, estimated;
   };
-  std::map<int, Segment> segments;
+  std::map<int, PosesOfSegment> segments;
   for (size_t i = 0; i < sequence.frames.size(); ++i) {
     const Frame& frame = sequence.frames[i];
-    Segment& segment = segments[frame.segment];
+    PosesOfSegment& poses = segments[frame.segment];
     if (!frame.true_world_from_camera) continue;
-    segment.odometry.push_back({frame.world_from_camera, *frame.true_world_from_camera});
-    segment.estimated.push_back({world_from_camera[i], *frame.true_world_from_camera});
+    poses.odometry.push_back({frame.world_from_camera, *frame.true_world_from_camera});
+    poses.estimated.push_back({world_from_camera[i], *frame.true_world_from_camera});
   }
   Alignments alignments;
   for (const auto& [segment, poses] : segments) {

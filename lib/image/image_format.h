@@ -19,7 +19,7 @@ struct ImageSize {
   std::int64_t width = 0;
   std::int64_t height = 0;
 
-  auto operator<=>(const ImageSize&) const = default;
+  auto operator<=>(const ImageSize&) const = default;  // NOLINT(modernize-use-nullptr): clang 14
 };
 
 // Properties that an image file states before any pixel is decoded.

@@ -43,8 +43,8 @@ VideoReader::VideoReader(const std::filesystem::path& path) : path_(path) {
     throw InputError(
         fmt::format("{}: is no video that can be read; expected {}", path.string(), kFormats));
   }
-  // AV_LOG_QUIET: FFmpeg's own messages do not name the file. Frames that it leaves out are
-  // counted.
+  // AV_LOG_QUIET: FFmpeg's own messages do not name the file. Missing frames show in
+  // announced_frames().
   ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", /*overwrite=*/0);
   // FFmpeg takes relative names with a colon for addresses.
   capture_ = std::make_unique<cv::VideoCapture>(PlainPath(path).string(), cv::CAP_FFMPEG);

@@ -26,7 +26,7 @@ std::map<std::string, ArtefactSource> InputsOf(const std::string& stage, const j
     for (const std::string& maker : stages) {
       if (before.contains(maker)) return {before.at(maker), OutputsOfStage(maker).front().file};
     }
-    throw std::logic_error(stage + " has no input");  // settings are checked before
+    throw std::logic_error(stage + " lacks an input, which CheckNeeds refuses");
   };
   if (stage == "import") return {};
   // Neither edge maps nor points depend on the world or its unit.

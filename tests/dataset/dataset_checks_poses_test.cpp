@@ -92,7 +92,7 @@ TEST_F(DatasetChecksTest, EurocsPosesTheOtherWayRound) {
 // An IMU that is turned by a quarter against the camera about its optical axis.
 TEST_F(DatasetChecksTest, EurocsPosesOfAnImu) {
   const double half = std::sqrt(0.5);
-  const Rigid3d camera_from_imu(Eigen::Quaterniond(half, 0, 0, -half), {0.1, 0, 0});
+  const Rigid3d camera_from_imu{Eigen::Quaterniond(half, 0, 0, -half), {0.1, 0, 0}};
   WriteEuroc([&](const Rigid3d& pose) { return pose * camera_from_imu; });
   ExpectWarning({"pose_convention: EuRoC's poses", "sensor.yaml, with T_BS"});
   Write("sensor.yaml",
@@ -146,8 +146,8 @@ Eigen::Quaterniond WithScalarFirst(const Eigen::Quaterniond& q) {
 }
 
 // A camera with y up and z backward; a body with x forward, y left and z up.
-const Rigid3d kCameraFromOpenGl(Eigen::Quaterniond(0, 1, 0, 0), Eigen::Vector3d::Zero());
-const Rigid3d kCameraFromBody(Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5), Eigen::Vector3d::Zero());
+const Rigid3d kCameraFromOpenGl{Eigen::Quaterniond(0, 1, 0, 0), Eigen::Vector3d::Zero()};
+const Rigid3d kCameraFromBody{Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5), Eigen::Vector3d::Zero()};
 
 const std::vector<WrittenPose> kWrittenPoses = {
     {"Inverse", "the other way round", [](const Rigid3d& p) { return p.Inverse(); }},
