@@ -65,7 +65,7 @@ void ValidateAgainstSchema(const json& document, const std::string& kind, const 
 
 namespace {
 
-// [major, minor] of all schemas. A reader supports all versions up to its own.
+// [major, minor] of all schemas. A reader refuses newer ones, and files that lack what is required.
 const std::vector<int> kSchemaVersion = {1, 9};
 
 // Parser callback that rejects duplicate keys, of which nlohmann silently keeps the last, and deep
@@ -201,7 +201,16 @@ json ReadArtefact(const std::filesystem::path& path, const std::string& kind) {
     throw InputError(
         fmt::format("{}: artefact kind is \"{}\"; expected one that is JSON", path.string(), kind));
   }
-  ValidateAgainstSchema(document, kind, path.string());
+  if (const auto violation = SchemaViolation(document, kind)) {
+    const json& version = header["schema_version"];
+    throw InputError(fmt::format(
+        "{}: {}{}", path.string(), *violation,
+        version == json(kSchemaVersion)
+            ? ""
+            : fmt::format("; its schema version is {}, that of this software [{}]: run the stage "
+                          "that made it again",
+                          version.dump(), fmt::join(kSchemaVersion, ", "))));
+  }
   return document;
 }
 

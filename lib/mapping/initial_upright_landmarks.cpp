@@ -31,7 +31,7 @@ constexpr int kRounds = 2;
 struct FitCost {
   size_t views_behind;
   double cost;
-  auto operator<=>(const FitCost&) const = default;
+  auto operator<=>(const FitCost&) const = default;  // NOLINT(modernize-use-nullptr): clang 14
 };
 
 struct Candidate {

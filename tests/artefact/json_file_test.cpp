@@ -95,6 +95,13 @@ TEST_F(JsonFileTest, HeadersThatAreNotOursAreRefused) {
                           {"no artefact header"});
 }
 
+TEST_F(JsonFileTest, AnOlderFileThatLacksAFieldIsSaidToBeOlder) {
+  const json document = {{"artefact", HeaderOfVersion({1, 8})}};
+  ExpectError<InputError>([&] { ReadArtefact(Write("some.json", document.dump()), "landmarks"); },
+                          {"some.json: ", "Missing required property", "schema version is [1,8]",
+                           "[1, 9]: run the stage"});
+}
+
 TEST_F(JsonFileTest, WritingWhatTheSchemaForbidsIsOurBug) {
   EXPECT_THROW(WriteArtefact(file, "landmarks", {}, {{"objects", 3}}), std::logic_error);
   EXPECT_THROW(WriteArtefact(file, "no such kind", {}, json::object()), std::logic_error);
