@@ -185,6 +185,15 @@ TEST_F(MapQualityTest, ALandmarkBeyondAllNumbersIsWrong) {
   EXPECT_TRUE(std::isfinite(quality.in_frames.iou_mean.value_or(0.0)));
 }
 
+// A map that was made from other boxes may have it.
+TEST_F(MapQualityTest, ALandmarkOfAnObjectThatNoBoxShowsIsNotJudged) {
+  AddFound();
+  AddLandmark(Shifted(AddTruth(), {0, 9, 0}));
+  const MapQuality quality = Evaluate();
+  EXPECT_EQ(quality.landmarks.size(), 1u);
+  EXPECT_TRUE(quality.false_landmarks.empty());
+}
+
 TEST_F(MapQualityTest, AMapWithoutLandmarksMissesAll) {
   AddFound();
   const std::vector<Rigid3d> poses(kFrames);
