@@ -93,8 +93,8 @@ struct AlignedMap {
   std::vector<Rigid3d> world_from_camera;  // one per Sequence::frames
 };
 
-// `world_from_camera` and `planes_in_world` as in MapEstimate. Landmarks of objects that no detection
-// shows are left out.
+// `world_from_camera` and `planes_in_world` as in MapEstimate. Landmarks of objects that no
+// detection shows are left out.
 AlignedMap ApplyAlignments(const Sequence& sequence, const std::vector<ObjectEstimate>& estimates,
                            const std::vector<Rigid3d>& world_from_camera,
                            const std::vector<Plane>& planes_in_world, const Alignments& alignments);
