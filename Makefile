@@ -359,8 +359,8 @@ test: test-build ## Build everything and run the fast tests (3 minutes)
 	@ctest --test-dir $(BUILD) --output-on-failure --label-regex fast -j2
 
 .PHONY: test-slow
-test-slow: test-build ## Run the slow tests: faults, browsers, clusters, statistics
-	@pipelines/install-packages.sh pipelines/test-packages.txt || echo 'setup: tests that need a browser are skipped'
+test-slow: test-build ## Run the slow tests: faults, browsers, videos, clusters, statistics
+	@pipelines/install-packages.sh pipelines/test-packages.txt || echo 'setup: tests that need a browser or ffmpeg are skipped'
 	@ctest --test-dir $(BUILD) --output-on-failure --label-regex slow -j2
 
 .PHONY: test-build

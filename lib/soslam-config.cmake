@@ -1,6 +1,6 @@
 # What find_package(soslam) reads: the packages that the library needs, then the library.
 include(CMakeFindDependencyMacro)
-find_dependency(OpenCV COMPONENTS core imgproc imgcodecs calib3d dnn video videoio)
+find_dependency(OpenCV COMPONENTS core imgproc imgcodecs calib3d dnn video)
 find_dependency(Eigen3)
 find_dependency(Ceres 2.1)
 find_dependency(nlohmann_json)

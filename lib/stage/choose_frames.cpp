@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <map>
 #include <opencv2/core/mat.hpp>
-#include <opencv2/imgproc.hpp>
+#include <opencv2/imgcodecs.hpp>
 #include <optional>
 #include <set>
 #include <string>
@@ -63,7 +64,18 @@ void NameImages(const std::vector<std::string>& extensions, std::vector<SourceFr
   }
 }
 
-void SetSize(int max_image_px, ChosenFrames* chosen) {
+void RejectOtherCameras(const std::vector<Photo>& photos, const CommonCamera& camera,
+                        std::vector<SourceFrame>* frames) {
+  for (size_t i = 0; i < photos.size(); ++i) {
+    if (const auto other = FindOtherCamera(photos[i], camera)) {
+      (*frames)[i].rejection = other->reason;
+      (*frames)[i].detail = other->detail;
+    }
+  }
+}
+
+void SetSize(const ImageSize& source, int max_image_px, ChosenFrames* chosen) {
+  chosen->source_size = {static_cast<int>(source.width), static_cast<int>(source.height)};
   const cv::Size size = SizeWithin(chosen->source_size, max_image_px);
   chosen->record.width = size.width;
   chosen->record.height = size.height;
@@ -95,6 +107,40 @@ std::optional<FocalHint> HintOf(const CommonCamera& camera, const FramesRecord& 
   return FocalHint{*camera.focal_over_diagonal * std::hypot(record.width, record.height), count};
 }
 
+// Finds a video that was cut short or is damaged, after its last frame, and one that may lie on its
+// side.
+std::vector<Finding> CheckVideo(const VideoReader& video, const FramesRecord& record) {
+  std::vector<Finding> findings;
+  const auto damaged = std::ranges::count_if(record.frames, IsLeftOut);
+  if (video.is_cut_short()) {
+    findings.push_back({"video_cut_short", Severity::kWarning,
+                        fmt::format("{}: {} frames can be decoded, fewer than it announces",
+                                    record.name, std::ssize(record.frames) - damaged),
+                        "all frames", "a file that was copied or recorded incompletely",
+                        "copy it again"});
+  }
+  if (video.has_errors() || damaged > 0) {
+    findings.push_back(
+        {"video_damaged", Severity::kWarning,
+         fmt::format("{}: parts of it cannot be decoded, and {} of its {} frames are damaged, or "
+                     "predicted from damaged ones",
+                     record.name, damaged, record.frames.size()),
+         "a video without errors", "a file that was copied or recorded with errors",
+         "copy it again"});
+  }
+  if (const std::string degrees = video.ignored_rotation(); !degrees.empty()) {
+    findings.push_back(
+        {"video_rotation", Severity::kWarning,
+         fmt::format("{}: its tag `rotate` is {}, and it has no display matrix", record.name,
+                     OneLine(degrees)),
+         "a display matrix, by which players turn videos",
+         "a copy by an old program that kept only the tag",
+         "if the images lie on their side, turn the video: ffmpeg -i VIDEO -vf transpose=1 -crf 15 "
+         "NEW.mp4"});
+  }
+  return findings;
+}
+
 }  // namespace
 
 bool IsCopied(const Photo& photo, int max_image_px) {
@@ -111,11 +157,8 @@ ChosenFrames ChoosePhotos(const FrameOptions& options, const fs::path& folder, i
   std::vector<SourceFrame>& frames = chosen.record.frames;
   for (const Photo& photo : *photos) {
     frames.push_back({photo.path.filename().string(), {}, {}, {}, {}});
-    if (const auto other = FindOtherCamera(photo, camera)) {
-      frames.back().rejection = other->reason;
-      frames.back().detail = other->detail;
-    }
   }
+  RejectOtherCameras(*photos, camera, &frames);
   std::vector<FrameView> views(photos->size());
   ParallelFor("photos", static_cast<int>(photos->size()), threads, [&](int index) {
     const auto i = static_cast<size_t>(index);
@@ -128,8 +171,7 @@ ChosenFrames ChoosePhotos(const FrameOptions& options, const fs::path& folder, i
     chosen.inputs.push_back((*photos)[i].path);
   }
   Reject(selector.Choose(), &frames);
-  chosen.source_size = {static_cast<int>(camera.size.width), static_cast<int>(camera.size.height)};
-  SetSize(options.max_image_px, &chosen);
+  SetSize(camera.size, options.max_image_px, &chosen);
   chosen.record.focal_hint = HintOf(camera, chosen.record, *photos);
   std::vector<std::string> extensions;
   for (const Photo& photo : *photos) {
@@ -146,20 +188,35 @@ ChosenFrames ChooseFromVideo(const FrameOptions& options, const fs::path& path) 
   chosen.record.name = path.filename().string();
   chosen.inputs = {path};
   std::vector<SourceFrame>& frames = chosen.record.frames;
-  FrameSelector selector(options);
+  std::vector<Photo> photos;  // the frames; damaged ones have no size
+  std::map<ImageSize, FrameSelector> selectors;
   Progress progress("frames", announced > 0 ? announced : Progress::kUnknownCount);
-  cv::Mat grey;
   for (; video.Next(); progress.Step()) {
-    cv::cvtColor(video.image(), grey, cv::COLOR_BGR2GRAY);
+    frames.push_back({chosen.record.name, static_cast<int>(frames.size()), video.time_s(), {}, {}});
+    photos.push_back({path, {}});
+    if (video.is_damaged()) {
+      frames.back().rejection = FrameRejection::kUnreadable;
+      frames.back().detail = "damaged, or predicted from a damaged frame";
+      continue;
+    }
+    const cv::Mat grey = video.Image(cv::IMREAD_GRAYSCALE);
+    const ImageSize size = {grey.cols, grey.rows};
     const FrameView view = ViewOf(grey);
-    selector.Add(view);
-    frames.push_back(
-        {chosen.record.name, static_cast<int>(frames.size()), video.time_s(), view.sharpness, {}});
-    chosen.source_size = grey.size();
+    photos.back().header.stored = size;
+    frames.back().sharpness = view.sharpness;
+    selectors.try_emplace(size, options).first->second.Add(view);
   }
-  SetSize(options.max_image_px, &chosen);
-  chosen.is_cut_short = 10 * std::ssize(frames) < 9 * static_cast<std::ptrdiff_t>(announced);
-  Reject(selector.Choose(), &frames);
+  if (selectors.empty()) {
+    throw InputError(
+        fmt::format("{}: has no frame that can be decoded; expected at least 2: is it "
+                    "cut short?",
+                    path.string()));
+  }
+  chosen.findings = CheckVideo(video, chosen.record);
+  const CommonCamera camera = FindCommonCamera(path, photos);
+  RejectOtherCameras(photos, camera, &frames);
+  SetSize(camera.size, options.max_image_px, &chosen);
+  Reject(selectors.at(camera.size).Choose(), &frames);
   NameImages(std::vector<std::string>(frames.size(), ".jpg"), &frames);
   return chosen;
 }

@@ -10,6 +10,7 @@
 #include "artefact/dataset_folder.h"
 #include "dataset/photo_folder.h"
 #include "image/frame_choice.h"
+#include "model/finding.h"
 
 namespace soslam {
 
@@ -18,7 +19,7 @@ struct ChosenFrames {
   FramesRecord record;
   cv::Size source_size;  // of the images that were chosen from, upright
   std::vector<std::filesystem::path> inputs;
-  bool is_cut_short = false;  // the video has fewer frames than it announces
+  std::vector<Finding> findings;  // about the video
 };
 
 // True if the frame is not among the chosen ones.
@@ -32,7 +33,8 @@ bool IsCopied(const Photo& photo, int max_image_px);
 ChosenFrames ChoosePhotos(const FrameOptions& options, const std::filesystem::path& folder,
                           int threads, std::vector<Photo>* photos);
 
-// Chooses among the frames of a video. Throws InputError as VideoReader.
+// Chooses among the frames of a video that are whole and of the size that most have. Throws
+// InputError as VideoReader, and when there are none.
 ChosenFrames ChooseFromVideo(const FrameOptions& options, const std::filesystem::path& path);
 
 // Begin of the first line of the detections.csv that soslam-frames writes, by which a later run

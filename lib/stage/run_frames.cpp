@@ -59,11 +59,11 @@ std::map<std::string, int> CountLeftOut(const std::vector<SourceFrame>& frames) 
   return counts;
 }
 
-// Finds more than a third of the images left out for one reason, and a video that was cut short.
+// The findings about the video, and more than a third of the images left out for one reason.
 std::vector<Finding> CheckFrames(const ChosenFrames& chosen) {
   constexpr int kFewest = 6;
   const FramesRecord& record = chosen.record;
-  std::vector<Finding> findings;
+  std::vector<Finding> findings = chosen.findings;
   const int all = static_cast<int>(record.frames.size());
   const auto counts = CountLeftOut(record.frames);
   for (const FrameAdvice& advice : kAdvice) {
@@ -73,12 +73,6 @@ std::vector<Finding> CheckFrames(const ChosenFrames& chosen) {
     findings.push_back({"frames_" + name, Severity::kWarning,
                         fmt::format("{} of {} images are left out as {}", found->second, all, name),
                         "at most a third left out for one reason", advice.cause, advice.remedy});
-  }
-  if (chosen.is_cut_short) {
-    findings.push_back(
-        {"video_cut_short", Severity::kWarning,
-         fmt::format("{}: {} frames can be decoded, fewer than it announces", record.name, all),
-         "all frames", "a file that was copied or recorded incompletely", "copy it again"});
   }
   return findings;
 }
@@ -159,7 +153,8 @@ void WriteVideoFrames(const FramesRecord& record, const fs::path& path, int max_
   VideoReader video(path);
   for (const SourceFrame& frame : record.frames) {
     if (!video.Next()) throw InputError(path.string() + ": cannot be decoded a second time");
-    if (!IsLeftOut(frame)) WriteJpeg(video.image(), max_image_px, {}, frame.image, output);
+    if (!IsLeftOut(frame))
+      WriteJpeg(video.Image(cv::IMREAD_COLOR), max_image_px, {}, frame.image, output);
   }
 }
 

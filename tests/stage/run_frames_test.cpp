@@ -10,6 +10,7 @@
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/lists.h"
+#include "support/video_files.h"
 
 namespace soslam {
 namespace {
@@ -104,7 +105,7 @@ TEST_F(RunFramesTest, FramesOfAVideoHaveTheirTimes) {
   std::vector<cv::Mat> views;
   for (int i = 0; i < 30; ++i) views.push_back(DrawnView(10 * (i / 3)));  // each three times
   const fs::path video = folder_ / "my video.avi";
-  WriteVideo(video, views);
+  WriteVideo(video, {{views}});
   const json frames = Run(video);
   ASSERT_EQ(frames.at("frames").size(), 10u);
   EXPECT_EQ(frames.at("left_out").size(), 20u);
@@ -117,6 +118,38 @@ TEST_F(RunFramesTest, FramesOfAVideoHaveTheirTimes) {
         ReadImage(output_ / frame.at("image").get<std::string>(), cv::IMREAD_COLOR);
     EXPECT_LT(cv::norm(image, DrawnView(10 * i), cv::NORM_L1) / (3 * 320 * 240), 12.0);
   }
+}
+
+TEST_F(RunFramesTest, FramesOfAVideoHaveTheSizeThatMostHave) {
+  std::vector<cv::Mat> views = {DrawnView(0, {160, 120}), DrawnView(10, {160, 120})};
+  for (int i = 0; i < 4; ++i) views.push_back(DrawnView(20 * i));
+  const fs::path video = folder_ / "call.avi";
+  WriteVideo(video, {{views}});
+  const json frames = Run(video);
+  EXPECT_EQ(frames.at("width"), 320);
+  EXPECT_EQ(frames.at("frames").size(), 4u);
+  ASSERT_EQ(frames.at("left_out").size(), 2u);
+  EXPECT_EQ(frames.at("left_out")[0].at("reason"), "other_size");
+  EXPECT_EQ(frames.at("left_out")[0].at("detail"), "160 x 120 px, not 320 x 240");
+}
+
+TEST_F(RunFramesTest, AVideoWithAFaultIsAFinding) {
+  std::vector<cv::Mat> views;
+  for (int i = 0; i < 8; ++i) views.push_back(DrawnView(20 * i));
+  const fs::path video = folder_ / "video.mov";
+  WriteVideo(video, {{views}});
+  EXPECT_FALSE(Run(video).contains("findings"));
+  const std::string whole = FileBytes(video);
+  WriteBytes(video, whole.substr(0, whole.size() - 10));
+  EXPECT_EQ(Only(Run(video).at("findings")).at("check"), "video_cut_short");
+  std::string damaged = whole;
+  const size_t jpeg = damaged.find("\xff\xd8", damaged.size() / 2);
+  WriteBytes(video, damaged.replace(jpeg, 700, 700, '\0'));
+  EXPECT_EQ(Only(Run(video).at("findings")).at("check"), "video_damaged");
+  WriteVideo(folder_ / "old.mkv", {{views, {}, {1, 1}, "90"}});
+  EXPECT_EQ(Only(Run(folder_ / "old.mkv").at("findings")).at("check"), "video_rotation");
+  WriteBytes(video, whole.substr(0, whole.find("mdat") + 100));
+  ExpectError<InputError>([&] { Run(video); }, {video.string(), "no frame", "cut short"});
 }
 
 TEST_F(RunFramesTest, SameBytesForAnyNumberOfThreads) {

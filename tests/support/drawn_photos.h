@@ -4,7 +4,6 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <opencv2/videoio.hpp>
 #include <string>
 #include <vector>
 
@@ -54,13 +53,6 @@ inline std::string ExifOfCamera(int orientation, int focal_mm,
   return Tiff(order,
               {{274, static_cast<std::uint64_t>(orientation)}, {kExifDirectory, TiffRest(2), 4}},
               directory);
-}
-
-// Writes a video of ten frames a second, Motion JPEG.
-inline void WriteVideo(const std::filesystem::path& path, const std::vector<cv::Mat>& frames) {
-  cv::VideoWriter writer(path.string(), cv::CAP_OPENCV_MJPEG,
-                         cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 10.0, frames.front().size());
-  for (const cv::Mat& frame : frames) writer.write(frame);
 }
 
 }  // namespace soslam
