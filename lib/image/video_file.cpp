@@ -147,27 +147,28 @@ VideoReader::VideoReader(const std::filesystem::path& path)
   const int error =
       avformat_open_input(&format, ("file:" + path.string()).c_str(), nullptr, &limits);
   av_dict_free(&limits);
-  const bool is_open = error >= 0 && avformat_find_stream_info(format, nullptr) >= 0;
-  AVStream* stream = is_open ? LargestVideo(*format) : nullptr;
-  if (stream == nullptr || !IsImageSize(stream->codecpar->width, stream->codecpar->height)) {
-    throw InputError(fmt::format(
-        "{}: cannot be opened; expected {}: is it cut short, or packed in an unusual way? {}",
-        path.string(), kFormats, kByFfmpeg));
-  }
-  decoder_->stream = stream;
-  const AVCodec* codec = avcodec_find_decoder(stream->codecpar->codec_id);
-  decoder_->codec = avcodec_alloc_context3(codec);
-  avcodec_parameters_to_context(decoder_->codec, stream->codecpar);
-  decoder_->codec->pkt_timebase = stream->time_base;
-  decoder_->codec->max_pixels = kMaxPixels;
-  decoder_->codec->thread_count = 1;  // with more, marks of damaged frames get lost
-  if (codec == nullptr || avcodec_open2(decoder_->codec, codec, nullptr) < 0) {
+  const bool has_streams = error >= 0 && avformat_find_stream_info(format, nullptr) >= 0;
+  AVStream* stream = has_streams ? LargestVideo(*format) : nullptr;
+  const AVCodec* codec =
+      stream == nullptr ? nullptr : avcodec_find_decoder(stream->codecpar->codec_id);
+  if (stream != nullptr && codec == nullptr) {
     char tag[AV_FOURCC_MAX_STRING_SIZE];
     throw InputError(fmt::format(
         "{}: FFmpeg has no decoder for its codec, {} ({}); expected a common one, such as H.264, "
         "HEVC, VP9 or AV1: export it again as one of these",
         path.string(), avcodec_get_name(stream->codecpar->codec_id),
         av_fourcc_make_string(tag, stream->codecpar->codec_tag)));
+  }
+  decoder_->stream = stream;
+  decoder_->codec = avcodec_alloc_context3(codec);
+  decoder_->codec->max_pixels = kMaxPixels;
+  decoder_->codec->thread_count = 1;  // with more, marks of damaged frames get lost
+  if (stream == nullptr || !IsImageSize(stream->codecpar->width, stream->codecpar->height) ||
+      avcodec_parameters_to_context(decoder_->codec, stream->codecpar) < 0 ||
+      avcodec_open2(decoder_->codec, codec, nullptr) < 0) {
+    throw InputError(fmt::format(
+        "{}: cannot be opened; expected {}: is it cut short, or packed in an unusual way? {}",
+        path.string(), kFormats, kByFfmpeg));
   }
   if (const std::uint8_t* matrix = DisplayMatrix(*stream)) {
     decoder_->turn = TurnOf(matrix, path.string());

@@ -88,21 +88,21 @@ TEST(VideoReaderTest, NamesACodecWithoutDecoder) {
                           {"video.mov", "no decoder", "new7", "H.264"});
 }
 
-TEST(VideoReaderTest, FramesLargerThanCanBeProcessedAreNotDecoded) {
+TEST(VideoReaderTest, RefusesFramesOfAbsurdSizeBeforeDecoding) {
   const TemporaryFolder folder;
   const auto path = folder / "video.mov";
   WriteVideo(path, {{DrawnViews(1)}});
-  const auto height_and_width = [](std::uint64_t height, std::uint64_t width) {
-    return NumberBytes(height, 2, ByteOrder::kBigEndian) +
-           NumberBytes(width, 2, ByteOrder::kBigEndian);
+  const auto width_and_height = [](std::uint64_t width, std::uint64_t height) {
+    return NumberBytes(width, 2, ByteOrder::kBigEndian) +
+           NumberBytes(height, 2, ByteOrder::kBigEndian);
   };
   std::string bytes = FileBytes(path);
-  bytes.replace(bytes.find(height_and_width(240, 320), bytes.find("mdat")), 4,
-                height_and_width(12'000, 12'000));
+  const size_t description = bytes.find("stsd");
+  bytes.replace(bytes.find(width_and_height(320, 240), description), 4,
+                width_and_height(12'000, 12'000));
+  bytes.replace(bytes.find("jpeg", description), 4, "raw ");  // a codec whose size is that of MOV
   WriteBytes(path, bytes);
-  VideoReader video(path);
-  EXPECT_FALSE(video.Next());
-  EXPECT_TRUE(video.has_errors());
+  ExpectError<InputError>([&] { VideoReader video(path); }, {path.string(), "cannot be opened"});
 }
 
 TEST(VideoReaderTest, FramesAreTurnedAsTheDisplayMatrixSays) {
