@@ -207,10 +207,8 @@ ChosenFrames ChooseFromVideo(const FrameOptions& options, const fs::path& path) 
     selectors.try_emplace(size, options).first->second.Add(view);
   }
   if (selectors.empty()) {
-    throw InputError(
-        fmt::format("{}: has no frame that can be decoded; expected at least 2: is it "
-                    "cut short?",
-                    path.string()));
+    throw InputError(path.string() +
+                     ": has no frame that can be decoded; expected at least 2: is it cut short?");
   }
   chosen.findings = CheckVideo(video, chosen.record);
   const CommonCamera camera = FindCommonCamera(path, photos);

@@ -153,8 +153,8 @@ void WriteVideoFrames(const FramesRecord& record, const fs::path& path, int max_
   VideoReader video(path);
   for (const SourceFrame& frame : record.frames) {
     if (!video.Next()) throw InputError(path.string() + ": cannot be decoded a second time");
-    if (!IsLeftOut(frame))
-      WriteJpeg(video.Image(cv::IMREAD_COLOR), max_image_px, {}, frame.image, output);
+    if (IsLeftOut(frame)) continue;
+    WriteJpeg(video.Image(cv::IMREAD_COLOR), max_image_px, {}, frame.image, output);
   }
 }
 
