@@ -298,7 +298,7 @@ class CalibrationReader {
 
 }  // namespace
 
-Calibration ReadCameraFile(const std::filesystem::path& path) {
+Calibration ReadCameraFile(const std::filesystem::path& path, std::vector<Finding>* findings) {
   const std::string extension = path.extension().string(), name = path.string();
   if (extension == ".xml") {
     return CalibrationReader(XmlFields(ReadWholeFile(path), name), name).Read();
@@ -306,8 +306,10 @@ Calibration ReadCameraFile(const std::filesystem::path& path) {
   if (extension == ".yaml" || extension == ".yml") {
     return CalibrationReader(YamlFields(ReadWholeFile(path), name), name).Read();
   }
-  if (extension == ".txt" || extension == ".bin") return {ReadColmapCamera(path), std::nullopt};
-  const auto of_nerfstudio = ReadNerfstudioCamera(path);
+  if (extension == ".txt" || extension == ".bin") {
+    return {ReadColmapCamera(path, findings), std::nullopt};
+  }
+  const auto of_nerfstudio = ReadNerfstudioCamera(path, findings);
   return {of_nerfstudio ? *of_nerfstudio : ReadCamera(path), std::nullopt};
 }
 

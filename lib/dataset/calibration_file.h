@@ -5,10 +5,12 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "geometry/camera.h"
 #include "geometry/distortion.h"
 #include "geometry/rigid3.h"
+#include "model/finding.h"
 
 namespace soslam {
 
@@ -53,6 +55,6 @@ struct Calibration {
 // settings. Other fields are ignored. Throws InputError, naming the field, for a missing field, a
 // skew or a transposed matrix, a fisheye_model, distortion coefficients by other names, and ROS'
 // binning and roi.
-Calibration ReadCameraFile(const std::filesystem::path& path);
+Calibration ReadCameraFile(const std::filesystem::path& path, std::vector<Finding>* findings);
 
 }  // namespace soslam

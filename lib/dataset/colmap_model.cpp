@@ -14,6 +14,7 @@
 
 #include "base/error.h"
 #include "base/paths.h"
+#include "dataset/one_camera.h"
 #include "dataset/text_file.h"
 #include "geometry/camera.h"
 #include "geometry/image_size.h"
@@ -90,6 +91,9 @@ NamedPose PoseOfColmapImage(const std::array<double, 7>& v, std::string name,
   return {place, std::move(name), camera_from_world.Inverse()};
 }
 
+// The grey value that OpenCV gives to a colour.
+double GreyOf(const Eigen::Vector3d& rgb) { return rgb.dot(Eigen::Vector3d(0.299, 0.587, 0.114)); }
+
 static_assert(std::endian::native == std::endian::little);
 
 // The bytes of a file, taken from its beginning on.
@@ -154,15 +158,20 @@ class BinaryReader {
   size_t at_ = 0;
 };
 
-LensCamera TakeCamera(BinaryReader* reader, const std::string& place) {
-  reader->Take<std::uint32_t>();  // id
+struct ColmapCamera {
+  std::int64_t id = 0;
+  PlacedCamera placed;
+};
+
+ColmapCamera TakeCamera(BinaryReader* reader, const std::string& place) {
+  const auto camera_id = reader->Take<std::uint32_t>();
   const auto id = reader->Take<std::int32_t>();
   const ColmapCameraModel& model = SupportedModel(
       std::ranges::find(kModels, id, &ColmapCameraModel::id), std::to_string(id), place);
   const auto width = reader->Take<std::int64_t>(), height = reader->Take<std::int64_t>();
   std::vector<double> parameters(model.parameters.size());
   for (double& value : parameters) value = reader->TakeReal(place);
-  return CameraOfColmap(model, width, height, parameters, place);
+  return {camera_id, {place, CameraOfColmap(model, width, height, parameters, place)}};
 }
 
 ColmapImage TakeImage(BinaryReader* reader, const std::string& place) {
@@ -171,7 +180,7 @@ ColmapImage TakeImage(BinaryReader* reader, const std::string& place) {
   image.id = reader->Take<std::uint32_t>();
   std::array<double, 7> numbers;
   for (double& value : numbers) value = reader->TakeReal(place);
-  reader->Take<std::uint32_t>();  // id of its camera; all are the same
+  image.camera_id = reader->Take<std::uint32_t>();
   image.pose = PoseOfColmapImage(numbers, reader->TakeText(), place);
   const size_t count = reader->TakeCount(kBytesOfPixel, "image points");
   image.pixels.reserve(count);
@@ -188,7 +197,9 @@ ColmapPoint TakePoint(BinaryReader* reader, const std::string& place) {
   ColmapPoint point;
   point.id = reader->Take<std::uint64_t>();
   for (double& value : point.position_in_world) value = reader->TakeReal(place);
-  for (int i = 0; i < 3; ++i) reader->Take<std::uint8_t>();  // colour
+  Eigen::Vector3d rgb;
+  for (double& value : rgb) value = reader->Take<std::uint8_t>();
+  point.grey = GreyOf(rgb);
   point.reprojection_error_px = reader->TakeReal(place);
   const size_t count = reader->TakeCount(kBytesOfObservation, "observations");
   point.track.reserve(count);
@@ -216,7 +227,7 @@ std::vector<Entry> ReadBinary(const std::filesystem::path& path, const std::stri
 
 bool IsBinary(const std::filesystem::path& path) { return path.extension() == ".bin"; }
 
-LensCamera ParseColmapCamera(const TextLine& line) {
+ColmapCamera ParseColmapCamera(const TextLine& line) {
   const auto words = SplitWords(line.text);
   if (words.size() < 4) {
     throw InputError(line.place + ": expected CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]");
@@ -232,8 +243,10 @@ LensCamera ParseColmapCamera(const TextLine& line) {
   for (size_t i = 4; i < words.size(); ++i) {
     values.push_back(ParseReal(words[i], line.place, model.parameters[i - 4]));
   }
-  return CameraOfColmap(model, ParseInteger(words[2], line.place, "width"),
-                        ParseInteger(words[3], line.place, "height"), values, line.place);
+  return {ParseInteger(words[0], line.place, "CAMERA_ID"),
+          {line.place,
+           CameraOfColmap(model, ParseInteger(words[2], line.place, "width"),
+                          ParseInteger(words[3], line.place, "height"), values, line.place)}};
 }
 
 // One line of an image, without its image points.
@@ -249,7 +262,7 @@ ColmapImage ParseImage(const TextLine& line) {
   const auto numbers = ParseReals(std::span(words).subspan(1), line.place, kFields);
   ColmapImage image;
   image.id = ParseInteger(words[0], line.place, "IMAGE_ID");
-  ParseInteger(words[8], line.place, "CAMERA_ID");
+  image.camera_id = ParseInteger(words[8], line.place, "CAMERA_ID");
   // The name may contain blanks: it is the rest of the line.
   const auto name = static_cast<size_t>(words[9].data() - line.text.data());
   image.pose = PoseOfColmapImage(numbers, line.text.substr(name), line.place);
@@ -259,8 +272,10 @@ ColmapImage ParseImage(const TextLine& line) {
 std::vector<Eigen::Vector2d> ParsePixels(const TextLine& line) {
   const auto words = SplitWords(line.text);
   if (words.size() % 3 != 0) {
-    throw InputError(fmt::format("{}: has {} words; expected X Y POINT3D_ID of each image point",
-                                 line.place, words.size()));
+    throw InputError(
+        fmt::format("{}: has {} words; expected X Y POINT3D_ID of each image point, or "
+                    "an empty line for an image without",
+                    line.place, words.size()));
   }
   std::vector<Eigen::Vector2d> pixels;
   for (size_t i = 0; i < words.size(); i += 3) {
@@ -270,12 +285,20 @@ std::vector<Eigen::Vector2d> ParsePixels(const TextLine& line) {
   return pixels;
 }
 
+// Some programs write no line of image points. The next line is then that of an image, of a number
+// of words that image points do not have.
 std::vector<ColmapImage> ReadImagesText(const std::filesystem::path& path) {
+  constexpr size_t kWordsOfImage = 10;
   std::vector<ColmapImage> images;
+  size_t without_line = 0;
   bool is_points = false;
   for (const TextLine& line : RawLines(ReadWholeFile(path), path.string())) {
     const std::string_view text = Trimmed(line.text);
     if (!is_points && (text.empty() || text.front() == '#')) continue;
+    if (is_points && SplitWords(text).size() == kWordsOfImage) {
+      ++without_line;
+      is_points = false;
+    }
     if (is_points) {
       images.back().pixels = ParsePixels(line);
     } else {
@@ -283,7 +306,43 @@ std::vector<ColmapImage> ReadImagesText(const std::filesystem::path& path) {
     }
     is_points = !is_points;
   }
+  if (without_line > 0) {
+    fmt::print(
+        "{}: {} of {} images have no line of image points below them; their poses are read\n",
+        path.string(), without_line + (is_points ? 1 : 0), images.size());
+  }
   return images;
+}
+
+std::vector<ColmapCamera> ReadCameras(const std::filesystem::path& path) {
+  constexpr size_t kLeastBytes = 24;
+  auto cameras = IsBinary(path) ? ReadBinary(path, "camera", kLeastBytes, &TakeCamera)
+                                : ParseTextLines(path, &ParseColmapCamera);
+  if (!cameras.empty()) return cameras;
+  throw InputError(path.string() + ": has no camera; expected COLMAP's cameras.txt or cameras.bin");
+}
+
+// The one camera of the images; of all cameras if there are no images. Cameras of no image do not
+// matter.
+LensCamera CameraOf(const std::vector<ColmapImage>& images,
+                    const std::vector<ColmapCamera>& cameras, std::vector<Finding>* findings) {
+  std::map<std::int64_t, const PlacedCamera*> by_id;
+  for (const ColmapCamera& camera : cameras) by_id[camera.id] = &camera.placed;
+  std::vector<PlacedCamera> used;
+  for (const ColmapImage& image : images) {
+    const auto camera = by_id.find(image.camera_id);
+    if (camera == by_id.end()) {
+      throw InputError(
+          fmt::format("{}: has camera {}, which the cameras do not have; expected "
+                      "files of one model",
+                      image.pose.place, image.camera_id));
+    }
+    used.push_back(*camera->second);
+  }
+  if (images.empty()) {
+    for (const ColmapCamera& camera : cameras) used.push_back(camera.placed);
+  }
+  return OneCamera(used, "COLMAP's --ImageReader.single_camera 1", findings);
 }
 
 std::vector<ColmapImage> ReadImages(const std::filesystem::path& path) {
@@ -313,6 +372,8 @@ ColmapPoint ParsePoint(const TextLine& line) {
   for (size_t i = 0; i < 3; ++i) {
     point.position_in_world[static_cast<int>(i)] = ParseReal(words[i + 1], line.place, "XYZ");
   }
+  point.grey = GreyOf({ParseReal(words[4], line.place, "R"), ParseReal(words[5], line.place, "G"),
+                       ParseReal(words[6], line.place, "B")});
   point.reprojection_error_px = ParseReal(words[7], line.place, "ERROR");
   for (size_t i = kTrack; i < words.size(); i += 2) {
     point.track.push_back({ParseInteger(words[i], line.place, "IMAGE_ID"),
@@ -321,62 +382,53 @@ ColmapPoint ParsePoint(const TextLine& line) {
   return point;
 }
 
-// Throws InputError unless ids are unique, and tracks refer to existing image points.
-void CheckTracks(const ColmapModel& model) {
+// Throws InputError unless ids are unique, and image points of tracks exist where their images have
+// any. Leaves out observations in images that have none, or that the model does not have.
+void CheckTracks(ColmapModel* model) {
   std::map<std::int64_t, std::int64_t> pixels_of_image;
-  for (const ColmapImage& image : model.images) {
+  for (const ColmapImage& image : model->images) {
     if (!pixels_of_image.emplace(image.id, image.pixels.size()).second) {
       throw InputError(fmt::format("{}: is the second image with id {}; expected one",
                                    image.pose.place, image.id));
     }
   }
-  const std::string file = model.files.back().string();
-  for (size_t i = 0; i < model.points.size(); ++i) {
-    const ColmapPoint& point = model.points[i];
-    if (i > 0 && point.id == model.points[i - 1].id) {
+  const std::string file = model->files.back().string();
+  size_t all = 0, left_out = 0;
+  for (size_t i = 0; i < model->points.size(); ++i) {
+    ColmapPoint& point = model->points[i];
+    if (i > 0 && point.id == model->points[i - 1].id) {
       throw InputError(fmt::format("{}: has two points with id {}; expected one", file, point.id));
     }
-    for (const ColmapPoint::Observation& observation : point.track) {
+    all += point.track.size();
+    left_out += std::erase_if(point.track, [&](const ColmapPoint::Observation& observation) {
       const auto image = pixels_of_image.find(observation.image_id);
-      if (image != pixels_of_image.end() && observation.pixel_index >= 0 &&
-          observation.pixel_index < image->second) {
-        continue;
-      }
+      if (image == pixels_of_image.end() || image->second == 0) return true;
+      if (observation.pixel_index >= 0 && observation.pixel_index < image->second) return false;
       throw InputError(fmt::format(
-          "{}: point {}: is seen at image point {} of image {}, which the images do not have; "
-          "expected files of one model",
-          file, point.id, observation.pixel_index, observation.image_id));
-    }
+          "{}: point {}: is seen at image point {} of image {}, which has "
+          "{}; expected files of one model",
+          file, point.id, observation.pixel_index, observation.image_id, image->second));
+    });
   }
+  if (left_out == 0) return;
+  model->findings.push_back(
+      {"tracks_without_images", Severity::kWarning,
+       fmt::format(
+           "{}: {} of {} observations of points are in images that the model does not have, "
+           "or has without image points; they are left out",
+           file, left_out, all),
+       "images, with their image points, for all observations",
+       "images that were taken out of the model, or lines of image points that were left empty",
+       "nothing where enough points are left; otherwise the whole model"});
 }
 
 }  // namespace
 
-LensCamera ReadColmapCamera(const std::filesystem::path& path) {
-  std::vector<LensCamera> cameras;
-  std::vector<std::string> places;
-  if (IsBinary(path)) {
-    constexpr size_t kLeastBytes = 24;
-    cameras = ReadBinary(path, "camera", kLeastBytes, &TakeCamera);
-    places.assign(cameras.size(), path.string());
-  } else {
-    for (const TextLine& line : ReadTextLines(path)) {
-      cameras.push_back(ParseColmapCamera(line));
-      places.push_back(line.place);
-    }
-  }
-  for (size_t i = 1; i < cameras.size(); ++i) {
-    if (cameras[i] == cameras[0]) continue;
-    throw InputError(
-        fmt::format("{}: camera {} is another camera than the first; expected one for "
-                    "all images (COLMAP's --ImageReader.single_camera 1)",
-                    places[i], i + 1));
-  }
-  if (cameras.empty()) {
-    throw InputError(path.string() +
-                     ": has no camera; expected COLMAP's cameras.txt or cameras.bin");
-  }
-  return cameras.front();
+LensCamera ReadColmapCamera(const std::filesystem::path& path, std::vector<Finding>* findings) {
+  const std::vector<ColmapCamera> cameras = ReadCameras(path);
+  const std::filesystem::path images = path.parent_path() / ("images" + path.extension().string());
+  const bool has_images = cameras.size() > 1 && IsFile(images);
+  return CameraOf(has_images ? ReadImages(images) : std::vector<ColmapImage>(), cameras, findings);
 }
 
 std::vector<NamedPose> ReadColmapPoses(const std::filesystem::path& path) {
@@ -401,11 +453,12 @@ ColmapModel ReadColmapModel(const std::filesystem::path& folder) {
   for (const char* name : {"cameras", "images", "points3D"}) {
     model.files.push_back(folder / (name + extension));
   }
-  model.camera = ReadColmapCamera(model.files[0]);
+  if (!IsFile(model.files.back())) model.files.pop_back();
   model.images = ReadImages(model.files[1]);
-  model.points = ReadColmapPoints(model.files[2]);
+  model.camera = CameraOf(model.images, ReadCameras(model.files[0]), &model.findings);
+  if (model.files.size() > 2) model.points = ReadColmapPoints(model.files[2]);
   std::ranges::sort(model.points, {}, &ColmapPoint::id);
-  CheckTracks(model);
+  CheckTracks(&model);
   return model;
 }
 

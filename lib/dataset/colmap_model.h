@@ -11,6 +11,7 @@
 
 #include "dataset/calibration_file.h"
 #include "dataset/trajectories.h"
+#include "model/finding.h"
 
 namespace soslam {
 
@@ -22,9 +23,10 @@ namespace soslam {
 // COLMAP's pixel (0, 0) is the outer corner of the top-left one: half a pixel is subtracted
 // everywhere. Its poses are camera_from_world; they are inverted here.
 
-// Reads the camera of cameras.txt or cameras.bin. Several cameras must be identical. Models:
-// SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV.
-LensCamera ReadColmapCamera(const std::filesystem::path& path);
+// Reads the camera of cameras.txt or cameras.bin: of several, OneCamera of those that the images in
+// the images.txt or images.bin beside it have; of all, if there is none. Models: SIMPLE_PINHOLE,
+// PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV.
+LensCamera ReadColmapCamera(const std::filesystem::path& path, std::vector<Finding>* findings);
 
 // Reads the poses of images.txt or images.bin, without their image points. In file order; at least
 // one.
@@ -32,6 +34,7 @@ std::vector<NamedPose> ReadColmapPoses(const std::filesystem::path& path);
 
 struct ColmapImage {
   std::int64_t id = 0;
+  std::int64_t camera_id = 0;
   NamedPose pose;
   std::vector<Eigen::Vector2d> pixels;  // image points, whether or not they are of a point
 };
@@ -43,6 +46,7 @@ struct ColmapPoint {
   };
   std::uint64_t id = 0;
   Eigen::Vector3d position_in_world = Eigen::Vector3d::Zero();
+  double grey = 0.0;                   // of its colour
   double reprojection_error_px = 0.0;  // mean over its observations; below 0 where unknown
   std::vector<Observation> track;
 };
@@ -52,6 +56,7 @@ struct ColmapModel {
   std::vector<ColmapImage> images;  // in file order
   std::vector<ColmapPoint> points;  // sorted by id
   std::vector<std::filesystem::path> files;
+  std::vector<Finding> findings;  // what was left out, or made one
 };
 
 // Reads points3D.txt or points3D.bin, in file order.
@@ -61,7 +66,9 @@ std::vector<ColmapPoint> ReadColmapPoints(const std::filesystem::path& path);
 bool IsColmapModel(const std::filesystem::path& folder);
 
 // Reads the cameras, images and points3D of a folder: .bin, or .txt where there is no cameras.bin.
-// Each track refers to existing images and image points, no id occurs twice.
+// A model without points3D has no points. No id occurs twice. Tracks lose the observations in
+// images that the model does not have, or of which it has no image point; if there are other image
+// points, a track that refers to none of them is refused.
 ColmapModel ReadColmapModel(const std::filesystem::path& folder);
 
 // Name and parameters ("500,500,320,240") of COLMAP's smallest camera model that includes a lens.

@@ -6,12 +6,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "artefact/json_file.h"
 #include "base/error.h"
+#include "dataset/image_path.h"
 #include "dataset/json_entry.h"
+#include "dataset/one_camera.h"
 #include "geometry/camera.h"
 #include "geometry/image_size.h"
+#include "image/image_format.h"
 
 namespace soslam {
 namespace {
@@ -26,8 +30,34 @@ double RealOr(const JsonEntry& entry, const char* name, double value) {
   return entry.Has(name) ? entry.Real(name) : value;
 }
 
+std::vector<JsonEntry> FramesOf(const JsonEntry& all) {
+  return EntriesOf(all.List("frames"), all.place() + "#/frames");
+}
+
+// The path of a frame's image, with the extension that Blender's scenes leave out.
+std::string ImageOf(const JsonEntry& frame) {
+  const std::string image = frame.Text("file_path");
+  return std::filesystem::path(image).has_extension() ? image : image + ".png";
+}
+
+// The size of the first image that is there, as viewers show it.
+std::optional<ImageSize> SizeOfImages(const std::vector<JsonEntry>& frames,
+                                      const std::filesystem::path& folder) {
+  for (const JsonEntry& frame : frames) {
+    const auto header = ReadImageHeader(ImagePath(folder, ImageOf(frame), frame.place()));
+    if (header) return header->Size(ImageOrientation::kUpright);
+  }
+  return std::nullopt;
+}
+
 Camera ParseNerfstudioCamera(const JsonEntry& entry) {
   for (const char* side : {"w", "h"}) {
+    if (!entry.Has(side)) {
+      throw InputError(
+          fmt::format("{}: {} is missing; expected it, or the images that the frames "
+                      "name",
+                      entry.place(), side));
+    }
     if (!IsWholeImageSize(entry.Real(side), 1.0)) entry.Refuse(side, "pixels above 0");
   }
   Camera camera{static_cast<int>(entry.Real("w")), static_cast<int>(entry.Real("h"))};
@@ -37,7 +67,9 @@ Camera ParseNerfstudioCamera(const JsonEntry& entry) {
   if (entry.Has("fl_x") || !entry.Has("camera_angle_x")) {
     camera.fx = entry.Positive("fl_x");
   } else {
-    camera.fx = 0.5 * camera.width / std::tan(0.5 * entry.Positive("camera_angle_x"));
+    const double angle = entry.Positive("camera_angle_x");
+    if (angle >= std::numbers::pi) entry.Refuse("camera_angle_x", "radians below pi");
+    camera.fx = 0.5 * camera.width / std::tan(0.5 * angle);
   }
   camera.fy = entry.Has("fl_y") ? entry.Positive("fl_y") : camera.fx;
   camera.cx = RealOr(entry, "cx", 0.5 * camera.width) - 0.5;
@@ -60,18 +92,36 @@ std::optional<Distortion> NerfstudioLens(const JsonEntry& entry) {
   return distortion;
 }
 
-std::vector<JsonEntry> FramesOf(const JsonEntry& all) {
-  return EntriesOf(all.List("frames"), all.place() + "#/frames");
-}
-
-// Checks that camera keys of single frames equal those of the file.
-void RefuseOtherCameras(const JsonEntry& all) {
-  for (const JsonEntry& frame : FramesOf(all)) {
-    for (const char* key : kNerfstudioKeys) {
-      if (!frame.Has(key) || (all.Has(key) && frame.Field(key) == all.Field(key))) continue;
-      frame.Refuse(key, "one camera for all frames, in the file's own " + std::string(key));
+// The camera of each frame, by its own values or those of the file.
+std::vector<PlacedCamera> CamerasOf(const json& document, const std::filesystem::path& path) {
+  const JsonEntry all(document, path.string());
+  json common = document;
+  common.erase("frames");
+  const auto camera_of = [](const json& fields, const std::string& place) {
+    const JsonEntry entry(fields, place);
+    return PlacedCamera{place, {ParseNerfstudioCamera(entry), NerfstudioLens(entry)}};
+  };
+  if (!all.Has("frames")) return {camera_of(common, all.place())};
+  const std::vector<JsonEntry> frames = FramesOf(all);
+  const auto has_size = [](const JsonEntry& entry) { return entry.Has("w") || entry.Has("h"); };
+  if (!has_size(all) && std::ranges::none_of(frames, has_size)) {
+    if (const auto size = SizeOfImages(frames, path.parent_path())) {
+      common.update({{"w", size->width}, {"h", size->height}});
     }
   }
+  std::vector<PlacedCamera> cameras;
+  for (const JsonEntry& frame : frames) {
+    json fields = common;
+    bool has_own = false;
+    for (const char* key : kNerfstudioKeys) {
+      if (!frame.Has(key)) continue;
+      fields[key] = frame.Field(key);
+      has_own = true;
+    }
+    cameras.push_back(camera_of(fields, has_own ? frame.place() : all.place()));
+  }
+  if (cameras.empty()) cameras.push_back(camera_of(common, all.place()));
+  return cameras;
 }
 
 NamedPose ParsePose(const JsonEntry& frame) {
@@ -86,15 +136,15 @@ NamedPose ParsePose(const JsonEntry& frame) {
 
 }  // namespace
 
-std::optional<LensCamera> ReadNerfstudioCamera(const std::filesystem::path& path) {
+std::optional<LensCamera> ReadNerfstudioCamera(const std::filesystem::path& path,
+                                               std::vector<Finding>* findings) {
   const json document = ParseJsonFile(path);
   if (!document.is_object()) return std::nullopt;
   const JsonEntry entry(document, path.string());
   if (!entry.Has("frames") && !entry.Has("fl_x") && !entry.Has("camera_angle_x")) {
     return std::nullopt;
   }
-  if (entry.Has("frames")) RefuseOtherCameras(entry);
-  return LensCamera{ParseNerfstudioCamera(entry), NerfstudioLens(entry)};
+  return OneCamera(CamerasOf(document, path), "images with one zoom and focus", findings);
 }
 
 std::vector<NamedPose> ReadNerfstudioPoses(const std::filesystem::path& path,
@@ -122,7 +172,7 @@ std::vector<ListedImage> ReadNerfstudioImages(const std::filesystem::path& path)
   const json document = ParseJsonFile(path);
   std::vector<ListedImage> images;
   for (const JsonEntry& frame : FramesOf(JsonEntry(document, path.string()))) {
-    images.push_back({0.0, frame.Text("file_path")});
+    images.push_back({0.0, ImageOf(frame)});
   }
   std::ranges::stable_sort(
       images, {}, [](const ListedImage& image) { return std::filesystem::path(image.image); });

@@ -44,7 +44,7 @@ Distortion DistortionOfSetting(const std::string& text) {
 // camera is converted to the one with y down that gives the same images. Throws SettingsError for
 // invalid options; InputError naming the field.
 Calibration ReadFolderCamera(const std::optional<std::filesystem::path>& camera_file,
-                             const ImportOptions& options) {
+                             const ImportOptions& options, std::vector<Finding>* findings) {
   const bool y_is_up = options.format == DatasetFormat::kIclNuim;
   if (!options.folder.camera.empty() && !options.folder.camera_file.empty()) {
     throw SettingsError("camera, camera_file: found both; expected one of them");
@@ -55,7 +55,7 @@ Calibration ReadFolderCamera(const std::optional<std::filesystem::path>& camera_
   } else if (y_is_up) {
     read.camera = ReadCamera(*camera_file, CameraYAxis::kUp);
   } else {
-    read = ReadCameraFile(*camera_file);
+    read = ReadCameraFile(*camera_file, findings);
   }
   std::optional<Distortion>& distortion = read.camera.distortion;
   if (!options.folder.distortion.empty()) {
@@ -132,11 +132,11 @@ DatasetContent ReadSoslamFolder(const std::filesystem::path& folder, const Impor
                kTrajectorySourceNames[static_cast<int>(options.trajectory)],
                files.trajectory.filename().string());
   }
-  const Calibration calibration = ReadFolderCamera(files.camera, options);
+  DatasetContent content;
+  const Calibration calibration = ReadFolderCamera(files.camera, options, &content.findings);
   const LensCamera& camera = calibration.camera;
   const ListedObjects given = files.objects ? ReadObjects(*files.objects) : ListedObjects();
   const std::vector<ListedObject>& listed = given.objects;
-  DatasetContent content;
   RejectionCounts corrected;
   FolderBoxes read = ReadFolderBoxes(folder, options, camera.camera, &files, &corrected);
   ReportMended(files, corrected["cut_to_image"], read.boxes.size(), kCut, &content.findings);

@@ -86,7 +86,8 @@ class CalibrationFileTest : public FolderTest {
     return FileBytes(SOSLAM_SOURCE_DIR "/tests/fuzz/corpus/cameras/" + name);
   }
   Calibration Read(const std::string& text, const std::string& name = "a.yaml") {
-    return ReadCameraFile(Write(name, text));
+    std::vector<Finding> findings;
+    return ReadCameraFile(Write(name, text), &findings);
   }
   void ExpectRefused(const std::string& from, const std::string& to,
                      const std::vector<std::string>& words) {

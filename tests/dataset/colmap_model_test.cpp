@@ -11,6 +11,7 @@
 #include "dataset/calibration_file.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
+#include "support/printed.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {
@@ -19,8 +20,11 @@ namespace {
 class ColmapModelTest : public FolderTest {
  protected:
   LensCamera Cameras(const std::string& lines) {
-    return ReadColmapCamera(Write("cameras.txt", "# Camera list\n" + lines));
+    findings_.clear();
+    return ReadColmapCamera(Write("cameras.txt", "# Camera list\n" + lines), &findings_);
   }
+
+  std::vector<Finding> findings_;
 };
 
 // COLMAP's principal point counts from the corner of the top-left pixel.
@@ -46,15 +50,63 @@ TEST_F(ColmapModelTest, ModelsOfCameras) {
 TEST_F(ColmapModelTest, CamerasThatAreNotReadAreNamed) {
   const std::string first = "1 PINHOLE 640 480 500 510 320 240\n";
   EXPECT_EQ(Cameras(first + "2" + first.substr(1)).camera.fy, 510);
-  ExpectBadTexts(
-      {{first + "2 PINHOLE 640 480 500 511 320 240\n", {":3", "another camera", "single_camera"}},
-       {"1 OPENCV_FISHEYE 640 480 500 500 320 240 0 0 0 0\n",
-        {":2", "'OPENCV_FISHEYE' is not supported", "image_undistorter"}},
-       {"1 CUBIC 640 480 500 500 320 240\n", {"'CUBIC'"}},
-       {"1 PINHOLE 640 480 500 320 240\n", {"3 parameters; expected 4 of PINHOLE"}},
-       {"1 PINHOLE 640 0 500 500 320 240\n", {"above 0"}},
-       {"", {"no camera"}}},
-      "cameras.txt", [&](const std::string& lines) { Cameras(lines); });
+  ExpectBadTexts({{first + "2 PINHOLE 640 480 500 515 320 240\n",
+                   {"another camera", "up to 1.2 px", "single_camera"}},
+                  {first + "2 PINHOLE 480 640 500 510 320 240\n", {":3", "480 x 640", "640 x 480"}},
+                  {"1 OPENCV_FISHEYE 640 480 500 500 320 240 0 0 0 0\n",
+                   {":2", "'OPENCV_FISHEYE' is not supported", "image_undistorter"}},
+                  {"1 CUBIC 640 480 500 500 320 240\n", {"'CUBIC'"}},
+                  {"1 PINHOLE 640 480 500 320 240\n", {"3 parameters; expected 4 of PINHOLE"}},
+                  {"1 PINHOLE 640 0 500 500 320 240\n", {"above 0"}},
+                  {"", {"no camera"}}},
+                 "cameras.txt", [&](const std::string& lines) { Cameras(lines); });
+}
+
+// The corner of the image is 400 px from its middle, so that cameras of focal lengths 500 and 501
+// are 0.8 px apart there, each 0.4 px from their mean.
+TEST_F(ColmapModelTest, CamerasLessThanAPixelApartAreOne) {
+  EXPECT_EQ(Cameras("1 SIMPLE_RADIAL 640 480 500 320 240 0\n2 PINHOLE 640 480 500 500 320 240\n")
+                .camera.fx,
+            500.0);
+  EXPECT_TRUE(findings_.empty()) << "equal";
+  const LensCamera mean = Cameras(
+      "1 SIMPLE_RADIAL 640 480 500 320 240 0.001\n2 SIMPLE_RADIAL 640 480 501 320 240 0.002\n");
+  EXPECT_EQ(mean.camera, (Camera{640, 480, 500.5, 500.5, 319.5, 239.5}));
+  EXPECT_NEAR(mean.distortion->k1, 0.0015, 1e-12);
+  ASSERT_EQ(findings_.size(), 1u);
+  // 400 px * (0.5 / 500.5 + 0.0005 * (400 / 500.5)^2)
+  EXPECT_NE(findings_[0].found.find("up to 0.53 px"), std::string::npos) << findings_[0].found;
+}
+
+TEST_F(ColmapModelTest, CamerasOfNoImageDoNotCount) {
+  const std::string cameras =
+      "1 PINHOLE 640 480 500 500 320 240\n2 PINHOLE 640 480 700 700 320 240\n"
+      "3 PINHOLE 640 480 500 500 320 240\n";
+  Write("images.txt", "1 1 0 0 0 0 0 0 1 a.jpg\n\n2 1 0 0 0 0 0 0 3 b.jpg\n\n");
+  EXPECT_EQ(Cameras(cameras).camera.fx, 500.0);
+  EXPECT_TRUE(findings_.empty());
+  Write("images.txt", "1 1 0 0 0 0 0 0 1 a.jpg\n\n2 1 0 0 0 0 0 0 4 b.jpg\n\n");
+  ExpectError<InputError>([&] { Cameras(cameras); }, {"images.txt:3", "camera 4", "one model"});
+}
+
+// An image without a line of image points is followed by the next one.
+TEST_F(ColmapModelTest, MissingLinesOfImagePointsAreNamed) {
+  const auto names = [&](const std::string& lines) {
+    std::vector<std::string> images;
+    for (const NamedPose& pose : ReadColmapPoses(Write("images.txt", lines))) {
+      images.push_back(pose.image);
+    }
+    return images;
+  };
+  const std::vector<std::string> all = {"a.jpg", "b.jpg", "c.jpg"};
+  const std::string a = "1 1 0 0 0 0 0 0 1 a.jpg\n", b = "2 1 0 0 0 0 0 0 1 b.jpg\n",
+                    c = "3 1 0 0 0 0 0 0 1 c.jpg\n";
+  const Printed printed = PrintedBy([&] { EXPECT_EQ(names(a + b + c), all); });
+  EXPECT_NE(printed.output.find("3 of 3 images have no line"), std::string::npos);
+  EXPECT_EQ(names(a + "1 2 3\n" + b + c), all);
+  EXPECT_EQ(PrintedBy([&] { EXPECT_EQ(names(a + "\n" + b + "1 2 3\n" + c), all); }).output, "");
+  ExpectError<InputError>([&] { names(a + "2 1 0 0 0 0 0 0 1 b c.jpg\n"); },
+                          {"images.txt:2", "11 words", "an empty line"});
 }
 
 TEST_F(ColmapModelTest, BadPosesAreNamed) {
@@ -138,7 +190,8 @@ TEST_F(WholeModelTest, TextAndBinaryAreTheSame) {
   WriteBinary();
   ExpectTheModel();
   EXPECT_EQ(ReadColmapPoses(folder_ / "images.bin")[1].image, "rgb/c.jpg");
-  EXPECT_EQ(ReadCameraFile(folder_ / "cameras.bin").camera.camera.fx, 500);
+  std::vector<Finding> findings;
+  EXPECT_EQ(ReadCameraFile(folder_ / "cameras.bin", &findings).camera.camera.fx, 500);
 }
 
 TEST_F(WholeModelTest, BinaryFilesThatAreCutAreRefused) {
@@ -168,10 +221,25 @@ TEST_F(WholeModelTest, BinaryNumbersThatCannotBeAreRefused) {
   ExpectRefused({"cameras.bin: camera 1", "focal length above 0"});
 }
 
-TEST_F(WholeModelTest, TracksOfOtherModelsAreRefused) {
+// Observations in images that were taken out of the model, or whose image points were.
+TEST_F(WholeModelTest, ObservationsThatNoImageHasAreLeftOut) {
   WriteBinary();
   Write("points3D.bin", Patched("points_bin", kImageOfPoint, std::uint32_t{5}));
-  ExpectRefused({"points3D.bin: point 9", "image point 0 of image 5", "one model"});
+  const ColmapModel without_image = ReadColmapModel(folder_.path());
+  EXPECT_EQ(without_image.points[0].track.size(), 2u);
+  EXPECT_EQ(without_image.points[1].track.size(), 1u) << "that of point 9";
+  ASSERT_EQ(without_image.findings.size(), 1u);
+  EXPECT_NE(without_image.findings[0].found.find("1 of 4 observations"), std::string::npos);
+  std::filesystem::remove(folder_ / "cameras.bin");
+  WriteBytes(folder_ / "images.txt",
+             "3 1 0 0 0 0 0 0 1 rgb/a.jpg\n10.5 20.5 -1 1.5 2.5 7\n4 1 0 0 0 0 0 0 1 b.jpg\n\n");
+  const ColmapModel without_pixels = ReadColmapModel(folder_.path());
+  EXPECT_EQ(without_pixels.points[0].track.size(), 1u) << "that of image 4";
+  std::filesystem::remove(folder_ / "points3D.txt");
+  EXPECT_TRUE(ReadColmapModel(folder_.path()).points.empty());
+}
+
+TEST_F(WholeModelTest, TracksOfOtherModelsAreRefused) {
   std::filesystem::remove(folder_ / "cameras.bin");
   Write("points3D.txt", "7 1 2 3 0 0 0 0.25 3 2\n");
   ExpectRefused({"points3D.txt: point 7", "image point 2 of image 3"});

@@ -10,6 +10,7 @@
 #include "dataset/calibration_file.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
+#include "support/image_files.h"
 #include "support/lists.h"
 
 namespace soslam {
@@ -20,7 +21,7 @@ using nlohmann::json;
 class NerfstudioTest : public FolderTest {
  protected:
   std::filesystem::path WriteDocument() { return Write("transforms.json", document_.dump()); }
-  LensCamera Camera() { return ReadCameraFile(WriteDocument()).camera; }
+  LensCamera Camera() { return ReadCameraFile(WriteDocument(), &findings_).camera; }
   void ExpectRefused(const char* pointer, const json& value,
                      const std::vector<std::string>& words) {
     const json before = document_;
@@ -107,15 +108,53 @@ TEST_F(NerfstudioTest, BadFilesAreNamed) {
   ExpectRefused("/h", 1e9, {"h is"});
   ExpectRefused("/fl_x", 0, {"fl_x is 0"});
   ExpectRefused("/frames", json::array(), {"frames is []"});
-  ExpectRefused("/frames/0/fl_x", 400, {"transforms.json#/frames/0", "fl_x is 400", "one camera"});
+  ExpectRefused("/frames/0/fl_x", 0, {"transforms.json#/frames/0", "fl_x is 0"});
   ExpectRefused("/frames/0/transform_matrix", {{1, 0, 0, 1}}, {"#/frames/0", "4 rows"});
   ExpectRefused("/frames/0/transform_matrix/0/2", 2, {"#/frames/0", "not orthonormal"});
   ExpectRefused("/frames/0/transform_matrix/0/2", -1, {"#/frames/0", "determinant -1"});
   ExpectRefused("/frames/0/transform_matrix/3/0", 1, {"#/frames/0", "last row", "1 0 0 1"});
   ExpectRefused("/frames/0/file_path", "", {"#/frames/0", "file_path"});
   ExpectRefused("/applied_scale", 0, {"transforms.json", "applied_scale is 0"});
-  document_["frames"][0]["fl_x"] = 500.0;  // that of all
-  EXPECT_EQ(Camera().camera.fx, 500.0);
+  for (const char* key : {"fl_x", "fl_y"}) document_.erase(key);
+  ExpectRefused("/camera_angle_x", 60, {"camera_angle_x is 60", "radians"});
+  document_.erase("w");
+  document_.erase("h");
+  ExpectRefused("/camera_angle_x", 0.5, {"transforms.json: w is missing", "images"});
+}
+
+// Focal lengths of 500 and 500.5 px displace the corner of the image, 400 px from its middle, by
+// 0.2 px from their mean.
+TEST_F(NerfstudioTest, CamerasOfFrames) {
+  document_["frames"].push_back(document_["frames"][0]);
+  document_["frames"][1]["fl_x"] = 500.0;
+  EXPECT_EQ(Camera().camera.fx, 500.0) << "that of all";
+  EXPECT_THAT(findings_, testing::IsEmpty());
+  for (const char* key : {"w", "h", "fl_x", "fl_y", "cx", "cy"}) {
+    for (json& frame : document_["frames"]) frame[key] = document_[key];
+    document_.erase(key);
+  }
+  EXPECT_EQ(Camera().camera, (soslam::Camera{640, 480, 500, 510, 319.5, 239.5}));
+  EXPECT_THAT(findings_, testing::IsEmpty());
+  document_["k1"] = 0.0;
+  document_["p2"] = 0.0;
+  document_["frames"][1]["fl_x"] = 500.5;
+  EXPECT_EQ(Camera().camera.fx, 500.25);
+  EXPECT_THAT(Only(findings_).found, testing::HasSubstr("up to 0.16 px"));
+  document_["frames"][1]["fl_x"] = 510.0;
+  ExpectError<InputError>([&] { Camera(); },
+                          {"transforms.json#/frames/", "another camera", "up to 3.2 px"});
+}
+
+// Scenes of Blender have an angle of view, no size, and images without extension.
+TEST_F(NerfstudioTest, AnAngleOfViewNeedsOnlyTheImages) {
+  document_ = {{"camera_angle_x", 2.0 * std::atan(0.8)}, {"frames", document_["frames"]}};
+  document_["frames"][0]["file_path"] = "./train/r_0";
+  Write("train/r_0.png", EncodedImage(".png", cv::Mat::zeros(30, 40, CV_8UC3)));
+  EXPECT_EQ(Camera().camera.width, 40);
+  EXPECT_EQ(Camera().camera.height, 30);
+  EXPECT_NEAR(Camera().camera.fx, 25.0, 1e-9);
+  EXPECT_EQ(Camera().camera.cy, 14.5);
+  EXPECT_EQ(Only(ReadNerfstudioImages(WriteDocument())).image, "./train/r_0.png");
 }
 
 }  // namespace

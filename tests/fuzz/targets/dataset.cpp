@@ -66,14 +66,19 @@ const FuzzTarget kBoxJson("box_json", [](const HostileInput& input) {
 
 const FuzzTarget kCameras("cameras", [](const HostileInput& input) {
   for (const char* name : {"camera.json", "camera.yaml", "camera.xml", "cameras.txt"}) {
-    ReadBy(input.AsFile(name), ReadCameraFile);
+    const auto file = input.AsFile(name);
+    std::vector<Finding> findings;
+    IsAccepted(file, [&] { ReadCameraFile(file, &findings); });
   }
 });
 
 // A folder is a model as text, as the files of a folder end with a line.
 const FuzzTarget kColmap("colmap", [](const HostileInput& input) {
   ReadBy(input.AsFolder(), ReadColmapModel);
-  ReadBy(input.AsFile("model.bin"), ReadColmapCamera, ReadColmapPoses, ReadColmapPoints);
+  const auto file = input.AsFile("model.bin");
+  ReadBy(file, ReadColmapPoses, ReadColmapPoints);
+  std::vector<Finding> findings;
+  IsAccepted(file, [&] { ReadColmapCamera(file, &findings); });
 });
 
 const FuzzTarget kDatasetJson("dataset_json", [](const HostileInput& input) {

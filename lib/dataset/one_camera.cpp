@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dataset/one_camera.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+#include "geometry/distortion.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Rays through a grid over the image, with its border. Where the lens model has no inverse there,
+// the ray is missing.
+std::vector<Eigen::Vector3d> RaysOverImage(const LensCamera& lens_camera) {
+  constexpr int kIntervals = 16;
+  const Camera& camera = lens_camera.camera;
+  std::vector<Eigen::Vector2d> pixels;
+  for (int row = 0; row <= kIntervals; ++row) {
+    for (int column = 0; column <= kIntervals; ++column) {
+      pixels.emplace_back(camera.width * column / double{kIntervals} - 0.5,
+                          camera.height * row / double{kIntervals} - 0.5);
+    }
+  }
+  const Distortion distortion = lens_camera.distortion.value_or(Distortion());
+  std::vector<Eigen::Vector3d> rays;
+  for (const auto& pixel : UndistortPixels(camera, distortion, pixels)) {
+    if (pixel) rays.push_back(camera.Ray(*pixel));
+  }
+  return rays;
+}
+
+std::vector<Eigen::Vector2d> ImagePoints(const LensCamera& lens_camera,
+                                         const std::vector<Eigen::Vector3d>& rays) {
+  std::vector<Eigen::Vector2d> pixels;
+  for (const Eigen::Vector3d& ray : rays) pixels.push_back(*lens_camera.camera.Project(ray));
+  return DistortPixels(lens_camera.camera, lens_camera.distortion.value_or(Distortion()), pixels);
+}
+
+LensCamera MeanCamera(const std::vector<PlacedCamera>& cameras) {
+  constexpr size_t kIntrinsics = 4, kCoefficients = 14;
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(kIntrinsics + kCoefficients);
+  for (const PlacedCamera& placed : cameras) {
+    const Camera& camera = placed.camera.camera;
+    std::vector<double> values =
+        DistortionCoefficients(placed.camera.distortion.value_or(Distortion()));
+    values.insert(values.begin(), {camera.fx, camera.fy, camera.cx, camera.cy});
+    values.resize(kIntrinsics + kCoefficients, 0.0);
+    mean += Eigen::VectorXd::Map(values.data(), mean.size()) / static_cast<double>(cameras.size());
+  }
+  const Camera& first = cameras.front().camera.camera;
+  LensCamera camera = {{first.width, first.height, mean[0], mean[1], mean[2], mean[3]}, {}};
+  const auto lens = DistortionOfCoefficients({mean.data() + kIntrinsics, kCoefficients});
+  if (lens != Distortion()) camera.distortion = lens;
+  return camera;
+}
+
+}  // namespace
+
+double LargestDisplacementPx(const LensCamera& one, const LensCamera& other) {
+  if (one.camera.width != other.camera.width || one.camera.height != other.camera.height) {
+    return kInfinity;
+  }
+  const std::vector<Eigen::Vector3d> rays = RaysOverImage(one);
+  const std::vector<Eigen::Vector2d> pixels = ImagePoints(one, rays);
+  const std::vector<Eigen::Vector2d> other_pixels = ImagePoints(other, rays);
+  double largest_px = rays.empty() ? kInfinity : 0.0;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const double displacement_px = (pixels[i] - other_pixels[i]).norm();
+    largest_px = std::max(largest_px, std::isfinite(displacement_px) ? displacement_px : kInfinity);
+  }
+  return largest_px;
+}
+
+LensCamera OneCamera(const std::vector<PlacedCamera>& cameras, const std::string& remedy,
+                     std::vector<Finding>* findings) {
+  constexpr double kMostPx = 1.0;
+  const PlacedCamera& first = cameras.front();
+  const auto is_first = [&](const PlacedCamera& placed) { return placed.camera == first.camera; };
+  if (std::ranges::all_of(cameras, is_first)) return first.camera;
+  const LensCamera mean = MeanCamera(cameras);
+  double largest_px = 0.0;
+  const PlacedCamera* farthest = &first;
+  for (const PlacedCamera& placed : cameras) {
+    const double displacement_px = LargestDisplacementPx(mean, placed.camera);
+    if (displacement_px > largest_px) farthest = &placed;
+    largest_px = std::max(largest_px, displacement_px);
+  }
+  const Camera& other = farthest->camera.camera;
+  if (other.width != mean.camera.width || other.height != mean.camera.height) {
+    throw InputError(fmt::format(
+        "{}: is another camera, of {} x {} pixels, than the first, of {} "
+        "x {}; expected one for all images ({})",
+        farthest->place, other.width, other.height, mean.camera.width, mean.camera.height, remedy));
+  }
+  if (largest_px >= kMostPx) {
+    throw InputError(
+        fmt::format("{}: is another camera than that of the other images: image "
+                    "points are up to {:.1f} px from those of the mean camera (fx "
+                    "{:.2f}, not {:.2f}); expected one for all images, to {:g} px "
+                    "({})",
+                    farthest->place, largest_px, other.fx, mean.camera.fx, kMostPx, remedy));
+  }
+  findings->push_back(
+      {"camera_per_image", Severity::kWarning,
+       fmt::format("{}: images have cameras of their own; their mean (fx {:.2f}), which is used "
+                   "for all, displaces image points by up to {:.2f} px",
+                   first.place, mean.camera.fx, largest_px),
+       "one camera for all images", "a reconstruction with a camera for each image",
+       fmt::format("nothing where boxes are less accurate than that; otherwise {}", remedy)});
+  return mean;
+}
+
+}  // namespace soslam
