@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <opencv2/core.hpp>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +16,8 @@
 #include "cli/command_line.h"
 #include "dataset/dataset_json.h"
 #include "dataset/image_path.h"
+#include "dataset/model_orientation.h"
+#include "dataset/one_camera.h"
 #include "dataset/reconstruct_options.h"
 #include "dataset/reconstruction.h"
 #include "dataset/text_file.h"
@@ -23,6 +25,7 @@
 #include "image/image_format.h"
 #include "stage/colmap_programs.h"
 #include "stage/stages.h"
+#include "stage/track_points.h"
 
 namespace soslam {
 namespace {
@@ -174,36 +177,18 @@ ColmapModel LargestModel(const std::vector<fs::path>& folders,
   return largest;
 }
 
-// Largest difference of the distortion coefficients of two cameras.
-double DistortionDifference(const LensCamera& one, const LensCamera& other) {
-  const auto all = [](const LensCamera& camera) {
-    constexpr size_t kMost = 14;
-    std::vector<double> values = DistortionCoefficients(camera.distortion.value_or(Distortion()));
-    values.resize(kMost, 0.0);
-    return values;
-  };
-  return cv::norm(all(one), all(other), cv::NORM_INF);
-}
-
 // Throws InputError unless the model has the camera that was given.
 void CheckCamera(const ColmapModel& model, const Given& given, const fs::path& dataset) {
   constexpr double kTolerancePx = 0.01;
-  constexpr double kDistortionTolerance = 1e-5;
   if (!given.camera_is_fixed) return;
-  const Camera& found = model.camera.camera;
-  const Camera& expected = given.camera->camera;
-  const Eigen::Vector4d difference(found.fx - expected.fx, found.fy - expected.fy,
-                                   found.cx - expected.cx, found.cy - expected.cy);
-  if (difference.cwiseAbs().maxCoeff() < kTolerancePx && found.width == expected.width &&
-      found.height == expected.height &&
-      DistortionDifference(model.camera, *given.camera) < kDistortionTolerance) {
-    return;
-  }
-  throw InputError(
-      fmt::format("{}: is another camera than the model's (fx {:.2f}, not {:.2f}, or another "
-                  "distortion); expected a model of this camera, or calibration estimated, which "
-                  "replaces the file by the model's camera",
-                  (dataset / "camera.json").string(), found.fx, expected.fx));
+  const double displacement_px = LargestDisplacementPx(model.camera, *given.camera);
+  if (displacement_px < kTolerancePx) return;
+  throw InputError(fmt::format(
+      "{}: is another camera than the model's, which displaces image points by up to {:.2g} px (fx "
+      "{:.2f}, not {:.2f}); expected a model of this camera, or calibration estimated, which "
+      "replaces the file by the model's camera",
+      (dataset / "camera.json").string(), displacement_px, model.camera.camera.fx,
+      given.camera->camera.fx));
 }
 
 // Throws InputError unless the model's poses are those that were given.
@@ -223,6 +208,45 @@ void CheckPoses(const Reconstruction& reconstruction, const Given& given) {
                     "model of the given poses, or poses estimated",
                     given.images[i].image));
   }
+}
+
+// The images that have a pose, as a sequence.
+Sequence SequenceOf(const ColmapModel& model, const Reconstruction& reconstruction,
+                    const std::vector<ListedImage>& images, ImageOrientation image_orientation) {
+  Sequence sequence;
+  sequence.camera = model.camera.camera;
+  sequence.image_distortion = model.camera.distortion;
+  sequence.image_orientation = image_orientation;
+  for (size_t i = 0; i < images.size(); ++i) {
+    const auto& pose = reconstruction.world_from_camera[i];
+    if (!pose) continue;
+    sequence.frames.push_back(
+        {static_cast<int>(i), images[i].timestamp, images[i].image, *pose, std::nullopt});
+  }
+  return sequence;
+}
+
+// Gives a finished model points, if its own ones are seen in no image, as those of networks.
+void AddTrackedPoints(const ColmapModel& model, const fs::path& folder, const fs::path& dataset,
+                      const Sequence& sequence, int threads, Reconstruction* reconstruction,
+                      ArtefactInfo* info) {
+  const std::vector<FrameImage> images = FrameImages(sequence, dataset, dataset / "rgb.txt");
+  for (const FrameImage& image : images) info->inputs.push_back(image.path);
+  TrackedPoints tracked = TrackPoints(sequence, images, {}, threads);
+  reconstruction->points = std::move(tracked.points);
+  info->findings.push_back(
+      {"model_without_tracks", Severity::kWarning,
+       fmt::format("{}: the model has {}; used are its poses and its camera, with {} points of "
+                   "features that are followed through the images",
+                   folder.string(),
+                   model.points.empty()
+                       ? "no points"
+                       : fmt::format("{} points without tracks", model.points.size()),
+                   reconstruction->points.size()),
+       "points with the images that show them",
+       "poses of a network (VGGT, MASt3R, ViPE), or image points that were left out",
+       "nothing where poses are right to a pixel; otherwise triangulate points with COLMAP"});
+  std::ranges::move(tracked.findings, std::back_inserter(info->findings));
 }
 
 void CopyInto(const fs::path& output, const fs::path& file) {
@@ -297,20 +321,29 @@ void RunReconstruct(const ReconstructOptions& options, const StageFiles& files, 
                        ? GivenModels(files.at("model"))
                        : MakeModels(options, given, dataset, output, threads, &summary.colmap),
                    &summary.components);
-  const Reconstruction reconstruction = ReconstructionOf(model, given.images);
+  Reconstruction reconstruction = ReconstructionOf(model, given.images);
   CheckCamera(model, given, dataset);
   CheckPoses(reconstruction, given);
-  summary.poses_are_given = !given.poses.empty();
-  summary.camera_is_given = given.camera_is_fixed;
-  Summarise(reconstruction, given.images, &summary);
-  if (summary.points == 0) {
+  ArtefactInfo info{OptionsToJson(options), model.files, model.findings};
+  if (files.contains("model")) {
+    std::ranges::move(CheckModelOrientation(model, given.images, dataset),
+                      std::back_inserter(info.findings));
+  }
+  info.inputs.push_back(dataset / "rgb.txt");
+  if (reconstruction.points.empty() && files.contains("model")) {
+    AddTrackedPoints(model, files.at("model"), dataset,
+                     SequenceOf(model, reconstruction, given.images, options.image_orientation),
+                     threads, &reconstruction, &info);
+  } else if (reconstruction.points.empty()) {
     throw NothingUsableError(
         fmt::format("{}: the model has no points; expected some: do the poses fit the images?",
                     dataset.string()));
   }
-  ArtefactInfo info{OptionsToJson(options), model.files,
-                    CheckReconstruction(summary, reconstruction.unlisted)};
-  info.inputs.push_back(dataset / "rgb.txt");
+  summary.poses_are_given = !given.poses.empty();
+  summary.camera_is_given = given.camera_is_fixed;
+  Summarise(reconstruction, given.images, &summary);
+  std::ranges::move(CheckReconstruction(summary, reconstruction.unlisted),
+                    std::back_inserter(info.findings));
   ReportFindings("reconstruct", info.findings);
   WriteAll(dataset, output, given, model, reconstruction, summary, info);
   PrintReconstructionSummary(dataset, summary, reconstruction.unlisted);

@@ -1,181 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <optional>
-#include <utility>
 #include <vector>
 
 #include "artefact/files.h"
-#include "base/parallel.h"
-#include "base/progress.h"
-#include "base/text.h"
 #include "cli/command_line.h"
 #include "evaluation/statistics.h"
-#include "geometry/angles.h"
-#include "geometry/distortion.h"
-#include "geometry/triangulation.h"
-#include "image/feature_tracks.h"
-#include "model/finding.h"
-#include "model/map_points.h"
-#include "stage/read_evidence.h"
 #include "stage/stages.h"
+#include "stage/track_points.h"
 
 namespace soslam {
 namespace {
 
-// Homography between two images of a camera that only turns: where points at infinity move.
-Eigen::Matrix3d TurnOf(const Sequence& sequence, const Frame& from, const Frame& to) {
-  const Eigen::Quaterniond to_from_from =
-      to.world_from_camera.rotation.conjugate() * from.world_from_camera.rotation;
-  return sequence.CameraOf(to).Intrinsics() * to_from_from.toRotationMatrix() *
-         sequence.CameraOf(from).Intrinsics().inverse();
-}
-
-bool MayShareFeatures(const Sequence& sequence, const Frame& one, const Frame& other) {
-  const Camera& camera = sequence.CameraOf(one);
-  const Camera& other_camera = sequence.CameraOf(other);
-  return one.segment == other.segment && camera.width == other_camera.width &&
-         camera.height == other_camera.height;
-}
-
-std::vector<FeatureTrack> TracksOf(const Sequence& sequence, const std::vector<FrameImage>& images,
-                                   const FeatureTrackOptions& options, int threads) {
-  const FrameImageReader reader(sequence);
-  FeatureTracker tracker(options);
-  Progress progress("images", static_cast<int>(images.size()));
-  const size_t batch = 4 * static_cast<size_t>(threads);  // limits the images in memory
-  for (size_t begin = 0; begin < images.size(); begin += batch) {
-    std::vector<cv::Mat> grey(std::min(batch, images.size() - begin));
-    ParallelFor(static_cast<int>(grey.size()), threads, [&](int i) {
-      grey[i] = reader.Read(images[begin + static_cast<size_t>(i)], cv::IMREAD_GRAYSCALE);
-    });
-    for (size_t i = 0; i < grey.size(); ++i) {
-      const size_t index = begin + i;
-      const Frame& frame = *images[index].frame;
-      const Frame& last = index > 0 ? *images[index - 1].frame : frame;
-      if (!MayShareFeatures(sequence, last, frame)) tracker.Cut();
-      tracker.Add(grey[i], TurnOf(sequence, last, frame));
-      progress.Step();
-    }
-  }
-  return tracker.Tracks();
-}
-
-// The image points of a track, in the order of its places.
-std::vector<PointView> ViewsOf(const Sequence& sequence, const std::vector<FrameImage>& images,
-                               const FeatureTrack& track) {
-  std::vector<PointView> views;
-  for (const FeatureTrack::Place& place : track.places) {
-    const Frame& frame = *images[place.image].frame;
-    views.push_back({sequence.CameraOf(frame), frame.world_from_camera.Inverse(), place.pixel});
-  }
-  return views;
-}
-
-Eigen::Vector2d StoredPixel(const Sequence& sequence, const PointView& view) {
-  if (!sequence.image_distortion) return view.pixel;
-  return DistortPixels(view.camera, *sequence.image_distortion, {view.pixel}).front();
-}
-
-// None if a track's image points are not those of one static point, or it is too far away.
-std::optional<MapPoint> PointOf(const Sequence& sequence, const std::vector<FrameImage>& images,
-                                const FeatureTrack& track, const TrackOptions& options) {
-  const std::vector<PointView> all = ViewsOf(sequence, images, track);
-  const double max_error_px = options.max_reprojection_error_px;
-  const auto min_views = static_cast<size_t>(options.min_views);
-  if (all.size() < min_views) return std::nullopt;
-  const auto first = Triangulate(all, 0.5 * max_error_px);
-  if (!first) return std::nullopt;
-  const auto is_far_from = [&](const TriangulatedPoint& point) {
-    return [&](const PointView& view) {
-      return ReprojectionError(view, point.position_in_world) > max_error_px;
-    };
-  };
-  std::vector<PointView> near = all;
-  std::erase_if(near, is_far_from(*first));
-  if (near.size() < min_views || 2 * near.size() < all.size()) return std::nullopt;
-  const auto point = Triangulate(near, 0.5 * max_error_px);
-  if (!point) return std::nullopt;
-  std::vector<Eigen::Vector3d> centres;
-  for (const PointView& view : near) {
-    centres.push_back(view.camera_from_world.Inverse().translation);
-  }
-  if (std::ranges::any_of(near, is_far_from(*point)) ||
-      LargestAngle(centres, point->position_in_world) < options.min_angle_deg * kRadPerDeg) {
-    return std::nullopt;
-  }
-  MapPoint result{point->position_in_world, point->mean_error_px, {}};
-  for (size_t i = 0; i < all.size(); ++i) {
-    if (is_far_from(*first)(all[i])) continue;
-    const Frame& frame = *images[track.places[i].image].frame;
-    result.observations.push_back({frame.id, StoredPixel(sequence, all[i])});
-  }
-  return result;
-}
-
-std::vector<MapPoint> PointsOf(const Sequence& sequence, const std::vector<FrameImage>& images,
-                               const std::vector<FeatureTrack>& tracks, const TrackOptions& options,
-                               int threads) {
-  std::vector<std::optional<MapPoint>> found(tracks.size());
-  ParallelFor(static_cast<int>(tracks.size()), threads, [&](int i) {
-    const auto index = static_cast<size_t>(i);
-    found[index] = PointOf(sequence, images, tracks[index], options);
-  });
-  std::vector<MapPoint> points;
-  for (auto& point : found) {
-    if (point) points.push_back(std::move(*point));
-  }
-  return points;
-}
-
-// Whether all cameras are in one place, up to rounding.
-bool IsAtRest(const std::vector<FrameImage>& images) {
-  constexpr double kRounding = 1e-9;
-  return std::ranges::all_of(images, [&](const FrameImage& image) {
-    const Eigen::Vector3d& first = images.front().frame->world_from_camera.translation;
-    const Eigen::Vector3d& place = image.frame->world_from_camera.translation;
-    return (place - first).norm() <= kRounding * (1.0 + first.norm());
-  });
-}
-
-// Why no track gives a point.
-std::vector<Finding> CheckPoints(const std::vector<MapPoint>& points,
-                                 const std::vector<FrameImage>& images,
-                                 const std::vector<FeatureTrack>& tracks,
-                                 const TrackOptions& options) {
-  if (!points.empty()) return {};
-  const auto is_long = [&](const FeatureTrack& track) {
-    return track.places.size() >= static_cast<size_t>(options.min_views);
-  };
-  struct Reason {
-    bool applies;
-    std::string cause;
-    const char* remedy;
-  };
-  const Reason reasons[] = {
-      {images.size() < static_cast<size_t>(options.min_views),
-       fmt::format("a point is seen in at least {} images", options.min_views),
-       "more images of the same place"},
-      {std::ranges::none_of(tracks, is_long),
-       fmt::format("no track over {} images: they show little texture, or have little in common",
-                   options.min_views),
-       "images closer together"},
-      {IsAtRest(images), "the camera does not move: all poses have one place",
-       "images from several places"},
-      {true, "the poses do not fit the images, or the camera hardly moves",
-       "check that poses and images have the same order and time stamps"}};
-  const Reason& reason = *std::ranges::find(reasons, true, &Reason::applies);
-  return {{"no_points", Severity::kWarning,
-           fmt::format("no point from {} tracks through {}", tracks.size(),
-                       Counted(images.size(), "image")),
-           "some", reason.cause, reason.remedy}};
-}
-
-void PrintTrackSummary(const Sequence& sequence, const std::vector<MapPoint>& points,
-                       size_t tracks) {
+void PrintTrackSummary(const Sequence& sequence, const TrackedPoints& tracked) {
+  const std::vector<MapPoint>& points = tracked.points;
   if (points.empty()) {
-    fmt::print("{}: no point from {} tracks\n", sequence.name, tracks);
+    fmt::print("{}: no point from {} tracks\n", sequence.name, tracked.tracks);
     return;
   }
   const auto views = [](const MapPoint& point) {
@@ -184,7 +24,7 @@ void PrintTrackSummary(const Sequence& sequence, const std::vector<MapPoint>& po
   fmt::print(
       "{}: {} points from {} tracks, median reprojection error {:.2f} px, each in {:.0f} "
       "images (median)\n",
-      sequence.name, points.size(), tracks,
+      sequence.name, points.size(), tracked.tracks,
       *MedianOf(ValuesOf(points, &MapPoint::reprojection_error_px)),
       *MedianOf(ValuesOf(points, views)));
 }
@@ -197,12 +37,11 @@ void RunTrack(const TrackOptions& options, const StageFiles& files, int threads)
   const std::vector<FrameImage> images = FrameImages(sequence, files.at("dataset"), sequence_file);
   ArtefactInfo info = {OptionsToJson(options), {sequence_file}};
   for (const FrameImage& image : images) info.inputs.push_back(image.path);
-  const std::vector<FeatureTrack> tracks = TracksOf(sequence, images, options.features, threads);
-  const std::vector<MapPoint> points = PointsOf(sequence, images, tracks, options, threads);
-  info.findings = CheckPoints(points, images, tracks, options);
+  const TrackedPoints tracked = TrackPoints(sequence, images, options, threads);
+  info.findings = tracked.findings;
   ReportFindings("track", info.findings);
-  WritePoints(files.at("output"), points, info);
-  PrintTrackSummary(sequence, points, tracks.size());
+  WritePoints(files.at("output"), tracked.points, info);
+  PrintTrackSummary(sequence, tracked);
 }
 
 }  // namespace soslam

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <functional>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "artefact/files.h"
 #include "artefact/model_json.h"
@@ -12,6 +14,7 @@
 #include "dataset/reconstruct_options.h"
 #include "dataset/trajectories.h"
 #include "stage/stages.h"
+#include "support/drawn_photos.h"
 #include "support/expect_error.h"
 #include "support/fake_colmap.h"
 #include "support/folder_test.h"
@@ -143,6 +146,39 @@ TEST_F(RunReconstructTest, AGivenModelGivesTheSameBytes) {
   ExpectError<InputError>([&] { Run("again", "nothing"); }, {"nothing", "no model of COLMAP"});
 }
 
+// Poses of a camera that moves along a picture 3 m in front of it, as networks give them.
+TEST_F(RunReconstructTest, AModelWithoutTracksGetsPointsOfItsPoses) {
+  constexpr double kFocalPx = 300.0, kDepthM = 3.0;
+  constexpr int kShiftPx = 6;
+  std::string list, images;
+  for (int i = 0; i < 6; ++i) {
+    cv::Mat soft;
+    cv::GaussianBlur(DrawnView(i * kShiftPx), soft, {}, 1.0);
+    Write(fmt::format("data/rgb/{}.png", i), EncodedImage(".png", soft));
+    list += fmt::format("{} rgb/{}.png\n", i, i);
+    images += fmt::format("{} 1 0 0 0 {} 0 0 1 rgb/{}.png\n\n", i + 1,
+                          -i * kShiftPx * kDepthM / kFocalPx, i);
+  }
+  Write("data/rgb.txt", list);
+  Write("model/cameras.txt", "1 PINHOLE 320 240 300 300 160 120\n");
+  Write("model/images.txt", images);
+  Write("model/points3D.txt", "1 0 0 3 128 128 128 1\n2 1 0 3 128 128 128 1\n");
+  Run("out", "model");
+  EXPECT_THAT(printed_.errors, HasSubstr("model: the model has 2 points without tracks"));
+  EXPECT_EQ(ReadTrajectory(Output("odometry.txt")).size(), 6u);
+  const std::vector<MapPoint> points = ReadPoints(Output("points.h5"));
+  EXPECT_GT(points.size(), 100u);
+  EXPECT_EQ(ReadReconstruction(Output("reconstruction.json")).points, std::ssize(points));
+  const auto is_right = [](const MapPoint& point) {
+    return std::abs(point.position_in_world.z() - kDepthM) < 0.1;
+  };
+  EXPECT_GT(2 * std::ranges::count_if(points, is_right), std::ssize(points));
+  fs::remove(folder_ / "model/points3D.txt");
+  Run("out", "model");
+  EXPECT_THAT(printed_.errors, HasSubstr("model: the model has no points"));
+  EXPECT_EQ(ReadPoints(Output("points.h5")).size(), points.size());
+}
+
 TEST_F(RunReconstructTest, AGivenModelOfOtherNamesIsRefusedOrNamed) {
   Run();
   const std::string list = "0 rgb/IMG_1.png\n0.5 rgb/IMG_2.png\n1 rgb/IMG_3.png\n";
@@ -200,11 +236,11 @@ TEST_F(RunReconstructTest, AGivenCameraIsKept) {
   Write("data/camera.json",
         R"({"width": 64, "height": 48, "fx": 51, "fy": 50, "cx": 31.5, "cy": 23.5})");
   ExpectError<InputError>([&] { Run("other", "bin/models"); },
-                          {"camera.json", "another camera than the model's", "fx 50.00"});
+                          {"camera.json", "another camera than the model's", "fx 50.00", "px"});
   Write("data/camera.json",
         R"({"width": 64, "height": 48, "fx": 50, "fy": 50, "cx": 31.5, "cy": 23.5,
                  "distortion": [0.1, 0, 0, 0, 0]})");
-  ExpectError<InputError>([&] { Run("other", "bin/models"); }, {"another distortion"});
+  ExpectError<InputError>([&] { Run("other", "bin/models"); }, {"displaces image points by up to"});
 }
 
 TEST_F(RunReconstructTest, FilesInTheDatasetThatAreOfThisStageAreNotGiven) {
@@ -269,6 +305,47 @@ TEST_F(RunReconstructTest, FailuresOfColmapAreNamed) {
   ExpectFailure<SettingsError>({"package colmap", "--model"});
   Write("data/rgb.txt", "0 rgb/0.png\n");
   ExpectFailure<InputError>({"rgb.txt", "single image"});
+}
+
+// Images that EXIF turns by half a turn, with a model of which the colours of points tell whether
+// it is of the stored ones.
+TEST_F(RunReconstructTest, AModelOfImagesThatExifTurnsIsOfTheStoredOnes) {
+  options_.image_orientation = ImageOrientation::kStored;
+  cv::Mat image(48, 64, CV_8UC3);
+  cv::randu(image, 0, 255);
+  cv::resize(image(cv::Rect(0, 0, 16, 12)).clone(), image, image.size(), 0, 0, cv::INTER_NEAREST);
+  for (int i = 0; i < 3; ++i) {
+    Write(fmt::format("data/rgb/{}.png", i),
+          JpegWithExif(EncodedImage(".jpg", image), ExifOf(i == 1 ? 1 : 3)));
+  }
+  const auto run_with = [&](const std::function<cv::Vec3b(int x, int y)>& bgr_at) {
+    std::string points, pixels;
+    for (int i = 0; i < 30; ++i) {
+      const int x = 2 + 4 * (i % 15), y = 6 + 16 * (i / 15);
+      const cv::Vec3b bgr = bgr_at(x, y);
+      pixels += fmt::format("{} {} {} ", x + 0.5, y + 0.5, i + 1);
+      points += fmt::format("{} {} {} 5 {} {} {} 0.25 1 {} 2 {} 3 {}\n", i + 1, 0.1 * x, 0.1 * y,
+                            bgr[2], bgr[1], bgr[0], i, i, i);
+    }
+    std::string images;
+    for (int i = 0; i < 3; ++i) {
+      images += fmt::format("{} 1 0 0 0 {} 0 0 1 rgb/{}.png\n{}\n", i + 1, -i, i, pixels);
+    }
+    Write("model/cameras.txt", "1 PINHOLE 64 48 50 50 32 24\n");
+    Write("model/images.txt", images);
+    Write("model/points3D.txt", points);
+    Run("out", "model");
+  };
+  run_with([&](int x, int y) { return image.at<cv::Vec3b>(y, x); });
+  EXPECT_EQ(printed_.errors, "");
+  run_with([](int, int) { return cv::Vec3b(128, 128, 128); });
+  EXPECT_THAT(printed_.errors, HasSubstr("2 images are turned by EXIF within their size"));
+  ExpectError<InputError>(
+      [&] { run_with([&](int x, int y) { return image.at<cv::Vec3b>(47 - y, 63 - x); }); },
+      {"model: 2 images are turned by EXIF", "of upright ones", "exiftran -ai"});
+  Write("model/cameras.txt", "1 PINHOLE 48 64 50 50 24 32\n");
+  ExpectError<InputError>([&] { Run("out", "model"); },
+                          {"rgb/0.png: is 64 x 48 pixels, the model's camera 48 x 64"});
 }
 
 TEST_F(RunReconstructTest, ImagesThatColmapWouldMistakeAreRefused) {
