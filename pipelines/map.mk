@@ -36,12 +36,13 @@ $(steps)/dataset: $(steps)/frames $(steps)/camera.txt
 # COLMAP's own files stay beside the dataset: it goes on from them.
 $(steps)/reconstructed: $(steps)/dataset $(steps)/model.txt
 	$(call step,reconstruct,$(BIN)/soslam-reconstruct --dataset $(folder) --output $(MAP_ROOT)/reconstruction \
-	  $${MAP_MODEL:+--model "$$MAP_MODEL"} $${MAP_CAMERA:+--calibration given} --threads $(MAP_THREADS) $(QUIET) && \
+	  $${MAP_MODEL:+--model "$$MAP_MODEL"} $${MAP_CAMERA:+--calibration given} $$MAP_ORIENTATION \
+	  --threads $(MAP_THREADS) $(QUIET) && \
 	  cp $(addprefix $(MAP_ROOT)/reconstruction/,camera.json odometry.txt points.h5 reconstruction.json) $(folder))
 
 $(steps)/detected: $(steps)/dataset $(steps)/network.txt
 	@mkdir -p $(MAP_ROOT)/detections
 	$(call step,detect,test -z "$$MAP_NETWORK" || { \
 	  $(BIN)/soslam-detect --dataset $(folder) --network "$$MAP_NETWORK" \
-	  --output $(MAP_ROOT)/detections/detections.csv --threads $(MAP_THREADS) $(QUIET) && \
+	  --output $(MAP_ROOT)/detections/detections.csv $$MAP_ORIENTATION --threads $(MAP_THREADS) $(QUIET) && \
 	  cp $(MAP_ROOT)/detections/detections.csv $(folder); })

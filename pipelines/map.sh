@@ -68,7 +68,10 @@ listed() {
 options=''
 [[ -z $MAP_CAMERA$MAP_MODEL ]] || options+=' --max_image_px 16384'
 [[ -z $MAP_MODEL ]] || options+=' --max_frames 10000 --min_motion 0 --min_sharpness 0'
-export MAP_FRAMES_OPTIONS=$options
+# COLMAP reads photos as they are stored, also those that EXIF turns, and its model refers to these.
+orientation=${MAP_MODEL:+ --image_orientation stored}
+options+=$orientation
+export MAP_FRAMES_OPTIONS=$options MAP_ORIENTATION=$orientation
 
 # The list of photos and boxes, which begins with the path of the photos: if nothing else differs from the list of the
 # map that is there, the photos have moved.
@@ -84,8 +87,8 @@ listed "$MAP_NETWORK" | keep "$MAP_ROOT/steps/network.txt"
 
 # The settings: those of all maps of photos.
 mkdir -p "$MAP_ROOT"/pipelines/{variants,datasets,priors}
-sed "s/\"ground\": \"estimated\"/&, \"scale\": ${MAP_SCALE:-0}, \"camera_height_m\": ${MAP_CAMERA_HEIGHT:-0}/" \
-  pipelines/photos/base.json | keep "$MAP_ROOT/pipelines/base.json"
+sed "s/\"ground\": \"estimated\"/&, \"scale\": ${MAP_SCALE:-0}, \"camera_height_m\": ${MAP_CAMERA_HEIGHT:-0}/
+  s/\"odometry_has_own_scale\": true/&${MAP_MODEL:+, \"image_orientation\": \"stored\"}/" pipelines/photos/base.json | keep "$MAP_ROOT/pipelines/base.json"
 for file in variants/*.json priors/semantic_table.json; do
   for from in pipelines/$file; do keep "$MAP_ROOT/${from}" < "$from"; done
 done

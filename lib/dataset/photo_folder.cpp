@@ -77,8 +77,6 @@ FilesOfFolder PhotosAndOthersIn(const fs::path& folder) {
   return files;
 }
 
-ImageSize UprightSize(const Photo& photo) { return photo.header.Size(ImageOrientation::kUpright); }
-
 bool HasHeader(const Photo& photo) { return photo.header.stored.width > 0; }
 
 bool IsSameFocalLength(double one, double other) {
@@ -126,10 +124,11 @@ std::vector<Photo> ListPhotos(const fs::path& folder) {
   return photos;
 }
 
-CommonCamera FindCommonCamera(const fs::path& folder, const std::vector<Photo>& photos) {
+CommonCamera FindCommonCamera(const fs::path& folder, const std::vector<Photo>& photos,
+                              ImageOrientation read_as) {
   std::map<ImageSize, int> counts;
   for (const Photo& photo : photos) {
-    if (HasHeader(photo)) ++counts[UprightSize(photo)];
+    if (HasHeader(photo)) ++counts[photo.header.Size(read_as)];
   }
   if (counts.empty()) {
     const bool are_heif = std::ranges::any_of(
@@ -141,7 +140,7 @@ CommonCamera FindCommonCamera(const fs::path& folder, const std::vector<Photo>& 
   }
   const auto most =
       std::ranges::max_element(counts, {}, [](const auto& entry) { return entry.second; });
-  CommonCamera common{most->first, std::nullopt};
+  CommonCamera common{read_as, most->first, std::nullopt};
   std::vector<double> focal_lengths;
   for (const Photo& photo : photos) {
     const auto& focal = photo.header.focal_over_diagonal;
@@ -153,7 +152,7 @@ CommonCamera FindCommonCamera(const fs::path& folder, const std::vector<Photo>& 
 
 std::optional<OtherCamera> FindOtherCamera(const Photo& photo, const CommonCamera& common) {
   if (!HasHeader(photo)) return std::nullopt;
-  const ImageSize size = UprightSize(photo);
+  const ImageSize size = photo.header.Size(common.read_as);
   if (size != common.size) {
     return OtherCamera{FrameRejection::kOtherSize,
                        fmt::format("{} x {} px, not {} x {}", size.width, size.height,

@@ -25,15 +25,16 @@ struct Photo {
 // two photos, more than can be processed, or a name that is not UTF-8.
 std::vector<Photo> ListPhotos(const std::filesystem::path& folder);
 
-// Upright size and focal length (over the diagonal) that most of the photos have.
+// Size and focal length (over the diagonal) that most of the photos have.
 struct CommonCamera {
+  ImageOrientation read_as;
   ImageSize size;
   std::optional<double> focal_over_diagonal;  // none if no photo states one
 };
 
 // Throws InputError, naming the folder, if no photo has a header.
-CommonCamera FindCommonCamera(const std::filesystem::path& folder,
-                              const std::vector<Photo>& photos);
+CommonCamera FindCommonCamera(const std::filesystem::path& folder, const std::vector<Photo>& photos,
+                              ImageOrientation read_as = ImageOrientation::kUpright);
 
 // The reason why a photo is none of this camera, and its size or focal length in words; none if it
 // is, or if its header cannot be read. A photo that states no focal length may have any.

@@ -39,8 +39,8 @@ struct DetectorOptions {
                   "height of the network's input, likewise");
     visit.Group("Images");
     visit.Choice("image_orientation", &image_orientation, kImageOrientationNames,
-                 "where EXIF turns images: what is detected, and what boxes refer to, is the image "
-                 "as viewers show it, or the pixels as the file stores them");
+                 "where EXIF turns images: boxes refer to the image as viewers show it, which the "
+                 "network sees in either case, or to the pixels as the file stores them");
     visit.Group("Detections that are kept");
     visit.Text("rename_labels", &rename_labels,
                "other names for the network's labels: 'tv=monitor, couch=sofa'");

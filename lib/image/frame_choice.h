@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/options.h"
+#include "geometry/image_size.h"
 
 namespace soslam {
 
@@ -17,6 +18,7 @@ struct FrameOptions {
   double min_motion = 0.005;
   double min_sharpness = 0.35;
   int max_image_px = 1600;
+  ImageOrientation image_orientation = ImageOrientation::kUpright;
 
   void Describe(OptionVisitor& visit) {
     visit.Group("Choice");
@@ -32,6 +34,10 @@ struct FrameOptions {
     visit.Group("Images");
     visit.Integer("max_image_px", &max_image_px, {64, 16384},
                   "longer side of the images; larger ones are scaled down");
+    visit.Choice("image_orientation", &image_orientation, kImageOrientationNames,
+                 "where EXIF turns photos: they are turned upright, or kept as the file stores "
+                 "them, as for poses of COLMAP, for stages with the same setting; boxes that are "
+                 "given are of the upright photos in either case");
   }
 };
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <initializer_list>
 #include <limits>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
@@ -17,25 +18,33 @@
 #include "base/error.h"
 #include "base/paths.h"
 #include "base/run_log.h"
-#include "image/image_format.h"
 
 namespace soslam {
 namespace {
 
-// Turns an image upright, as viewers show it, from the stored pixels and EXIF's orientation. That
-// states at which sides of the upright image the first stored row and the first stored column are:
+// Steps, in this order, that turn the stored pixels upright, as viewers show them. EXIF's
+// orientation states at which sides of the upright image the first stored row and the first stored
+// column are:
 //   1 top, left    2 top, right    3 bottom, right    4 bottom, left
 //   5 left, top    6 right, top    7 right, bottom    8 left, bottom
+struct TurnToUpright {
+  bool swaps_axes;
+  bool mirrors_x;
+  bool mirrors_y;
+};
+TurnToUpright TurnOf(int exif_orientation) {
+  const auto is_one_of = [&](std::initializer_list<int> orientations) {
+    return std::ranges::find(orientations, exif_orientation) != orientations.end();
+  };
+  return {exif_orientation >= 5, is_one_of({2, 3, 6, 7}), is_one_of({3, 4, 7, 8})};
+}
+
 cv::Mat TurnUpright(const cv::Mat& stored, int exif_orientation) {
   if (exif_orientation == 1) return stored;
-  const bool swaps = exif_orientation >= 5;
-  const bool from_the_right = exif_orientation == 2 || exif_orientation == 3 ||
-                              exif_orientation == 6 || exif_orientation == 7;
-  const bool from_the_bottom = exif_orientation == 3 || exif_orientation == 4 ||
-                               exif_orientation == 7 || exif_orientation == 8;
-  cv::Mat image = swaps ? cv::Mat(stored.t()) : stored.clone();
-  if (from_the_right) cv::flip(image, image, 1);
-  if (from_the_bottom) cv::flip(image, image, 0);
+  const TurnToUpright turn = TurnOf(exif_orientation);
+  cv::Mat image = turn.swaps_axes ? cv::Mat(stored.t()) : stored.clone();
+  if (turn.mirrors_x) cv::flip(image, image, 1);
+  if (turn.mirrors_y) cv::flip(image, image, 0);
   return image;
 }
 
@@ -127,6 +136,21 @@ cv::Mat ReadImage(const std::filesystem::path& path, int mode, ImageOrientation 
   throw InputError(fmt::format("{}: is {} x {} pixels; expected the camera's {} x {}{}",
                                path.string(), image.cols, image.rows, size->width, size->height,
                                hint));
+}
+
+Box BoxInStoredImage(const Box& in_upright_image, const ImageHeader& header) {
+  const TurnToUpright turn = TurnOf(header.orientation);
+  const ImageSize size = header.Size(ImageOrientation::kUpright);
+  Box box = in_upright_image;
+  if (turn.mirrors_x) {
+    const double last = static_cast<double>(size.width) - 1.0;
+    box = {last - box.x_max, box.y_min, last - box.x_min, box.y_max};
+  }
+  if (turn.mirrors_y) {
+    const double last = static_cast<double>(size.height) - 1.0;
+    box = {box.x_min, last - box.y_max, box.x_max, last - box.y_min};
+  }
+  return turn.swaps_axes ? Box{box.y_min, box.x_min, box.y_max, box.x_max} : box;
 }
 
 ImageUndistorter::ImageUndistorter(const Camera& camera, const Distortion& distortion) {

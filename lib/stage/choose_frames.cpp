@@ -81,9 +81,10 @@ void SetSize(const ImageSize& source, int max_image_px, ChosenFrames* chosen) {
   chosen->record.height = size.height;
 }
 
-void MeasurePhoto(const Photo& photo, SourceFrame* frame, FrameView* view) {
+void MeasurePhoto(const Photo& photo, ImageOrientation read_as, SourceFrame* frame,
+                  FrameView* view) {
   try {
-    *view = ViewOf(ReadImage(photo.path, cv::IMREAD_GRAYSCALE));
+    *view = ViewOf(ReadImage(photo.path, cv::IMREAD_GRAYSCALE, read_as));
     frame->sharpness = view->sharpness;
   } catch (const InputError& error) {
     const std::string message = error.what(), place = photo.path.string() + ": ";
@@ -92,8 +93,8 @@ void MeasurePhoto(const Photo& photo, SourceFrame* frame, FrameView* view) {
   }
 }
 
-std::string ExtensionOf(const Photo& photo, int max_image_px) {
-  if (!IsCopied(photo, max_image_px)) return ".jpg";
+std::string ExtensionOf(const Photo& photo, const FrameOptions& options) {
+  if (!IsCopied(photo, options)) return ".jpg";
   return LowerCase(photo.path.extension().string());
 }
 
@@ -143,15 +144,17 @@ std::vector<Finding> CheckVideo(const VideoReader& video, const FramesRecord& re
 
 }  // namespace
 
-bool IsCopied(const Photo& photo, int max_image_px) {
+bool IsCopied(const Photo& photo, const FrameOptions& options) {
   const ImageSize& size = photo.header.stored;
-  return photo.header.orientation == 1 && std::max(size.width, size.height) <= max_image_px;
+  return (photo.header.orientation == 1 ||
+          options.image_orientation == ImageOrientation::kStored) &&
+         std::max(size.width, size.height) <= options.max_image_px;
 }
 
 ChosenFrames ChoosePhotos(const FrameOptions& options, const fs::path& folder, int threads,
                           std::vector<Photo>* photos) {
   *photos = ListPhotos(folder);
-  const CommonCamera camera = FindCommonCamera(folder, *photos);
+  const CommonCamera camera = FindCommonCamera(folder, *photos, options.image_orientation);
   ChosenFrames chosen;
   chosen.record.name = PlainPath(folder).filename().string();
   std::vector<SourceFrame>& frames = chosen.record.frames;
@@ -162,7 +165,8 @@ ChosenFrames ChoosePhotos(const FrameOptions& options, const fs::path& folder, i
   std::vector<FrameView> views(photos->size());
   ParallelFor("photos", static_cast<int>(photos->size()), threads, [&](int index) {
     const auto i = static_cast<size_t>(index);
-    if (!IsLeftOut(frames[i])) MeasurePhoto((*photos)[i], &frames[i], &views[i]);
+    if (IsLeftOut(frames[i])) return;
+    MeasurePhoto((*photos)[i], options.image_orientation, &frames[i], &views[i]);
   });
   FrameSelector selector(options);
   for (size_t i = 0; i < views.size(); ++i) {
@@ -175,7 +179,7 @@ ChosenFrames ChoosePhotos(const FrameOptions& options, const fs::path& folder, i
   chosen.record.focal_hint = HintOf(camera, chosen.record, *photos);
   std::vector<std::string> extensions;
   for (const Photo& photo : *photos) {
-    extensions.push_back(ExtensionOf(photo, options.max_image_px));
+    extensions.push_back(ExtensionOf(photo, options));
   }
   NameImages(extensions, &frames);
   return chosen;

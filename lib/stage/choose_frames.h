@@ -17,7 +17,7 @@ namespace soslam {
 // Frames with what they were chosen from.
 struct ChosenFrames {
   FramesRecord record;
-  cv::Size source_size;  // of the images that were chosen from, upright
+  cv::Size source_size;  // of the images that were chosen from, in their orientation
   std::vector<std::filesystem::path> inputs;
   std::vector<Finding> findings;  // about the video
 };
@@ -26,7 +26,7 @@ struct ChosenFrames {
 inline bool IsLeftOut(const SourceFrame& frame) { return frame.rejection.has_value(); }
 
 // True if the image of a chosen photo is its file, unchanged; otherwise it is a new JPEG.
-bool IsCopied(const Photo& photo, int max_image_px);
+bool IsCopied(const Photo& photo, const FrameOptions& options);
 
 // Chooses among the photos of a folder. `photos` becomes all of them, one per frame of the record.
 // Throws InputError as ListPhotos and FindCommonCamera.
@@ -42,8 +42,10 @@ ChosenFrames ChooseFromVideo(const FrameOptions& options, const std::filesystem:
 inline constexpr std::string_view kFrameBoxesMark = "# Written by soslam-frames";
 
 // The text of detections.csv: the boxes of the chosen images among those of all images in the file
-// `path`. Prints how many they are. Throws InputError as ReadDetectionsCsv, when there are none,
-// and for a file of other images.
-std::string FrameBoxesText(const std::filesystem::path& path, const ChosenFrames& chosen);
+// `path`, which are of the upright ones. `photos` are those of the frames, if these are kept as
+// they are stored, otherwise empty. Prints how many boxes there are. Throws InputError as
+// ReadDetectionsCsv, when there are none, and for a file of other images.
+std::string FrameBoxesText(const std::filesystem::path& path, const ChosenFrames& chosen,
+                           const std::vector<Photo>& photos);
 
 }  // namespace soslam

@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "dataset/labelled_box.h"
+#include "image/read_image.h"
 #include "stage/choose_frames.h"
 
 namespace soslam {
@@ -37,7 +38,8 @@ void RefuseBoxesOfOtherImages(const fs::path& path, size_t frames) {
 
 }  // namespace
 
-std::string FrameBoxesText(const fs::path& path, const ChosenFrames& chosen) {
+std::string FrameBoxesText(const fs::path& path, const ChosenFrames& chosen,
+                           const std::vector<Photo>& photos) {
   std::vector<std::optional<int>> rows;
   int row = 0;
   for (const SourceFrame& frame : chosen.record.frames) {
@@ -58,6 +60,7 @@ std::string FrameBoxesText(const fs::path& path, const ChosenFrames& chosen) {
       continue;
     }
     box.frame = *of_frame;
+    if (!photos.empty()) box.box = BoxInStoredImage(box.box, photos[number].header);
     box.box = {Scaled(box.box.x_min, scale_x), Scaled(box.box.y_min, scale_y),
                Scaled(box.box.x_max, scale_x), Scaled(box.box.y_max, scale_y)};
     of_chosen.push_back(std::move(box));

@@ -108,8 +108,13 @@ AllDetections DetectAll(const std::vector<fs::path>& images, const NetworkFile& 
     YoloDetector detector(network, format, labels.groups, options);
     for (int i = worker; i < count; i += workers) {
       const auto frame = static_cast<size_t>(i);
-      all.of_image[frame] =
-          detector.Detect(ReadImage(images[frame], cv::IMREAD_COLOR, options.image_orientation));
+      all.of_image[frame] = detector.Detect(ReadImage(images[frame], cv::IMREAD_COLOR));
+      if (options.image_orientation == ImageOrientation::kStored) {
+        const ImageHeader header = ReadImageHeader(images[frame]).value();
+        for (YoloDetection& detection : all.of_image[frame]) {
+          detection.box = BoxInStoredImage(detection.box, header);
+        }
+      }
       progress.Step();
     }
     tallies[worker] = detector.tally();
@@ -178,9 +183,8 @@ void RunDetect(const DetectorOptions& options, const StageFiles& files, int thre
   const DetectorLabels labels = LabelsForDetector(
       files.contains("labels") ? ReadLabelFile(files.at("labels")) : NamesIn(network), options);
   const std::vector<fs::path> images = ImagePaths(dataset);
-  const YoloFormat format =
-      FindFormat(network, static_cast<int>(labels.names.size()), options,
-                 ReadImage(images.front(), cv::IMREAD_COLOR, options.image_orientation).size());
+  const YoloFormat format = FindFormat(network, static_cast<int>(labels.names.size()), options,
+                                       ReadImage(images.front(), cv::IMREAD_COLOR).size());
   const AllDetections all = DetectAll(images, network, format, labels, options, threads);
   CheckBoxesArePossible(all.tally, format, network.name);
   const auto boxes = KeptBoxes(all.of_image, labels);

@@ -139,11 +139,11 @@ void CheckEnough(const FramesRecord& record, const fs::path& images) {
       CountsInWords(CountLeftOut(record.frames))));
 }
 
-void WritePhoto(const Photo& photo, int max_image_px, const std::string& name,
+void WritePhoto(const Photo& photo, const FrameOptions& options, const std::string& name,
                 const DatasetFolder& output) {
-  if (!IsCopied(photo, max_image_px)) {
-    return WriteJpeg(ReadImage(photo.path, cv::IMREAD_COLOR), max_image_px,
-                     photo.header.focal_over_diagonal, name, output);
+  if (!IsCopied(photo, options)) {
+    return WriteJpeg(ReadImage(photo.path, cv::IMREAD_COLOR, options.image_orientation),
+                     options.max_image_px, photo.header.focal_over_diagonal, name, output);
   }
   output.Write(name, ReadWholeFile(photo.path, "photo"));
 }
@@ -187,10 +187,12 @@ void RunFrames(const FrameOptions& options, const StageFiles& files, int threads
   ParallelFor("images", static_cast<int>(photos.size()), threads, [&](int index) {
     const auto i = static_cast<size_t>(index);
     if (IsLeftOut(record.frames[i])) return;
-    WritePhoto(photos[i], options.max_image_px, record.frames[i].image, output);
+    WritePhoto(photos[i], options, record.frames[i].image, output);
   });
   if (files.contains("detections")) {
-    output.Write("detections.csv", FrameBoxesText(files.at("detections"), chosen));
+    const bool is_stored = options.image_orientation == ImageOrientation::kStored;
+    output.Write("detections.csv", FrameBoxesText(files.at("detections"), chosen,
+                                                  is_stored ? photos : std::vector<Photo>()));
     chosen.inputs.push_back(files.at("detections"));
   }
   output.Write("README.md", ReadmeText(output));

@@ -179,7 +179,7 @@ TEST(LabelsForDetectorTest, BadOptionsAreRefused) {
                  {"interchangeable_labels"});
 }
 
-// Boxes are those of the image as viewers show it, or as it is stored.
+// The network sees the image as viewers show it; boxes are those of that, or of the stored one.
 TEST_F(RunDetectTest, ExifTurnsImages) {
   const cv::Mat image(32, 64, CV_8UC3, cv::Scalar(0, 0, 255));
   const std::string jpeg = EncodedImage(".jpg", image);
@@ -191,8 +191,8 @@ TEST_F(RunDetectTest, ExifTurnsImages) {
   ExpectBox(ReadDetectionsCsv(folder_ / "detections.csv").at(0).box, {5.5, 16.5, 25.5, 46.5});
   options_.image_orientation = ImageOrientation::kStored;
   Run();
-  // Rows 16 to 48 are the stored image of 64 x 32.
-  ExpectBox(ReadDetectionsCsv(folder_ / "detections.csv").at(0).box, {21.5, 0.5, 41.5, 30.5});
+  // The first stored row, of 64 pixels, is the right column of the upright image.
+  ExpectBox(ReadDetectionsCsv(folder_ / "detections.csv").at(0).box, {16.5, 5.5, 46.5, 25.5});
 }
 
 TEST_F(RunDetectTest, NothingFoundIsNotAResult) {
