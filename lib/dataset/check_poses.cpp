@@ -8,6 +8,7 @@
 #include <numeric>
 #include <vector>
 
+#include "dataset/check_lag.h"
 #include "dataset/dataset_checks.h"
 #include "dataset/tracked_rays.h"
 #include "evaluation/trajectory_error.h"
@@ -141,20 +142,6 @@ const std::array kReadings = {
                 "translations with y and z swapped, beside rotations that are not",
                 "swap y and z of the translations", &WithCentreSwapped}};
 
-// Pose of another frame in the list, if there is one of the same segment.
-std::optional<Rigid3d> PoseOfOther(const ImportView& view, size_t frame, size_t other) {
-  const std::vector<ListedFrame>& frames = view.content.frames;
-  if (other >= frames.size()) return std::nullopt;
-  if (frames[other].frame.segment != frames[frame].frame.segment) return std::nullopt;
-  return frames[other].Pose();
-}
-
-// True if an error is from about the same number of rays.
-bool IsComparable(const std::optional<RayError>& error, const RayError& as_read) {
-  constexpr double kMost = 0.8;
-  return error && static_cast<double>(error->rays) >= kMost * static_cast<double>(as_read.rays);
-}
-
 // True if the cameras rotate so far that moving objects cannot be mistaken for another convention
 // of the poses.
 bool DoCamerasTurn(const ImportView& view) {
@@ -266,45 +253,6 @@ std::vector<Finding> CheckReadings(const ImportView& view,
            best->cause, best->remedy}};
 }
 
-// Finds boxes that are one image late or early: rays meet clearly better with a shift in one
-// direction, and worse in the other. A first image without boxes confirms it.
-std::vector<Finding> CheckFrameNumbers(const ImportView& view,
-                                       const std::vector<TrackedObject>& objects,
-                                       const RayError& as_read) {
-  constexpr double kClearlyBetter = 0.7;
-  constexpr double kBetter = 0.85;
-  constexpr double kLeastDeg = 0.02;
-  constexpr double kFitsDeg = 2.0;
-  const auto error_at = [&](int shift) {
-    return MedianRayError(objects, [&](size_t frame) {
-      return PoseOfOther(view, frame, frame + static_cast<size_t>(shift));  // wraps before 0
-    });
-  };
-  const int first_id = view.content.frames.front().frame.id;
-  const bool is_first_empty = std::ranges::none_of(
-      view.content.rows, [&](const DetectionRow& row) { return row.frame_id == first_id; });
-  for (const int shift : {-1, 1}) {
-    const auto error = error_at(shift);
-    const auto opposite = error_at(-shift);
-    if (!IsComparable(error, as_read) || !IsComparable(opposite, as_read)) continue;
-    const double share = shift < 0 && is_first_empty ? kBetter : kClearlyBetter;
-    const double most_deg =
-        std::min({share * as_read.median_deg, as_read.median_deg - kLeastDeg, kFitsDeg});
-    if (error->median_deg >= most_deg || opposite->median_deg <= as_read.median_deg) continue;
-    const bool is_late = shift < 0;
-    return {
-        {"frame_numbers", Severity::kWarning,
-         fmt::format("things are {:.2f} degrees from where they are seen (median), but {:.2f} if "
-                     "each box is of the image {} the one that it names",
-                     as_read.median_deg, error->median_deg, is_late ? "before" : "after"),
-         "frames that are rows of the list of images, from 0",
-         is_late ? "frames counted from 1" : "frames that begin one image late",
-         is_late ? "subtract 1 from the frames of the detections"
-                 : "add 1 to the frames of the detections"}};
-  }
-  return {};
-}
-
 // Warns if poses of an IMU are used as those of the camera, unless boxes fit them.
 std::vector<Finding> CheckBody(const ImportView& view, const std::optional<RayError>& as_read) {
   constexpr double kFitsDeg = 1.0;
@@ -406,7 +354,7 @@ std::vector<Finding> CheckPoses(const ImportView& view) {
   if (as_read && as_read->rays < kFewestRays) as_read.reset();
   std::vector<Finding> findings;
   if (as_read) findings = CheckReadings(view, objects, *as_read);
-  if (findings.empty() && as_read) findings = CheckFrameNumbers(view, objects, *as_read);
+  if (findings.empty() && as_read) findings = CheckLag(view, objects, *as_read);
   if (findings.empty()) findings = CheckBody(view, as_read);
   if (findings.empty() && as_read) findings = CheckContradiction(view, objects, *as_read);
   return findings;

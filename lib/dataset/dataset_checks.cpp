@@ -44,7 +44,8 @@ std::vector<Finding> CheckDataset(const ImportView& view) {
     }
     add({&CheckObjectAxes});
   }
-  add({&CheckTruth, &CheckScores, &CheckClassNumbers, &CheckBlankLines, &CheckRejections});
+  add({&CheckRepeatedPoses, &CheckTruth, &CheckScores, &CheckClassNumbers, &CheckBlankLines,
+       &CheckRejections});
   findings.insert(findings.begin(), view.content.findings.begin(), view.content.findings.end());
   return WorstFirst(std::move(findings));
 }

@@ -48,12 +48,14 @@ std::vector<Finding> CheckRejections(const ImportView& view);
 // The trajectory against the true one: inverse, another world, another order of the quaternion.
 std::vector<Finding> CheckTruth(const ImportView& view);
 // The poses against the boxes: another pose convention, or mirrored boxes (kPoseConvention), frames
-// in another order (kFrameOrder), poses of an IMU, frames counted from 1; or poses, frames or ids
-// that contradict the boxes in another way (kBoxesAgainstPoses).
+// in another order (kFrameOrder), poses of an IMU, poses of other times (CheckLag); or poses,
+// frames or ids that contradict the boxes in another way (kBoxesAgainstPoses).
 inline constexpr const char* kPoseConvention = "pose_convention";
 inline constexpr const char* kFrameOrder = "frame_order";
 inline constexpr const char* kBoxesAgainstPoses = "boxes_against_poses";
 std::vector<Finding> CheckPoses(const ImportView& view);
+// Consecutive frames with exactly the same pose whose images or boxes move.
+std::vector<Finding> CheckRepeatedPoses(const ImportView& view);
 // True objects against the boxes with their ids, and against their planes: another world, ids
 // counted from 1, full sizes instead of half axes; quaternions with qw first.
 std::vector<Finding> CheckObjects(const ImportView& view);

@@ -15,6 +15,8 @@ namespace soslam {
 struct ListedFrame {
   Frame frame;
   bool has_pose = true;  // false: frame.world_from_camera is undefined
+  // Time stamp of the pose in its file, seconds; that of the frame where poses have none.
+  std::optional<double> pose_timestamp = std::nullopt;
 
   std::optional<Rigid3d> Pose() const {
     return has_pose ? std::optional(frame.world_from_camera) : std::nullopt;

@@ -22,8 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Poses per image; none where there is no pose near enough in time.
-using ImagePoses = std::vector<std::optional<Rigid3d>>;
+// Poses per image; none where there is no pose near enough in time. Those without time stamps have
+// that of their image.
+using ImagePoses = std::vector<std::optional<TimedPose>>;
 
 // Timestamp in an image's name, with or without extension: "12.5" has none.
 double TimestampOf(const std::string& name, const std::string& place) {
@@ -61,13 +62,17 @@ double SecondsOfFrameNumber(double number, const std::string& place) {
       "{}: timestamp is {}; expected the number of a frame, as ICL-NUIM has it", place, number));
 }
 
-ImagePoses PosesInOrder(const fs::path& path, size_t images) {
+ImagePoses PosesInOrder(const fs::path& path, const std::vector<ListedImage>& images) {
   const std::vector<Rigid3d> trajectory = ReadKittiTrajectory(path);
-  if (trajectory.size() != images) {
+  if (trajectory.size() != images.size()) {
     throw InputError(fmt::format("{}: has {} poses; expected {}, one for each listed image",
-                                 path.string(), trajectory.size(), images));
+                                 path.string(), trajectory.size(), images.size()));
   }
-  return {trajectory.begin(), trajectory.end()};
+  ImagePoses poses;
+  for (size_t i = 0; i < images.size(); ++i) {
+    poses.push_back(TimedPose{images[i].timestamp, trajectory[i]});
+  }
+  return poses;
 }
 
 ImagePoses PosesByTime(const fs::path& path, TrajectoryFormat format, const ImportOptions& options,
@@ -87,7 +92,7 @@ ImagePoses PosesByTime(const fs::path& path, TrajectoryFormat format, const Impo
   double largest_s = 0.0;
   for (const ListedImage& image : images) {
     const auto pose = NearestPose(trajectory, image.timestamp, options.max_time_difference_s);
-    poses.push_back(pose ? std::optional(pose->world_from_camera) : std::nullopt);
+    poses.push_back(pose);
     if (!pose) continue;
     ++matched;
     largest_s = std::max(largest_s, std::abs(pose->timestamp - image.timestamp));
@@ -104,7 +109,7 @@ ImagePoses PosesByName(const fs::path& path, const std::vector<NamedPose>& named
   ImagePoses poses(images.size());
   const auto rows = RowsOfPoses(named, images);
   for (size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i]) poses[*rows[i]] = named[i].world_from_camera;
+    if (rows[i]) poses[*rows[i]] = {images[*rows[i]].timestamp, named[i].world_from_camera};
   }
   const auto unlisted = std::ranges::count_if(rows, [](const auto& row) { return !row; });
   fmt::print("{}: {} of {} images have a pose; {} poses are of images that are not listed\n",
@@ -122,7 +127,7 @@ ImagePoses PosesOfFile(const fs::path& path, TrajectoryFormat format, const Impo
   }
   switch (format) {
     case TrajectoryFormat::kKitti:
-      return PosesInOrder(path, images.size());
+      return PosesInOrder(path, images);
     case TrajectoryFormat::kColmap:
       return PosesByName(path, ReadColmapPoses(path), images);
     case TrajectoryFormat::kNerfstudio:
@@ -137,10 +142,11 @@ ImagePoses ReadPoses(const fs::path& path, TrajectoryFormat format, const Import
                      const std::optional<Rigid3d>& body_from_camera,
                      std::vector<Finding>* findings) {
   ImagePoses poses = PosesOfFile(path, format, options, images, findings);
-  for (auto& pose : poses) {
-    if (!pose) continue;
-    if (options.format == DatasetFormat::kIclNuim) pose = MirroredInY(*pose);
-    if (format == TrajectoryFormat::kEuroc && body_from_camera) pose = *pose * *body_from_camera;
+  for (auto& timed : poses) {
+    if (!timed) continue;
+    Rigid3d& pose = timed->world_from_camera;
+    if (options.format == DatasetFormat::kIclNuim) pose = MirroredInY(pose);
+    if (format == TrajectoryFormat::kEuroc && body_from_camera) pose = pose * *body_from_camera;
   }
   return poses;
 }
@@ -160,9 +166,10 @@ void NameInDataFolder(const fs::path& dataset, const fs::path& list,
 void AlignAtFirst(const ImagePoses& truth, const fs::path& file, ImagePoses* estimates) {
   for (size_t i = 0; i < truth.size(); ++i) {
     if (!truth[i] || !(*estimates)[i]) continue;
-    const Rigid3d true_from_estimated = *truth[i] * (*estimates)[i]->Inverse();
+    const Rigid3d true_from_estimated =
+        truth[i]->world_from_camera * (*estimates)[i]->world_from_camera.Inverse();
     for (auto& pose : *estimates) {
-      if (pose) pose = true_from_estimated * *pose;
+      if (pose) pose->world_from_camera = true_from_estimated * pose->world_from_camera;
     }
     return;
   }
@@ -233,10 +240,14 @@ std::vector<ListedFrame> ReadFolderFrames(const fs::path& folder, const DatasetF
     frame.id = static_cast<int>(i);
     frame.timestamp = images[i].timestamp;
     frame.image = ImageOfFrame(folder, files, images[i], options);
-    frame.world_from_camera = estimates[i].value_or(Rigid3d());
-    frame.true_world_from_camera = truth[i];
+    ListedFrame listed{frame, estimates[i].has_value()};
+    if (estimates[i]) {
+      listed.frame.world_from_camera = estimates[i]->world_from_camera;
+      listed.pose_timestamp = estimates[i]->timestamp;
+    }
+    if (truth[i]) listed.frame.true_world_from_camera = truth[i]->world_from_camera;
     if (frame.image.empty() || !Exists(folder / frame.image)) ++absent;
-    frames.push_back({frame, estimates[i].has_value()});
+    frames.push_back(std::move(listed));
   }
   if (absent > 0) {
     fmt::print("{}: {} of {} image files are not there\n", folder.string(), absent, images.size());

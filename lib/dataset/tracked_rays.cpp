@@ -99,4 +99,16 @@ std::optional<RayError> MedianRayError(const std::vector<TrackedObject>& objects
   return RayError{*MedianOf(std::move(errors_deg)), *MedianOf(std::move(shares)), rays, met};
 }
 
+std::optional<Rigid3d> PoseOfOther(const ImportView& view, size_t frame, size_t other) {
+  const std::vector<ListedFrame>& frames = view.content.frames;
+  if (other >= frames.size()) return std::nullopt;
+  if (frames[other].frame.segment != frames[frame].frame.segment) return std::nullopt;
+  return frames[other].Pose();
+}
+
+bool IsComparable(const std::optional<RayError>& error, const RayError& as_read) {
+  constexpr double kMost = 0.8;
+  return error && static_cast<double>(error->rays) >= kMost * static_cast<double>(as_read.rays);
+}
+
 }  // namespace soslam

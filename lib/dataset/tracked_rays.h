@@ -31,6 +31,8 @@ std::vector<TrackedObject> TrackedObjects(const ImportView& view);
 
 // Pose of a frame, by index in DatasetContent::frames; none where there is none.
 using PoseOfFrame = std::function<std::optional<Rigid3d>(size_t frame)>;
+// Pose of another frame in the list, if there is one of the same segment.
+std::optional<Rigid3d> PoseOfOther(const ImportView& view, size_t frame, size_t other);
 
 // Triangulates the point nearest to the rays of an object from these poses (least squares); none
 // where the rays are too few or too parallel.
@@ -47,5 +49,7 @@ struct RayError {
 // Median error over all objects; none when no object can be triangulated.
 std::optional<RayError> MedianRayError(const std::vector<TrackedObject>& objects,
                                        const PoseOfFrame& world_from_camera);
+// True if an error is from about the same number of rays.
+bool IsComparable(const std::optional<RayError>& error, const RayError& as_read);
 
 }  // namespace soslam

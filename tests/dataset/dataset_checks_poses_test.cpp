@@ -5,11 +5,13 @@
 
 #include "dataset/trajectories.h"
 #include "support/dataset_checks_fixture.h"
+#include "support/drawn_photos.h"
 
 namespace soslam {
 // The usual mistakes in poses and in the order of frames.
 namespace {
 
+using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -72,6 +74,43 @@ TEST_F(DatasetChecksTest, FramesFromOneAndFramesThatBeginOneImageLate) {
   ExpectWarning({"frame_numbers", "counted from 1", "subtract 1"});
   dataset.first_row = -1;
   ExpectWarning({"frame_numbers", "begin one image late", "add 1"});
+}
+
+// Poses of images 0.5 s apart, on a trajectory that is not uniform, with time stamps of another
+// clock.
+TEST_F(DatasetChecksTest, PosesThatLagAreMeasured) {
+  dataset.sway = 0.5;
+  options_.max_time_difference_s = 0.25;
+  const auto expect_lag = [&](double late_s, const std::vector<std::string>& words) {
+    SCOPED_TRACE(late_s);
+    dataset.pose_time = [=](double t) { return fmt::format("{:.6f}", t + late_s); };
+    ExpectAmongWarnings(words);
+  };
+  EXPECT_THAT(Warnings(), IsEmpty());
+  expect_lag(1.0, {"pose_lag", "pose of 1 s later (2 images)", "lower the time stamps", "by 1 s"});
+  expect_lag(-1.5, {"pose_lag", "pose of 1.5 s earlier (3 images)", "raise the time stamps"});
+  expect_lag(0.7, {"pose_lag", "pose of 0.7", " later (1.4"});
+  options_.max_time_difference_s = 5.0;
+  expect_lag(1.0, {"pose_lag", "pose of 1 s later (2 images)"});
+  ExpectAmongWarnings({"repeated_poses", "frames 0 to 2", "a smaller max_time_difference_s"});
+}
+
+// Without images, boxes that move tell it.
+TEST_F(DatasetChecksTest, PosesThatATrackerRepeats) {
+  dataset.pose_of_frame = [](int frame) { return frame < 10 || frame > 15 ? frame : 10; };
+  const std::vector<std::string> words = {"repeated_poses: 5 frames have exactly the pose",
+                                          "frames 10 to 15", "lost"};
+  ExpectAmongWarnings(words);
+  const auto write_images = [&](int shift_px) {
+    for (int frame = 0; frame < PlausibleDataset::kFrames; ++frame) {
+      Write(fmt::format("rgb/{:06}.png", frame),
+            EncodedImage(".png", DrawnView(shift_px * frame, {640, 480})));
+    }
+  };
+  write_images(5);
+  ExpectAmongWarnings(words);
+  write_images(0);
+  EXPECT_THAT(Warnings(), Not(Contains(HasSubstr("repeated_poses")))) << "the camera stands still";
 }
 
 TEST_F(DatasetChecksTest, EurocsPosesOfTheCameraWithAndWithoutBoxesThatTell) {
