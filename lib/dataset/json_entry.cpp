@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "base/error.h"
+#include "base/spelling.h"
 
 namespace soslam {
 
@@ -23,21 +23,6 @@ std::string Quoted(const json& value) {
   return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
 }
 
-// Levenshtein distance: number of letters to insert, remove or replace.
-size_t Misspellings(std::string_view a, std::string_view b) {
-  std::vector<size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), size_t{0});
-  for (size_t i = 0; i < a.size(); ++i) {
-    size_t diagonal = std::exchange(row[0], i + 1);
-    for (size_t k = 0; k < b.size(); ++k) {
-      const size_t changed = diagonal + (a[i] == b[k] ? 0 : 1);
-      diagonal = row[k + 1];
-      row[k + 1] = std::min({row[k] + 1, diagonal + 1, changed});
-    }
-  }
-  return row.back();
-}
-
 // Suggestion for an unknown key, as the end of a message; empty if there is none.
 std::string LikelyMeaning(const std::string& key, const KnownKeys& known) {
   for (const KeyHint& hint : known.hints) {
@@ -45,15 +30,8 @@ std::string LikelyMeaning(const std::string& key, const KnownKeys& known) {
       return fmt::format("; {}", hint.instead);
     }
   }
-  constexpr size_t kLongestKey = 64, kMostMisspellings = 2;
-  if (key.size() > kLongestKey) return "";
-  for (const char* name : known.keys) {
-    const std::string_view text(name);
-    if (text.size() > kMostMisspellings && Misspellings(key, text) <= kMostMisspellings) {
-      return fmt::format("; did you mean \"{}\"?", name);
-    }
-  }
-  return "";
+  const auto likely = LikelyMeant(key, {known.keys.begin(), known.keys.end()});
+  return likely ? fmt::format("; did you mean \"{}\"?", *likely) : "";
 }
 
 }  // namespace

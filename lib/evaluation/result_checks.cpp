@@ -7,10 +7,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
 
+#include "base/spelling.h"
 #include "base/text.h"
 #include "evaluation/statistics.h"
+#include "model/label_groups.h"
 
 namespace soslam {
 namespace {
@@ -144,6 +147,30 @@ std::vector<Finding> CheckFailures(const LandmarkEstimates& estimates) {
        "poses the other way round, planes or boxes of another convention, another camera, or too "
        "few views",
        "look at the findings of the import, then at boxes and planes in an image: soslam-inspect"}};
+}
+
+std::vector<Finding> CheckLabels(const Sequence& sequence, const SemanticTable& table,
+                                 const std::string& table_file) {
+  std::set<std::string> all;
+  for (const Detection& detection : sequence.detections) {
+    all.insert(sequence.ObjectOf(detection).label);
+  }
+  std::vector<std::string> unknown = LabelsWithoutEntry(sequence, table);
+  if (unknown.empty() || 3 * unknown.size() < all.size()) return {};
+  std::vector<std::string> known;
+  for (const auto& [name, prior] : table.priors) known.push_back(name);
+  for (std::string& label : unknown) {
+    const auto likely = LikelyMeant(NormalisedLabel(label), known);
+    if (likely) label += fmt::format(" ({}?)", *likely);
+  }
+  return {{"labels", Severity::kWarning,
+           fmt::format("{} of {} labels are not in {}: {}; {}", unknown.size(), all.size(),
+                       table_file, NamesInWords(unknown, 10),
+                       table.default_prior ? "its default is used" : "their objects are left out"),
+           "labels of the table, which has their proportions and heights",
+           "misspelt labels, another language, or things that the table does not have",
+           "rename the labels (case, blanks, underscores and hyphens do not count), or add rows or "
+           "aliases to the table"}};
 }
 
 std::vector<Finding> CheckSizes(const LandmarkEstimates& estimates, const Sequence& sequence,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "constraints/odometry.h"
@@ -17,6 +18,11 @@ namespace soslam {
 // A finding if more than a third of the tries gave no landmark; those of moving objects are left
 // out.
 std::vector<Finding> CheckFailures(const LandmarkEstimates& estimates);
+
+// Labels of detections that are not in the semantic table, if they are a third of all or more, with
+// the names of the table that they probably misspell.
+std::vector<Finding> CheckLabels(const Sequence& sequence, const SemanticTable& table,
+                                 const std::string& table_file);
 
 // The heights of landmarks against those of their labels: one common factor, which indicates a
 // wrong scale, or single objects that are a multiple. Labels of the table without a height are

@@ -59,14 +59,25 @@ std::string CountWithPoints(const std::optional<PointsInFrames>& points,
   return fmt::format("; points in {} of {} observations", count, estimates.observations.size());
 }
 
-// Says which labels have no entry in the semantic table.
-void WarnOfMissingLabels(const Sequence& sequence, const SemanticTable& table,
-                         const std::filesystem::path& file) {
+// Says which labels have no entry in the semantic table; a finding if they are many.
+std::vector<Finding> ReportMissingLabels(const Sequence& sequence, const SemanticTable& table,
+                                         const std::filesystem::path& file) {
+  auto findings = CheckLabels(sequence, table, file.filename().string());
+  ReportFindings("initialise", findings);
   const auto labels = LabelsWithoutEntry(sequence, table);
-  if (labels.empty()) return;
-  fmt::print(stderr, "soslam-initialise: not in {}: {}; {}\n", file.string(),
-             fmt::join(labels, ", "),
-             table.default_prior ? "its default is used" : "their objects are left out");
+  if (findings.empty() && !labels.empty()) {
+    fmt::print(stderr, "soslam-initialise: not in {}: {}; {}\n", file.string(),
+               fmt::join(labels, ", "),
+               table.default_prior ? "its default is used" : "their objects are left out");
+  }
+  return findings;
+}
+
+// True if the ratios of objects are those of their labels.
+bool UsesTable(const InitialiseOptions& options) {
+  return options.method != InitialisationMethod::kSvd &&
+         options.method != InitialisationMethod::kCuboidProposals &&
+         options.ratio_prior == RatioPrior::kTable;
 }
 
 // The estimates of the method that the options name.
@@ -77,9 +88,6 @@ LandmarkEstimates Initialise(const Sequence& sequence, const SemanticTable& tabl
   if (options.method == InitialisationMethod::kSvd) return InitialiseSvd(sequence);
   if (options.method == InitialisationMethod::kCuboidProposals) {
     return InitialiseCuboids(sequence, EdgesOfSequence(sequence, files), options.cuboids, threads);
-  }
-  if (options.ratio_prior == RatioPrior::kTable) {
-    WarnOfMissingLabels(sequence, table, files.at("table"));
   }
   if (options.method == InitialisationMethod::kSingleFrame) {
     return InitialiseSingleFrame(sequence, ObjectRatios(sequence, table, options.ratio_prior),
@@ -106,6 +114,8 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
                      files);
   const Sequence sequence = ReadSequence(files.at("sequence"));
   const SemanticTable table = ReadSemanticTable(files.at("table"));
+  std::vector<Finding> of_labels;
+  if (UsesTable(options)) of_labels = ReportMissingLabels(sequence, table, files.at("table"));
   const auto points = PointsInFramesOf(options.points, sequence, files);
   const LandmarkEstimates estimates = Initialise(sequence, table, points, options, files, threads);
   const auto failures = CountFailures(estimates);
@@ -124,6 +134,7 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
                     std::back_inserter(findings));
   std::ranges::move(CheckCollapsed(estimates), std::back_inserter(findings));
   ReportFindings("initialise", findings);
+  std::ranges::move(of_labels, std::back_inserter(findings));
   std::vector<std::filesystem::path> inputs = {files.at("sequence"), files.at("table")};
   if (uses_images) inputs.push_back(files.at("edges"));
   if (options.points.point_evidence) inputs.push_back(files.at("points"));

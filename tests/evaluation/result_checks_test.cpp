@@ -51,6 +51,29 @@ class ResultChecksTest : public testing::Test {
   SemanticTable table;
 };
 
+// Labels are those of detections.
+TEST_F(ResultChecksTest, AThirdOfTheLabelsWithoutEntry) {
+  table.priors["coffeetable"] = {};
+  Sequence sequence;
+  const auto add = [&](const std::string& label) {
+    sequence.objects.push_back({static_cast<int>(sequence.objects.size()), label, 0, {}});
+    sequence.detections.push_back(
+        {0, static_cast<int>(sequence.objects.size()) - 1, 1.0, {}, {}, {}});
+  };
+  for (const char* label : {"crate", "Crate", "coffee table", "CRATE"}) add(label);
+  EXPECT_THAT(CheckLabels(sequence, table, "table.json"), IsEmpty());
+  add("Cofee Tabel");
+  EXPECT_THAT(CheckLabels(sequence, table, "table.json"), IsEmpty());
+  add("whisk");
+  const Finding finding = Only(CheckLabels(sequence, table, "table.json"));
+  EXPECT_THAT(finding.found, AllOf(HasSubstr("2 of 6 labels are not in table.json"),
+                                   HasSubstr("whisk; their objects are left out")));
+  table.default_prior = ShapePrior();
+  sequence.objects.back().label = "crat";
+  EXPECT_THAT(Only(CheckLabels(sequence, table, "table.json")).found,
+              HasSubstr("crat (crate?); its default is used"));
+}
+
 TEST_F(ResultChecksTest, SizesWithinTheirLabelsSpread) {
   EXPECT_THAT(SizeFindings({0.4, 0.5, 0.6, 0.45, 0.7}), IsEmpty());
 }
