@@ -12,14 +12,16 @@
 #include "base/paths.h"
 #include "dataset/text_file.h"
 #include "dataset/yaml_fields.h"
+#include "model/label_groups.h"
 
 namespace soslam {
 namespace {
 
 namespace fs = std::filesystem;
 
-// File names used by programs; of several the first is used.
-constexpr std::array kNames = {"classes.txt", "obj.names", "data.yaml", "data.yml", "dataset.yaml"};
+// File names used by programs.
+constexpr std::array kNames = {"classes.txt", "obj.names",    "data.yaml",
+                               "data.yml",    "dataset.yaml", "labels.txt"};
 
 bool IsYaml(const fs::path& path) {
   return path.extension() == ".yaml" || path.extension() == ".yml";
@@ -74,10 +76,24 @@ std::vector<std::string> ReadLabelFile(const fs::path& path) {
 }
 
 std::vector<std::string> ParseLabels(const std::string& text, const std::string& name) {
-  std::vector<std::string> names =
-      IsYaml(name) ? YamlNames(YamlFields(text, name), name) : LineNames(TextLines(text, name));
+  std::vector<std::string> names = FindLabels(text, name).names;
   if (names.empty()) throw InputError(name + ": has no label; expected the names of the classes");
   return names;
+}
+
+ClassNames FindLabels(const std::string& text, const std::string& name) {
+  return {name, IsYaml(name) ? YamlNames(YamlFields(text, name), name)
+                             : LineNames(TextLines(text, name))};
+}
+
+void CheckSameNames(const ClassNames& one, const ClassNames& other) {
+  for (size_t i = 0; i < std::min(one.names.size(), other.names.size()); ++i) {
+    if (AreSameLabel(one.names[i], other.names[i])) continue;
+    throw InputError(fmt::format(
+        "{}: class {} is '{}', but '{}' in {}; expected the same names: remove the file that is "
+        "not of these boxes, or name the right one as class_names",
+        one.place, i, one.names[i], other.names[i], other.place));
+  }
 }
 
 bool IsListed(const std::string& label, const std::string& list) {
@@ -89,17 +105,18 @@ bool IsLabelFile(const fs::path& name) {
   return std::ranges::find(kNames, name.filename().string()) != kNames.end();
 }
 
-std::optional<fs::path> FindLabelFile(const fs::path& labels, const fs::path& dataset) {
+std::vector<fs::path> FindLabelFiles(const fs::path& labels, const fs::path& dataset) {
+  std::vector<fs::path> files;
   fs::path folder = IsFolder(labels) ? PlainPath(labels) : PlainPath(labels).parent_path();
   // For labels outside the dataset only their parent folder is searched.
   bool may_leave = IsFolder(labels) && !IsWithin(folder, dataset);
   for (;;) {
     for (const char* name : kNames) {
-      if (IsFile(folder / name)) return folder / name;
+      if (IsFile(folder / name)) files.push_back(folder / name);
     }
-    if (folder == folder.parent_path()) return std::nullopt;  // the root
+    if (folder == folder.parent_path()) return files;  // the root
     folder = folder.parent_path();
-    if (!IsWithin(folder, dataset) && !std::exchange(may_leave, false)) return std::nullopt;
+    if (!IsWithin(folder, dataset) && !std::exchange(may_leave, false)) return files;
   }
 }
 
@@ -120,8 +137,10 @@ const std::vector<std::string>& CocoLabels() {
       "chair,couch,potted plant,bed,dining table,toilet,tv,laptop,mouse,remote,keyboard,"
       "cell phone,microwave,oven,toaster,sink,refrigerator,book,clock,vase,scissors,teddy bear,"
       "hair drier,toothbrush";
-  const auto names = SplitFields(kLabels);
-  static const std::vector<std::string> labels(names.begin(), names.end());
+  static const auto labels = [&] {
+    const auto names = SplitFields(kLabels);
+    return std::vector<std::string>(names.begin(), names.end());
+  }();
   return labels;
 }
 

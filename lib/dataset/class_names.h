@@ -20,13 +20,26 @@ std::vector<std::string> ParseLabels(const std::string& text, const std::string&
 // True if the list, labels separated by commas, has the label or is empty.
 bool IsListed(const std::string& label, const std::string& list);
 
+// Class names and their place, for messages.
+struct ClassNames {
+  std::string place;
+  std::vector<std::string> names;
+};
+
+// The class names in a text, as ParseLabels, but none where it has none.
+ClassNames FindLabels(const std::string& text, const std::string& name);
+
+// Throws InputError if two lists, neither of which is said to be the right one, give a class
+// different names.
+void CheckSameNames(const ClassNames& one, const ClassNames& other);
+
 // True if files of this name hold the class names in folders and archives of YOLO's labels.
 bool IsLabelFile(const std::filesystem::path& name);
 
-// Finds the file with class names among the labels in a folder, beside that folder (or beside a
-// label file), or in a parent folder up to that of the dataset; none without one.
-std::optional<std::filesystem::path> FindLabelFile(const std::filesystem::path& labels,
-                                                   const std::filesystem::path& dataset);
+// Finds the files with class names among the labels in a folder, beside that folder (or beside a
+// label file), and in parent folders up to that of the dataset, nearest first.
+std::vector<std::filesystem::path> FindLabelFiles(const std::filesystem::path& labels,
+                                                  const std::filesystem::path& dataset);
 
 // Names of COCO's 80 object classes, in the order of detectors trained on COCO, from 0 (T.-Y. Lin
 // et al., "Microsoft COCO: Common Objects in Context", ECCV 2014).

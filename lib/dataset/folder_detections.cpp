@@ -39,19 +39,49 @@ std::vector<LabelledBox> ReadKittiClasses(const fs::path& path) {
   return boxes;
 }
 
-// Class names from the options, otherwise from a file among the labels or beside them, otherwise
-// COCO's.
+FolderBoxes ReadCocoBoxes(const DatasetFiles& files, const Camera& camera) {
+  CocoBoxes read = ReadCocoResults(files.detections, files.class_names);
+  FolderBoxes boxes{std::move(read.boxes),
+                    files.class_names ? std::vector<std::string>() : CocoLabels()};
+  boxes.left_out = std::move(read.left_out);
+  const std::string file = files.detections.filename().string();
+  if (read.enlarged > 0) {
+    boxes.findings.push_back(
+        {"oblique_boxes", Severity::kWarning,
+         fmt::format("{}: {} of {} boxes are drawn at an angle, and replaced by the upright boxes "
+                     "around them",
+                     file, read.enlarged, boxes.boxes.size()),
+         "upright boxes, whose edges touch the object", "rotated rectangles of an annotation tool",
+         "draw these boxes upright: those around rotated ones are larger than their objects"});
+  }
+  const ImageSize size{camera.width, camera.height};
+  const auto other = std::ranges::find_if(read.image_sizes,
+                                          [&](const ImageSize& stated) { return stated != size; });
+  if (other == read.image_sizes.end()) return boxes;
+  boxes.findings.push_back(
+      {"box_image_size", Severity::kError,
+       fmt::format("{} states images of {} x {} pixels, the camera has {} x {}",
+                   files.class_names.value_or(files.detections).filename().string(), other->width,
+                   other->height, size.width, size.height),
+       "boxes in images of the camera's size", "an annotation tool that made the images smaller",
+       "export boxes of the original images, or correct the width and height in the file"});
+  return boxes;
+}
+
+// Class names from the options, otherwise from the files among the labels or beside them, which
+// must not contradict each other, otherwise COCO's.
 std::vector<std::string> YoloLabels(const YoloTexts& texts, const fs::path& folder,
                                     DatasetFiles* files) {
   if (files->class_names) return ReadLabelFile(*files->class_names);
-  std::string place = texts.names_place;
-  std::vector<std::string> names = texts.names.value_or(CocoLabels());
-  if (!texts.names) {
-    files->class_names = FindLabelFile(files->detections, folder);
-    if (!files->class_names) return names;
-    place = files->class_names->string();
-    names = ReadLabelFile(*files->class_names);
+  std::vector<ClassNames> found = texts.names;
+  for (const fs::path& file : FindLabelFiles(files->detections, folder)) {
+    found.push_back(FindLabels(ReadWholeFile(file), file.string()));
   }
+  std::erase_if(found, [](const ClassNames& list) { return list.names.empty(); });
+  if (found.empty()) return CocoLabels();
+  for (const ClassNames& other : found) CheckSameNames(found.front(), other);
+  const auto& [place, names] = found.front();
+  if (IsFile(place)) files->class_names = place;
   fmt::print("{}: names of {} classes, {}\n", place, names.size(), fmt::join(names, ", "));
   return names;
 }
@@ -59,16 +89,15 @@ std::vector<std::string> YoloLabels(const YoloTexts& texts, const fs::path& fold
 }  // namespace
 
 FolderBoxes ReadFolderBoxes(const fs::path& folder, const ImportOptions& options,
-                            const Camera& camera, DatasetFiles* files, RejectionCounts* corrected) {
+                            const Camera& camera, DatasetFiles* files) {
   const fs::path& path = files->detections;
   switch (options.folder.detections_format) {
     case DetectionsFormat::kCsv:
-      return {ReadDetectionsCsv(path), {}};
+      return {ReadDetectionsCsv(path)};
     case DetectionsFormat::kCoco:
-      return {ReadCocoResults(path, files->class_names),
-              files->class_names ? std::vector<std::string>() : CocoLabels()};
+      return ReadCocoBoxes(*files, camera);
     case DetectionsFormat::kKitti:
-      return {ReadKittiClasses(path), {}};
+      return {ReadKittiClasses(path)};
     case DetectionsFormat::kOaSlam: {
       const auto names = files->class_names ? ReadLabelFile(*files->class_names) : CocoLabels();
       return {ReadOaSlamBoxes(path, names), names};
@@ -78,10 +107,12 @@ FolderBoxes ReadFolderBoxes(const fs::path& folder, const ImportOptions& options
       const YoloTexts texts = ReadYoloTexts(path);
       const auto names = YoloLabels(texts, folder, files);
       const bool has_pixels = options.folder.detections_format == DetectionsFormat::kYoloPixels;
-      return {has_pixels
-                  ? ReadPixelYoloBoxes(texts, names)
-                  : ReadNormalisedYoloBoxes(texts, names, camera.width, camera.height, corrected),
-              names};
+      FolderBoxes read;
+      read.class_names = names;
+      read.boxes = has_pixels ? ReadPixelYoloBoxes(texts, names)
+                              : ReadNormalisedYoloBoxes(texts, names, camera.width, camera.height,
+                                                        &read.corrected);
+      return read;
     }
   }
   throw std::logic_error("format without a reader");
@@ -120,6 +151,12 @@ std::vector<DetectionRow> RowsOfBoxes(const std::vector<LabelledBox>& boxes,
     if (!frame) continue;
     const int object_id = box.object_id.value_or(first_free_id + static_cast<int>(i));
     rows.push_back({box.place, *frame, object_id, box.label, box.score, box.box});
+  }
+  if (const size_t copies = lookup.CountCopies(); copies > 0) {
+    fmt::print(
+        "{}: {} images are found by the names of copies, as Roboflow and Label Studio write them; "
+        "their boxes have to be those of the whole images, neither cropped nor padded\n",
+        files.detections.filename().string(), copies);
   }
   const size_t unlisted = boxes.size() - rows.size();
   if (unlisted == 0) return rows;

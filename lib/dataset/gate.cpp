@@ -14,12 +14,13 @@
 namespace soslam {
 
 const char* RejectReasonName(RejectReason reason) {
-  constexpr std::array kNames = {"frame_not_listed",   "frame_not_used",  "frame_without_image",
-                                 "frame_without_pose", "other_label",     "truncated",
-                                 "occluded",           "low_score",       "beyond_lens_model",
-                                 "empty_box",          "outside_image",   "low_box",
-                                 "near_border",        "duplicate",       "too_few_observations",
-                                 "without_object_id",  "matches_no_label"};
+  constexpr std::array kNames = {"frame_not_listed",   "frame_not_used",   "frame_without_image",
+                                 "frame_without_pose", "other_label",      "truncated",
+                                 "occluded",           "low_score",        "beyond_lens_model",
+                                 "empty_box",          "outside_image",    "low_box",
+                                 "near_border",        "duplicate",        "too_few_observations",
+                                 "without_object_id",  "matches_no_label", "crowd",
+                                 "out_of_view"};
   return kNames.at(static_cast<size_t>(reason));
 }
 

@@ -57,6 +57,8 @@ enum class RejectReason {
   kTooFewObservations,  // the object has fewer than min_observations usable detections
   kWithoutObjectId,     // without track id, in a table with ids
   kMatchesNoLabel,      // no labelled box of its class overlaps the detector's box
+  kCrowd,               // its annotation is of a crowd, or is to be ignored
+  kOutOfView,           // its annotation says that the object is not in this image
 };
 const char* RejectReasonName(RejectReason reason);
 

@@ -80,6 +80,8 @@ std::string PlainImageName(const std::string& name) {
   return std::regex_replace(LowerCase(name), kLeadingZeros, "$1$2");
 }
 
+constexpr size_t kMaxName = 255;  // bytes of a file's name; regular expressions are recursive
+
 // Folder name without the part that distinguishes the cameras of a rig.
 std::string RigOf(const std::string& plain_name) {
   static const std::regex kCamera("(left|right|[0-9])+");
@@ -87,7 +89,6 @@ std::string RigOf(const std::string& plain_name) {
 }
 
 bool AreOfTwoCameras(const fs::path& folder, const fs::path& other) {
-  constexpr size_t kMaxName = 255;  // bytes of a file's name; regular expressions are recursive
   const auto names = Difference(folder, other);
   if (std::max(names.first.size(), names.second.size()) > kMaxName) return false;
   const std::string name = PlainImageName(names.first), other_name = PlainImageName(names.second);
@@ -107,15 +108,38 @@ FrameLookup::FrameLookup(const std::vector<ListedImage>& images) {
   }
 }
 
+namespace {
+
+// Name of the image that an annotation tool copied to a file of this name, without extension in
+// names of Roboflow; empty for other names.
+std::string NameOfOriginal(const std::string& copy) {
+  static const std::regex kRoboflow(R"((.+)_[a-z]+\.rf\.[0-9a-z]{8,}(\.[a-z]+)?)",
+                                    std::regex::icase);
+  static const std::regex kLabelStudio("[0-9a-f]{8}(?:-|__)(.+)");
+  std::smatch parts;
+  if (copy.size() > kMaxName) return "";
+  const bool is_copy =
+      std::regex_match(copy, parts, kRoboflow) || std::regex_match(copy, parts, kLabelStudio);
+  return is_copy ? parts[1].str() : "";
+}
+
+}  // namespace
+
+size_t FrameLookup::CountCopies() const {
+  return static_cast<size_t>(std::ranges::count_if(
+      copies_, [](const auto& copy_of_row) { return !copy_of_row.second.empty(); }));
+}
+
 std::optional<int> FrameLookup::Find(const FrameKey& key, const std::string& place) {
   if (const int* row = std::get_if<int>(&key)) {
     return *row >= 0 && *row < std::ssize(folders_) ? std::optional(*row) : std::nullopt;
   }
   const std::string& name = std::get<std::string>(key);
   auto found = rows_by_name_.find(name);
-  if (found == rows_by_name_.end()) {
-    found = rows_by_name_.find(fs::path(name).filename().string());
-  }
+  const std::string file_name = fs::path(name).filename().string();
+  if (found == rows_by_name_.end()) found = rows_by_name_.find(file_name);
+  const bool is_copy = found == rows_by_name_.end();
+  if (is_copy) found = rows_by_name_.find(NameOfOriginal(file_name));
   if (found == rows_by_name_.end()) return std::nullopt;
   const std::vector<int>& rows = found->second;
   if (rows.size() > 1) {
@@ -131,6 +155,13 @@ std::optional<int> FrameLookup::Find(const FrameKey& key, const std::string& pla
         fmt::format("{}: image '{}' would be row {} of the list, as that of the same name in '{}' "
                     "is; expected images of one folder",
                     place, name, row, named.string()));
+  }
+  const std::string& copy = copies_.try_emplace(row, is_copy ? file_name : "").first->second;
+  if (copy != (is_copy ? file_name : "")) {
+    throw InputError(
+        fmt::format("{}: image '{}' would be row {} of the list, as another copy of it or itself "
+                    "is; expected one of each image: export boxes without augmentation",
+                    place, name, row));
   }
   return row;
 }

@@ -83,6 +83,7 @@ class Importer {
       if (!reason || IsInView(*reason)) in_view.push_back(row);
       if (reason) rejected.Add(row, *reason);
     }
+    CheckBoxesOfImages(in_view);
     Sequence all_in_view = *sequence_;
     usable = WithoutDuplicates(std::move(usable), &rejected);
     if (content_.has_object_ids) {
@@ -104,6 +105,21 @@ class Importer {
   std::optional<Rigid3d> PlanePose(const Frame& frame) const {
     return planes_from_truth_ ? frame.true_world_from_camera
                               : std::optional(frame.world_from_camera);
+  }
+
+  // Throws InputError for more boxes in an image than detectors leave after non-maximum suppression
+  // (300 where COCO's usual limits hold): what may occlude what takes time with their square.
+  void CheckBoxesOfImages(const std::vector<DetectionRow>& rows) const {
+    constexpr int kMost = 1000;
+    std::map<int, int> boxes;
+    for (const DetectionRow& row : rows) {
+      if (++boxes[row.frame_id] <= kMost) continue;
+      const auto all = std::ranges::count(rows, row.frame_id, &DetectionRow::frame_id);
+      throw InputError(fmt::format(
+          "{}: is one of {} boxes of image {}; expected at most {} in an image: are they a "
+          "network's output before non-maximum suppression? min_score drops the less certain ones",
+          row.place, all, row.frame_id, kMost));
+    }
   }
 
   std::optional<RejectReason> Gate(const DetectionRow& row) const {

@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <iterator>
 #include <map>
 #include <string_view>
 
@@ -14,12 +17,56 @@
 #include "dataset/class_names.h"
 #include "dataset/json_entry.h"
 #include "dataset/text_file.h"
+#include "geometry/angles.h"
+#include "model/label_groups.h"
 
 namespace soslam {
 namespace {
 
 constexpr std::array kBoxColumns = {"frame", "label", "score", "x1", "y1", "x2", "y2"};
 constexpr const char* kIdColumn = "object_id";
+
+// Keys and columns with the angle of a box in programs that write oriented boxes.
+constexpr std::array kAngles = {"rotation", "angle", "theta"};
+constexpr const char* kUprightBoxes = "no angle: oriented boxes are not read, save upright ones";
+
+// A column that may be absent, and other names of it. Tables with another name only are refused, as
+// their values would be ignored.
+struct OptionalColumn {
+  const char* name;
+  std::array<const char*, 2> other_names;
+};
+constexpr std::array kOptionalColumns = {OptionalColumn{"score", {"confidence", "conf"}},
+                                         OptionalColumn{kIdColumn, {"track_id", "track"}}};
+
+CsvColumns ColumnsOfBoxes() {
+  CsvColumns columns{{"frame", "label", "x1", "y1", "x2", "y2"},
+                     {kAngles.begin(), kAngles.end()},
+                     "rows of MOTChallenge and trackers (frame from 1, id, left, top, width, "
+                     "height, score) have no labels: docs/detections.md has the command that "
+                     "converts them"};
+  for (const auto& [name, other_names] : kOptionalColumns) {
+    columns.optional.push_back(name);
+    std::ranges::copy(other_names, std::back_inserter(columns.optional));
+  }
+  return columns;
+}
+
+void RefuseWhatWouldBeIgnored(const CsvRow& row) {
+  for (const char* angle : kAngles) {
+    if (!row.fields.contains(angle) || row.Real(angle) == 0.0) continue;
+    throw InputError(fmt::format("{}: {} is {}; expected {}", row.place, angle,
+                                 row.fields.at(angle), kUprightBoxes));
+  }
+  for (const auto& [name, other_names] : kOptionalColumns) {
+    if (row.fields.contains(name)) continue;
+    for (const char* other : other_names) {
+      if (!row.fields.contains(other)) continue;
+      throw InputError(fmt::format("{}: column '{}' would be ignored; expected its name to be {}",
+                                   row.place, other, name));
+    }
+  }
+}
 
 // Some programs write a column with gaps as real numbers: 7 is "7.0".
 std::optional<int> ParseObjectId(std::string_view text, const std::string& place) {
@@ -29,10 +76,11 @@ std::optional<int> ParseObjectId(std::string_view text, const std::string& place
 }
 
 LabelledBox ParseBox(const CsvRow& row) {
+  RefuseWhatWouldBeIgnored(row);
   LabelledBox box{row.place,
                   ParseInteger(row.fields.at("frame"), row.place, "frame"),
                   row.fields.at("label"),
-                  row.Real("score"),
+                  row.fields.contains("score") ? row.Real("score") : 1.0,
                   {row.Real("x1"), row.Real("y1"), row.Real("x2"), row.Real("y2")}};
   if (box.label.empty()) throw InputError(row.place + ": label is empty; expected a category");
   const auto id = row.fields.find(kIdColumn);
@@ -44,8 +92,7 @@ LabelledBox ParseBox(const CsvRow& row) {
 
 std::vector<LabelledBox> ReadDetectionsCsv(const std::filesystem::path& path) {
   std::vector<LabelledBox> boxes;
-  ForEachCsvRow(path, {{kBoxColumns.begin(), kBoxColumns.end()}, kIdColumn},
-                [&](const CsvRow& row) { boxes.push_back(ParseBox(row)); });
+  ForEachCsvRow(path, ColumnsOfBoxes(), [&](const CsvRow& row) { boxes.push_back(ParseBox(row)); });
   return boxes;
 }
 
@@ -68,6 +115,7 @@ using nlohmann::json;
 struct CocoNames {
   std::map<int, std::string> images;
   std::map<int, std::string> categories;
+  std::vector<ImageSize> image_sizes;
 };
 
 std::map<int, std::string> ReadNames(const JsonEntry& document, const char* list_name,
@@ -82,9 +130,25 @@ std::map<int, std::string> ReadNames(const JsonEntry& document, const char* list
   return names;
 }
 
+// The sizes of the images that have one; programs write 0 or null if they do not know it.
+std::vector<ImageSize> ReadImageSizes(const json& images) {
+  std::vector<ImageSize> sizes;
+  for (const json& image : images) {
+    const auto number = [&](const char* name) {
+      const auto field = image.find(name);
+      return field != image.end() && field->is_number() ? field->get<double>() : 0.0;
+    };
+    const double width = number("width"), height = number("height");
+    if (!IsWholeImageSize(width, height)) continue;
+    sizes.push_back({static_cast<std::int64_t>(width), static_cast<std::int64_t>(height)});
+  }
+  return sizes;
+}
+
 CocoNames NamesOf(const json& document, const fs::path& path) {
   const JsonEntry entry(document, path.string());
-  return {ReadNames(entry, "images", "file_name"), ReadNames(entry, "categories", "name")};
+  return {ReadNames(entry, "images", "file_name"), ReadNames(entry, "categories", "name"),
+          ReadImageSizes(entry.List("images"))};
 }
 
 const std::string& NameOf(const std::map<int, std::string>& names, const JsonEntry& entry,
@@ -107,51 +171,129 @@ std::string ParseLabel(const JsonEntry& entry, const std::optional<CocoNames>& n
   return CocoLabels()[*index];
 }
 
+// The four numbers of a box, which has no angle. Throws InputError naming what was `expected`.
+Eigen::Vector4d BoxNumbers(const JsonEntry& entry, const char* expected) {
+  for (const char* angle : kAngles) {
+    if (entry.Has(angle) && entry.Real(angle) != 0.0) entry.Refuse(angle, kUprightBoxes);
+  }
+  const json& bbox = entry.Field("bbox");
+  if (bbox.is_array() && bbox.size() == 5) {
+    entry.Refuse("bbox", fmt::format("{} and {}", expected, kUprightBoxes));
+  }
+  return entry.Vector<4>("bbox");
+}
+
 Box ParseBox(const JsonEntry& entry) {
-  const Eigen::Vector4d xywh = entry.Vector<4>("bbox");
-  if (xywh[2] < 0.0 || xywh[3] < 0.0) entry.Refuse("bbox", "[x, y, width, height]");
+  constexpr const char* kNumbers = "[x, y, width, height]";
+  const Eigen::Vector4d xywh = BoxNumbers(entry, kNumbers);
+  if (xywh[2] < 0.0 || xywh[3] < 0.0) entry.Refuse("bbox", kNumbers);
   return FromCornerOrigin({xywh[0], xywh[1], xywh[0] + xywh[2], xywh[1] + xywh[3]});
 }
 
-// Track id as CVAT writes it; none without one.
-std::optional<int> ParseTrack(const JsonEntry& entry) {
-  if (entry.Has("track_id")) return entry.Integer("track_id");
-  if (!entry.Has("attributes") || !entry.Field("attributes").is_object()) return std::nullopt;
-  const JsonEntry attributes(entry.Field("attributes"), entry.place() + "/attributes");
-  return attributes.Has("track_id") ? std::optional(attributes.Integer("track_id")) : std::nullopt;
+// The upright box around a box that is turned about its centre.
+Box BoxAround(const Box& box, double angle_deg) {
+  const double cosine = std::abs(std::cos(kRadPerDeg * angle_deg));
+  const double sine = std::abs(std::sin(kRadPerDeg * angle_deg));
+  const Eigen::Vector2d centre = box.Centre();
+  const double half_width = 0.5 * (cosine * box.Width() + sine * box.Height());
+  const double half_height = 0.5 * (sine * box.Width() + cosine * box.Height());
+  return {centre.x() - half_width, centre.y() - half_height, centre.x() + half_width,
+          centre.y() + half_height};
 }
 
-// True if the box is around a crowd of objects.
-bool IsCrowd(const JsonEntry& entry) { return entry.Has("iscrowd") && entry.Field("iscrowd") == 1; }
+// True if the box around a turned one is larger than after the nearest quarter turn by more than a
+// pixel, which annotators do not see.
+bool IsEnlarged(const Box& around, const Box& box, double angle_deg) {
+  constexpr double kSeenPx = 1.0;
+  const Box quarter = BoxAround(box, 90.0 * std::round(angle_deg / 90.0));
+  return around.Width() - quarter.Width() > kSeenPx || around.Height() - quarter.Height() > kSeenPx;
+}
 
-std::vector<LabelledBox> ParseBoxes(const json& list, const std::string& place,
-                                    const std::optional<CocoNames>& names) {
-  std::vector<LabelledBox> boxes;
-  for (const JsonEntry& entry : EntriesOf(list, place)) {
-    if (IsCrowd(entry)) continue;
-    boxes.push_back({entry.place(), ParseFrame(entry, names), ParseLabel(entry, names),
-                     entry.Has("score") ? entry.Real("score") : 1.0, ParseBox(entry),
-                     ParseTrack(entry)});
+// The score under this name; 1 without one. Throws InputError for a score under another name.
+double ScoreOf(const JsonEntry& entry, const char* name) {
+  if (entry.Has(name)) return entry.Real(name);
+  for (const char* other : {"score", "confidence", "conf"}) {
+    if (entry.Has(other)) entry.Refuse(other, fmt::format("the score as {}", name));
   }
-  return boxes;
+  return 1.0;
+}
+
+// The attributes that CVAT adds to an entry; none without any.
+std::optional<JsonEntry> AttributesOf(const JsonEntry& entry) {
+  if (!entry.Has("attributes") || !entry.Field("attributes").is_object()) return std::nullopt;
+  return JsonEntry(entry.Field("attributes"), entry.place() + "/attributes");
+}
+
+std::optional<int> ParseTrack(const JsonEntry& entry, const std::optional<JsonEntry>& attributes) {
+  if (entry.Has("track_id")) return entry.Integer("track_id");
+  if (!attributes || !attributes->Has("track_id")) return std::nullopt;
+  return attributes->Integer("track_id");
+}
+
+// The reason to leave out an entry that is not of one object in the image.
+std::optional<RejectReason> ReasonToLeaveOut(const JsonEntry& entry,
+                                             const std::optional<JsonEntry>& attributes) {
+  for (const char* name : {"iscrowd", "ignore"}) {
+    if (entry.Has(name) && (entry.Field(name) == 1 || entry.Field(name) == true)) {
+      return RejectReason::kCrowd;
+    }
+  }
+  if (attributes && attributes->Flag("outside", false)) return RejectReason::kOutOfView;
+  return std::nullopt;
+}
+
+void CheckSameCategories(const CocoNames& names, const fs::path& file, const CocoNames& others,
+                         const fs::path& other_file) {
+  for (const auto& [id, name] : names.categories) {
+    const auto other = others.categories.find(id);
+    if (other == others.categories.end() || AreSameLabel(name, other->second)) continue;
+    throw InputError(
+        fmt::format("{}: category {} is '{}', but '{}' in {}; expected the same names: leave "
+                    "class_names empty if the boxes' own file is right",
+                    file.string(), id, name, other->second, other_file.string()));
+  }
+}
+
+void ReadEntry(const JsonEntry& entry, const std::optional<CocoNames>& names, CocoBoxes* read) {
+  const auto attributes = AttributesOf(entry);
+  if (const auto reason = ReasonToLeaveOut(entry, attributes)) {
+    ++read->left_out[RejectReasonName(*reason)];
+    return;
+  }
+  LabelledBox box{entry.place(),           ParseFrame(entry, names), ParseLabel(entry, names),
+                  ScoreOf(entry, "score"), ParseBox(entry),          ParseTrack(entry, attributes)};
+  if (attributes && attributes->Has("rotation")) {
+    const double angle_deg = attributes->Real("rotation");
+    const Box around = BoxAround(box.box, angle_deg);
+    if (IsEnlarged(around, box.box, angle_deg)) ++read->enlarged;
+    if (angle_deg != 0.0) box.box = around;
+  }
+  read->boxes.push_back(std::move(box));
 }
 
 }  // namespace
 
-std::vector<LabelledBox> ReadCocoResults(const fs::path& results,
-                                         const std::optional<fs::path>& dataset) {
+CocoBoxes ReadCocoResults(const fs::path& results, const std::optional<fs::path>& dataset) {
   const json document = ParseJsonFile(results);
-  const auto names =
-      dataset ? std::optional(NamesOf(ParseJsonFile(*dataset), *dataset)) : std::nullopt;
-  if (document.is_array()) return ParseBoxes(document, results.string() + "#", names);
-  if (!document.is_object() || !document.contains("annotations")) {
+  auto names = dataset ? std::optional(NamesOf(ParseJsonFile(*dataset), *dataset)) : std::nullopt;
+  const bool is_list = document.is_array();
+  if (!is_list && (!document.is_object() || !document.contains("annotations"))) {
     throw InputError(results.string() +
                      ": is not a list of results, nor a data set with \"images\", "
                      "\"annotations\" and \"categories\"");
   }
-  const JsonEntry entry(document, results.string());
-  return ParseBoxes(entry.List("annotations"), results.string() + "#/annotations",
-                    names ? names : NamesOf(document, results));
+  if (!is_list && names && document.contains("categories")) {
+    CheckSameCategories(*names, *dataset, NamesOf(document, results), results);
+  }
+  if (!is_list && !names) names = NamesOf(document, results);
+  const json& list = is_list ? document : JsonEntry(document, results.string()).List("annotations");
+  CocoBoxes read;
+  if (names) read.image_sizes = names->image_sizes;
+  for (const JsonEntry& entry :
+       EntriesOf(list, results.string() + (is_list ? "#" : "#/annotations"))) {
+    ReadEntry(entry, names, &read);
+  }
+  return read;
 }
 
 namespace {
@@ -162,11 +304,10 @@ LabelledBox ParseDetection(const JsonEntry& entry, const std::string& image,
   if (category < 0 || category >= static_cast<int>(labels.size())) {
     entry.Refuse("category_id", fmt::format("0 to {}", labels.size() - 1));
   }
-  const Eigen::Vector4d corners = entry.Vector<4>("bbox");
-  if (corners[2] < corners[0] || corners[3] < corners[1]) {
-    entry.Refuse("bbox", "[x1, y1, x2, y2] with x1 <= x2 and y1 <= y2");
-  }
-  return {entry.place(), image, labels[category], entry.Real("detection_score"),
+  constexpr const char* kNumbers = "[x1, y1, x2, y2] with x1 <= x2 and y1 <= y2";
+  const Eigen::Vector4d corners = BoxNumbers(entry, kNumbers);
+  if (corners[2] < corners[0] || corners[3] < corners[1]) entry.Refuse("bbox", kNumbers);
+  return {entry.place(), image, labels[category], ScoreOf(entry, "detection_score"),
           FromCornerOrigin({corners[0], corners[1], corners[2], corners[3]})};
 }
 

@@ -7,7 +7,9 @@
 #include <variant>
 #include <vector>
 
+#include "dataset/gate.h"
 #include "geometry/box.h"
+#include "image/image_format.h"
 
 namespace soslam {
 
@@ -38,32 +40,46 @@ inline Box ToCornerOrigin(const Box& box) {
 // Reads detections.csv, a table (ForEachCsvRow) with the columns frame, object_id, label, score,
 // x1, y1, x2, y2. Frames are rows of rgb.txt.
 //
-// The column object_id may be absent, and its fields may be empty. Throws InputError naming the
-// line, and for a file without header.
+// The columns object_id and score may be absent, and fields of object_id may be empty. Throws
+// InputError naming the line, and for a file without header, for boxes with an angle, and for these
+// two columns under another usual name.
 std::vector<LabelledBox> ReadDetectionsCsv(const std::filesystem::path& path);
 
 // CSV text of a table without object ids, pixels with two decimals, scores with four. The frames
 // must be rows of rgb.txt, the labels without comma.
 std::string LabelledBoxesText(const std::vector<LabelledBox>& boxes);
 
+// Boxes of COCO's results or of a data set, and what was done to them on reading.
+struct CocoBoxes {
+  std::vector<LabelledBox> boxes;
+  RejectionCounts left_out;  // boxes that are not of one object in the image
+  int enlarged = 0;          // oblique boxes, replaced by the larger upright ones around them
+  std::vector<ImageSize> image_sizes;  // sizes of the images that state theirs
+};
+
 // Reads detections in COCO's results format: [{"image_id", "category_id", "bbox": [x, y, w, h],
 // "score"}], pixels from the image's outer corner; or a COCO data set with such boxes as
-// "annotations", without those of crowds. A missing "score" is 1. A "track_id" of an entry, or of
-// its "attributes", is the object id.
+// "annotations". A missing "score" is 1. A "track_id" of an entry, or of its "attributes", is the
+// object id.
+//
+// Left out are regions of crowds ("iscrowd" or "ignore" is 1), and boxes of objects that left the
+// image (CVAT's attribute "outside"). A box with CVAT's attribute "rotation" (degrees, about its
+// centre) becomes the upright box around it: the same object's after quarter turns, a larger one
+// after others. Angles in other places are refused.
 //
 // `dataset`, when given, is the JSON file that the results belong to: its "images" ({"id",
 // "file_name"}) and "categories" ({"id", "name"}) define the ids; a data set with boxes contains
 // them itself. Without either, an integer image_id is a 0-based row of the image list, and
 // category_id is COCO's own (1 to 90). A text as image_id is the name of an image. In file order.
 // Throws InputError with file and JSON pointer.
-std::vector<LabelledBox> ReadCocoResults(
-    const std::filesystem::path& results,
-    const std::optional<std::filesystem::path>& dataset = std::nullopt);
+CocoBoxes ReadCocoResults(const std::filesystem::path& results,
+                          const std::optional<std::filesystem::path>& dataset = std::nullopt);
 
 // Reads detections in OA-SLAM's format (M. Zins, G. Simon, M.-O. Berger, "OA-SLAM", ISMAR 2022):
 // [{"file_name", "detections": [{"category_id", "detection_score", "bbox": [x1, y1, x2, y2]}]}],
-// pixels from the image's outer corner. `labels` are the names of the categories, from 0; OA-SLAM's
-// own files use COCO's 80. In file order. Throws InputError with file and JSON pointer.
+// pixels from the image's outer corner. A missing score is 1. `labels` are the names of the
+// categories, from 0; OA-SLAM's own files use COCO's 80. In file order. Throws InputError with file
+// and JSON pointer.
 std::vector<LabelledBox> ReadOaSlamBoxes(const std::filesystem::path& path,
                                          const std::vector<std::string>& labels);
 

@@ -137,9 +137,10 @@ DatasetContent ReadSoslamFolder(const std::filesystem::path& folder, const Impor
   const LensCamera& camera = calibration.camera;
   const ListedObjects given = files.objects ? ReadObjects(*files.objects) : ListedObjects();
   const std::vector<ListedObject>& listed = given.objects;
-  RejectionCounts corrected;
-  FolderBoxes read = ReadFolderBoxes(folder, options, camera.camera, &files, &corrected);
-  ReportMended(files, corrected["cut_to_image"], read.boxes.size(), kCut, &content.findings);
+  FolderBoxes read = ReadFolderBoxes(folder, options, camera.camera, &files);
+  std::ranges::move(read.findings, std::back_inserter(content.findings));
+  content.rejected.counts = std::move(read.left_out);
+  ReportMended(files, read.corrected["cut_to_image"], read.boxes.size(), kCut, &content.findings);
   std::vector<LabelledBox> of_no_track;
   const std::vector<LabelledBox> boxes = WithoutIdsOfNoTrack(
       std::move(read.boxes), listed, files.detections, &of_no_track, &content.findings);

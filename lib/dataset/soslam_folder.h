@@ -37,14 +37,17 @@ std::vector<ListedFrame> ReadFolderFrames(const std::filesystem::path& folder,
 // Boxes and the class names that their labels were taken from; no names where boxes have labels.
 struct FolderBoxes {
   std::vector<LabelledBox> boxes;
-  std::vector<std::string> class_names;
+  std::vector<std::string> class_names = {};
+  RejectionCounts corrected = {};  // boxes that were changed on reading
+  RejectionCounts left_out = {};   // boxes that are not of one object in an image
+  std::vector<Finding> findings = {};
 };
 
 // Reads the boxes of a folder of images in any of the formats of `detections_format`. Class names
-// may be stored with YOLO's labels: `files` then gets their path, which is printed to stdout. Boxes
-// that are changed on reading are counted in `corrected`. Throws InputError.
+// may be stored with YOLO's labels: `files` then gets their path, which is printed to stdout.
+// Throws InputError.
 FolderBoxes ReadFolderBoxes(const std::filesystem::path& folder, const ImportOptions& options,
-                            const Camera& camera, DatasetFiles* files, RejectionCounts* corrected);
+                            const Camera& camera, DatasetFiles* files);
 
 // Converts boxes to rows of these images. Each box without object id is a separate object, with ids
 // from `first_free_id` on. Boxes of images that are not listed are counted in `rejected`, and their

@@ -211,12 +211,21 @@ std::map<std::string, size_t> PositionsOf(const CsvColumns& columns,
     throw InputError(fmt::format("{}: column '{}' is {}; expected each of {} once", place, column,
                                  how_often, fmt::join(columns.required, ",")));
   };
+  double number = 0.0;
+  if (ParseWhole(std::string_view(header[0]).substr(0, header[0].find(' ')), &number)) {
+    throw InputError(
+        fmt::format("{}: has no header, but '{}'; expected the names of the columns, {}{}{}", place,
+                    fmt::join(header, ","), fmt::join(columns.required, ","),
+                    columns.without_header.empty() ? "" : "; ", columns.without_header));
+  }
   std::map<std::string, size_t> positions;
   for (size_t i = 0; i < header.size(); ++i) {
     std::string name = LowerCase(header[i]);
     std::ranges::replace(name, ' ', '_');
-    const bool is_read = (!columns.optional.empty() && name == columns.optional) ||
-                         std::ranges::find(columns.required, name) != columns.required.end();
+    const auto has_name = [&](const std::vector<std::string>& names) {
+      return std::ranges::find(names, name) != names.end();
+    };
+    const bool is_read = has_name(columns.required) || has_name(columns.optional);
     if (is_read && !positions.emplace(name, i).second) refuse(name, "twice");
   }
   for (const std::string& column : columns.required) {

@@ -70,10 +70,11 @@ std::array<double, kCount> ParseReals(std::span<const std::string_view> words,
   return numbers;
 }
 
-// The columns of a table that are read. The optional one may be absent.
+// The columns of a table that are read. Optional ones may be absent.
 struct CsvColumns {
   std::vector<std::string> required;
-  std::string optional;
+  std::vector<std::string> optional = {};
+  std::string without_header = {};  // what a table without header may be
 };
 
 struct CsvRow {
@@ -86,8 +87,9 @@ struct CsvRow {
 // Reads a table in CSV whose first line names its columns, in any order and among others; names are
 // case-insensitive, with blanks equal to underscores. The separator is the most frequent one of
 // comma, semicolon and tab in that line. A field that begins with a quote ends with one; two quotes
-// within it stand for one. Throws InputError, naming the line, for a column that is missing or
-// there twice, another number of fields than in the first line, and quotes that are not closed.
+// within it stand for one. Throws InputError, naming the line, for a first line that begins with a
+// number, a column that is missing or there twice, another number of fields than in the first line,
+// and quotes that are not closed.
 void ForEachCsvRow(const std::filesystem::path& path, const CsvColumns& columns,
                    const std::function<void(const CsvRow&)>& use);
 

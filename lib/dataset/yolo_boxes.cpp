@@ -24,7 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kLists = {"classes.txt", "train.txt", "val.txt", "valid.txt", "test.txt"};
+constexpr std::array kLists = {"classes.txt", "labels.txt", "train.txt",
+                               "val.txt",     "valid.txt",  "test.txt"};
 
 // True for files that programs or systems add beside labels.
 bool IsExtra(const fs::path& path) {
@@ -66,9 +67,7 @@ YoloTexts ReadArchive(const fs::path& archive) {
         continue;
       }
     }
-    if (!IsLabelFile(entry.name) || texts.names) continue;
-    texts.names = ParseLabels(entry.text, place);
-    texts.names_place = place;
+    if (IsLabelFile(entry.name)) texts.names.push_back(FindLabels(entry.text, place));
   }
   return texts;
 }

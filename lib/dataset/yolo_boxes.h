@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "dataset/class_names.h"
 #include "dataset/gate.h"
 #include "dataset/labelled_box.h"
 #include "dataset/text_file.h"
@@ -20,15 +21,14 @@ struct YoloText {
 
 // Content of a folder or an archive of YOLO's labels.
 struct YoloTexts {
-  std::vector<YoloText> images;                   // sorted by name
-  std::optional<std::vector<std::string>> names;  // of the classes, in an archive that has them
-  std::string names_place;                        // place of the names, for messages
+  std::vector<YoloText> images;   // sorted by name
+  std::vector<ClassNames> names;  // lists of class names in an archive
 };
 
 // Reads the *.txt of a folder, or of an archive (ReadTextArchive) at any depth. Skipped are hidden
-// files (of macOS), __MACOSX, README*, and the lists classes.txt, train.txt, val.txt, valid.txt and
-// test.txt of CVAT and others unless they begin with a number, as boxes do. Throws InputError when
-// there is nothing to read, and for two files of one name.
+// files (of macOS), __MACOSX, README*, and the lists classes.txt, labels.txt, train.txt, val.txt,
+// valid.txt and test.txt of CVAT and others unless they begin with a number, as boxes do. Throws
+// InputError when there is nothing to read, and for two files of one name.
 YoloTexts ReadYoloTexts(const std::filesystem::path& path);
 
 // A line of YOLO's labels.

@@ -31,7 +31,7 @@ const std::vector<BadCase> kBadCases = {
     {"odometry.txt", "", "", "has no pose"},
     {"detections.csv", nullptr, "", "is missing"},
     {"detections.csv", "", "", "is empty"},
-    {"detections.csv", "score", "confidence", "column 'score' is missing"},
+    {"detections.csv", "score", "confidence", "column 'confidence' would be ignored"},
     {"detections.csv", "y2\n", "y2,y2\n", "column 'y2' is twice"},
     {"detections.csv", "0,2,box,0.8,", "0,2,box,", "detections.csv:3: has 7 fields; expected 8"},
     {"detections.csv", "300,100,400,200", "300,nan,400,200", "detections.csv:3: y1 is 'nan'"},

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -305,6 +306,78 @@ TEST_F(FolderFormatsTest, CocoResults) {
   const Detection detection = ImportOne(DetectionsFormat::kCoco, "results.json");
   ExpectBox(detection.box, {9.5, 19.5, 39.5, 59.5});
   EXPECT_EQ(detection.frame_index, 1);
+}
+
+// A data set whose only box is in a copy of the second image.
+std::string DataSetOfCopies(int width, int height, const std::string& attributes = "{}") {
+  return fmt::format(
+      R"({{"images": [{{"id": 1, "file_name": "2.0_png.rf.0123456789abcdef.jpg", "width": {}, "height": {}}}],
+           "categories": [{{"id": 3, "name": "cup"}}],
+           "annotations": [{{"image_id": 1, "category_id": 3, "bbox": [100, 200, 30, 40],
+                             "attributes": {}}}]}})",
+      width, height, attributes);
+}
+
+TEST_F(FolderFormatsTest, CopiesOfAnnotationToolsHaveTheImagesSize) {
+  Write("coco.json", DataSetOfCopies(640, 480));
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(ImportOne(DetectionsFormat::kCoco, "coco.json").frame_index, 1);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
+              testing::HasSubstr("coco.json: 1 images are found by the names of copies"));
+  EXPECT_TRUE(Import().findings.empty());
+  Write("coco.json", DataSetOfCopies(640, 640));
+  ExpectRefused({"coco.json states images of 640 x 640", "640 x 480"});
+  Write("coco.json", DataSetOfCopies(0, 0));
+  EXPECT_TRUE(Import().findings.empty());
+}
+
+TEST_F(FolderFormatsTest, ObliqueBoxesAreAFinding) {
+  Write("coco.json", DataSetOfCopies(640, 480, R"({"rotation": 90.0})"));
+  ExpectBox(ImportOne(DetectionsFormat::kCoco, "coco.json").box, {94.5, 204.5, 134.5, 234.5});
+  EXPECT_TRUE(Import().findings.empty());
+  Write("coco.json", DataSetOfCopies(640, 480, R"({"rotation": 40.0})"));
+  const Finding finding = Only(Import().findings);
+  EXPECT_EQ(finding.check, "oblique_boxes");
+  EXPECT_THAT(finding.found, testing::HasSubstr("coco.json: 1 of 1 boxes"));
+}
+
+TEST_F(FolderFormatsTest, BoxesOutOfViewAreCounted) {
+  std::string boxes = DataSetOfCopies(640, 480);
+  boxes.insert(boxes.rfind("]}"),
+               R"(, {"image_id": 1, "category_id": 3, "bbox": [9, 9, 9, 9],
+                     "attributes": {"outside": true}})");
+  Write("coco.json", boxes);
+  ImportOne(DetectionsFormat::kCoco, "coco.json");
+  EXPECT_EQ(Import().rejected_detections.at("out_of_view"), 1);
+}
+
+TEST_F(FolderFormatsTest, ListsOfNamesThatContradictEachOther) {
+  options_.folder.detections_format = DetectionsFormat::kYolo;
+  options_.detections = "labels";
+  Write("labels/1.0.txt", "1 0.5 0.25 0.125 0.5\n");
+  Write("labels/classes.txt", "book\ncup\n");
+  Write("data.yaml", "names: [book, Cup, bowl]\n");
+  Write("dataset.yaml", "path: of another program\n");
+  ImportOne(DetectionsFormat::kYolo, "labels");
+  Write("data.yaml", "names: [cup, book]\n");
+  ExpectRefused({"labels/classes.txt: class 0 is 'book'", "'cup' in", "data.yaml", "class_names"});
+  options_.folder.class_names = "data.yaml";
+  EXPECT_EQ(Only(Import().objects).label, "book");
+  options_.folder.class_names = "";
+  fs::rename(folder_ / "labels", folder_ / "txts");
+  Write("txts/obj.names", "cup\nbook\n");
+  PackTxts();
+  options_.detections = "txts.tar.gz";
+  ExpectRefused({"txts.tar.gz/txts/classes.txt", "'cup' in", "txts/obj.names"});
+}
+
+TEST_F(FolderFormatsTest, ABoxTooManyInAnImageIsRefused) {
+  std::string table = "frame,label,score,x1,y1,x2,y2\n0,cup,0.1,100,100,200,200\n";
+  for (int i = 0; i < 1000; ++i) table += "0,cup,0.9,100,100,200,200\n";
+  Write("detections.csv", table);
+  ExpectRefused({"detections.csv:1002", "1001 boxes of image 0", "at most 1000", "min_score"});
+  options_.min_score = 0.5;
+  EXPECT_EQ(Import().detections.size(), 1000u);
 }
 
 TEST_F(FolderFormatsTest, OaSlamWithImagesThatAreNotListed) {

@@ -95,6 +95,31 @@ TEST_F(FrameLookupTest, NamesWithOrWithoutFolderAndExtension) {
   EXPECT_EQ(lookup_.Find("12", ""), std::nullopt);
 }
 
+TEST_F(FrameLookupTest, CopiesOfAnnotationTools) {
+  EXPECT_EQ(lookup_.CountCopies(), 0u);
+  EXPECT_EQ(lookup_.Find("12.51_png.rf.0123456789abcdef0123456789abcdef.jpg", ""), 1);
+  EXPECT_EQ(lookup_.Find("train/12.51_png.rf.0123456789abcdef0123456789abcdef.jpg", ""), 1);
+  EXPECT_EQ(lookup_.Find("images/1a2b3c4d-12.50.png", ""), 0);
+  EXPECT_EQ(lookup_.CountCopies(), 2u);
+  EXPECT_EQ(FrameLookup({{1.0, "a.jpg"}}).Find("1a2b3c4d__a", ""), 0);
+  EXPECT_EQ(FrameLookup({{1.0, "a.jpg"}}).Find("a_jpg.rf.0123456789abcdef", ""), 0);
+  for (const char* no_copy : {"12.51_png.rf..jpg", "1a2b3c4-12.50.png", "1a2b3c4d12.50.png",
+                              "x_png.rf.0123456789abcdef.jpg"}) {
+    EXPECT_EQ(lookup_.Find(no_copy, ""), std::nullopt) << no_copy;
+  }
+}
+
+TEST_F(FrameLookupTest, SeveralCopiesOfAnImageAreRefused) {
+  const std::string copy = "12.51_png.rf.0123456789abcdef.jpg";
+  EXPECT_EQ(lookup_.Find(copy, ""), 1);
+  EXPECT_EQ(lookup_.Find(copy, ""), 1);
+  for (const char* other : {"12.51_png.rf.fedcba9876543210.jpg", "12.51.png"}) {
+    ExpectError<InputError>([&] { lookup_.Find(other, "boxes.json#/4"); },
+                            {"boxes.json#/4", other, "another copy", "without augmentation"});
+  }
+  ExpectError<InputError>([&] { lookup_.Find("1a2b3c4d-0.png", "boxes.json#/4"); }, {"2, 3"});
+}
+
 TEST_F(FrameLookupTest, FolderSettlesEqualNames) {
   EXPECT_EQ(lookup_.Find("b/0.png", ""), 3);
   ExpectError<InputError>([&] { lookup_.Find("0.png", "boxes.json#/4"); },

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dataset/labelled_box.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -17,6 +19,10 @@
 
 namespace soslam {
 namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Pair;
 
 class DetectionsCsvTest : public FolderTest {
  protected:
@@ -45,6 +51,11 @@ TEST_F(DetectionsCsvTest, AsSpreadsheetsAndOtherProgramsWriteIt) {
   }
   const auto boxes = Read("frame,Object ID,label,score,x1,y1,x2,y2\n3,7.0,cup,0.5,1,2,3,4\n");
   EXPECT_EQ(boxes.at(0).object_id, 7);
+}
+
+TEST_F(DetectionsCsvTest, WithoutScoreItIsOne) {
+  ExpectLabelledBox(Only(Read("frame,label,x1,y1,x2,y2\n3,cup,1,2,3.25,4\n")), 3, "cup", 1.0,
+                    {1, 2, 3.25, 4});
 }
 
 TEST_F(DetectionsCsvTest, WrittenBoxesComeBackRounded) {
@@ -89,7 +100,17 @@ TEST_F(DetectionsCsvTest, BadFilesAreNamed) {
       {"frame;label;score;x1;y1;x2;y2\n0;cup;0,5;1;2;3;4\n",
        {"detections.csv:2", "score is '0,5'", "a decimal point"}},
       {header + "0,\"cup,0.5,1,2,3,4\n", {"detections.csv:2", "not closed"}},
-      {header + "0,\"cup\"s,0.5,1,2,3,4\n", {"detections.csv:2", "'s' after a quoted field"}}};
+      {header + "0,\"cup\"s,0.5,1,2,3,4\n", {"detections.csv:2", "'s' after a quoted field"}},
+      {"frame,label,x1,y1,x2,y2,angle\n0,cup,1,2,3,4,0\n0,cup,1,2,3,4,30\n",
+       {"detections.csv:3", "angle is 30", "oriented boxes are not read"}},
+      {"frame,label,confidence,x1,y1,x2,y2\n0,cup,1,2,3,4,5\n",
+       {"detections.csv:2", "'confidence' would be ignored", "score"}},
+      {"frame,track_id,label,x1,y1,x2,y2\n0,1,cup,2,3,4,5\n",
+       {"detections.csv:2", "'track_id' would be ignored", "object_id"}},
+      {"0,1,cup,0.9,1,2,3,4\n", {"detections.csv:1", "no header, but '0,1,cup,0.9,1,2,3,4'"}},
+      {"1,3,794.27,247.59,71.245,174.88,-1,-1,-1,-1\n",
+       {"detections.csv:1", "no header", "MOTChallenge", "frame from 1", "docs/detections.md"}},
+      {"1 3 794 247 71 174 -1 -1 -1 -1\n", {"detections.csv:1", "no header"}}};
   ExpectBadTexts(cases, "detections.csv", [&](const std::string& text) { Read(text); });
 }
 
@@ -100,10 +121,10 @@ constexpr const char* kDataset = R"({
 class CocoResultsTest : public FolderTest {
  protected:
   std::vector<LabelledBox> Read(const std::string& results) {
-    return ReadCocoResults(Write("results.json", results));
+    return ReadCocoResults(Write("results.json", results)).boxes;
   }
   std::vector<LabelledBox> ReadWith(const std::string& dataset, const std::string& results) {
-    return ReadCocoResults(Write("results.json", results), Write("dataset.json", dataset));
+    return ReadCocoResults(Write("results.json", results), Write("dataset.json", dataset)).boxes;
   }
 };
 
@@ -134,6 +155,54 @@ TEST_F(CocoResultsTest, ADataSetHoldsItsBoxesItself) {
   EXPECT_EQ(boxes[2].object_id, 6);
 }
 
+// Attributes of CVAT: a box of 40 x 20 pixels, whose centre is 30, 20, by quarter turns, by one of
+// 30 degrees, and by one that nobody sees.
+TEST_F(CocoResultsTest, TurnedBoxesBecomeUpright) {
+  const auto turned = [&](double angle_deg) {
+    return ReadCocoResults(Write(
+        "results.json", fmt::format(R"([{{"image_id": 0, "category_id": 1, "bbox": [10, 10, 40, 20],
+                          "attributes": {{"rotation": {}, "occluded": true}}}}])",
+                                    angle_deg)));
+  };
+  for (const double half_turn_deg : {0.0, 180.0, 360.0}) {
+    ExpectBox(Only(turned(half_turn_deg).boxes).box, {9.5, 9.5, 49.5, 29.5});
+    const CocoBoxes quarter = turned(half_turn_deg + 90.0);
+    ExpectBox(Only(quarter.boxes).box, {19.5, -0.5, 39.5, 39.5});
+    EXPECT_EQ(quarter.enlarged, 0);
+  }
+  for (const double angle_deg : {30.0, 150.0, 330.0}) {
+    const CocoBoxes oblique = turned(angle_deg);
+    const double half_width = 20.0 * std::sqrt(0.75) + 5.0;
+    const double half_height = 10.0 + 10.0 * std::sqrt(0.75);
+    ExpectBox(Only(oblique.boxes).box,
+              {29.5 - half_width, 19.5 - half_height, 29.5 + half_width, 19.5 + half_height});
+    EXPECT_EQ(oblique.enlarged, 1);
+  }
+  EXPECT_EQ(turned(0.2).enlarged, 0);
+}
+
+TEST_F(CocoResultsTest, WhatIsNoSingleObjectInTheImageIsLeftOut) {
+  const CocoBoxes read = ReadCocoResults(Write("results.json", R"([
+      {"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4], "iscrowd": 1},
+      {"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4], "ignore": 1},
+      {"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4], "attributes": {"outside": true}},
+      {"image_id": 5, "category_id": 1, "bbox": [1, 2, 3, 4], "iscrowd": 0, "ignore": 0,
+       "attributes": {"outside": false}}])"));
+  EXPECT_EQ(Only(read.boxes).frame, FrameKey(5));
+  EXPECT_THAT(read.left_out, ElementsAre(Pair("crowd", 2), Pair("out_of_view", 1)));
+}
+
+TEST_F(CocoResultsTest, TwoFilesMayNotContradictEachOther) {
+  const auto with_categories = [](const std::string& name) {
+    return R"({"images": [], "annotations": [], "categories": [{"id": 1, "name": ")" + name +
+           R"("}]})";
+  };
+  EXPECT_THAT(ReadWith(kDataset, with_categories("Milk_Carton")), IsEmpty());
+  ExpectError<InputError>(
+      [&] { ReadWith(kDataset, with_categories("cup")); },
+      {"dataset.json", "category 1 is 'milk carton'", "'cup' in", "results.json"});
+}
+
 TEST_F(CocoResultsTest, NamesOfImagesAreTakenAlsoWithADataset) {
   const auto boxes =
       ReadWith(kDataset, R"([{"image_id": "a.png", "category_id": 2, "bbox": [1, 2, 3, 4]}])");
@@ -150,7 +219,19 @@ TEST_F(CocoResultsTest, BadResultsAreNamed) {
       {R"([{"image_id": 0, "category_id": 1, "bbox": [1, 2, -3, 4], "score": 1}])",
        {"#/0", "[x, y, width, height]"}},
       {R"([{"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4], "score": "1"}])",
-       {"score is \"1\""}}};
+       {"score is \"1\""}},
+      {R"([{"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4], "confidence": 0.5}])",
+       {"#/0", "confidence is 0.5", "the score as score"}},
+      {R"([{"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4, 30]}])",
+       {"#/0", "bbox is [1,2,3,4,30]", "[x, y, width, height]", "oriented boxes are not read"}},
+      {R"([{"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4], "rotation": 30}])",
+       {"#/0", "rotation is 30", "oriented boxes are not read"}},
+      {R"([{"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4],
+            "attributes": {"rotation": "30"}}])",
+       {"#/0/attributes", "rotation is \"30\"", "a number"}},
+      {R"([{"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4],
+            "attributes": {"outside": "no"}}])",
+       {"#/0/attributes", "outside is \"no\"", "true or false"}}};
   ExpectBadTexts(cases, "results.json", [&](const std::string& text) { Read(text); });
 }
 
@@ -180,7 +261,8 @@ TEST(OaSlamBoxesTest, BadFilesAreNamed) {
       {"{}", {"boxes.json", "not a list"}},
       {detection("80", "[1, 2, 3, 4]"), {where, "category_id is 80", "0 to 79"}},
       {detection("-1", "[1, 2, 3, 4]"), {where, "category_id is -1"}},
-      {detection("1", "[300, 68, 59, 97]"), {where, "x1 <= x2"}}};
+      {detection("1", "[300, 68, 59, 97]"), {where, "x1 <= x2"}},
+      {detection("1", "[1, 2, 3, 4, 30]"), {where, "oriented boxes are not read"}}};
   ExpectBadTexts(cases, "boxes.json", [&](const std::string& text) {
     ReadOaSlamBoxes(WriteBytes(folder / "boxes.json", text), CocoLabels());
   });
@@ -211,7 +293,20 @@ TEST_F(LabelFileTest, NamesOfYolosYaml) {
   ExpectError<InputError>([&] { ParseLabels("names: ['a, b']\n", "data.yaml"); }, {"'a, b'"});
 }
 
-TEST_F(LabelFileTest, SearchEndsAtTheRoot) { EXPECT_FALSE(FindLabelFile("/proc/self", "/")); }
+TEST_F(LabelFileTest, SearchEndsAtTheRoot) {
+  EXPECT_THAT(FindLabelFiles("/proc/self", "/"), testing::IsEmpty());
+}
+
+TEST_F(LabelFileTest, ListsMayDifferInSpellingAndLength) {
+  const ClassNames names{"classes.txt", {"coffee table", "cup"}};
+  CheckSameNames(names, {"data.yaml", {"Coffee_Table", "cup", "book"}});
+  CheckSameNames(names, {"data.yaml", {}});
+  ExpectError<InputError>(
+      [&] {
+        CheckSameNames(names, {"data.yaml", {"coffee table", "book"}});
+      },
+      {"classes.txt", "class 1 is 'cup'", "'book' in data.yaml"});
+}
 
 TEST_F(LabelFileTest, LatinLettersOfOneByteAreRefused) {
   ExpectError<InputError>([&] { ParseLabels("nc: 1\nnames: [t\xFCr]\n", "data.yaml"); },
@@ -224,17 +319,18 @@ TEST_F(LabelFileTest, IsFoundAmongOrAroundLabels) {
   const auto labels = dataset / "labels" / "train";
   Write("dataset/labels/train/1.txt", "");
   Write("classes.txt", "of another\n");
-  EXPECT_FALSE(FindLabelFile(labels, dataset));
+  EXPECT_THAT(FindLabelFiles(labels, dataset), IsEmpty());
   Write("dataset/data.yaml", "names: [cup]\n");
-  EXPECT_EQ(FindLabelFile(labels, dataset), dataset / "data.yaml");
-  EXPECT_EQ(FindLabelFile(dataset / "labels.zip", dataset), dataset / "data.yaml");
+  EXPECT_THAT(FindLabelFiles(labels, dataset), ElementsAre(dataset / "data.yaml"));
+  EXPECT_THAT(FindLabelFiles(dataset / "labels.zip", dataset), ElementsAre(dataset / "data.yaml"));
   Write("dataset/labels/train/obj.names", "cup\n");
   Write("dataset/labels/train/classes.txt", "cup\n");
-  EXPECT_EQ(FindLabelFile(labels, dataset), labels / "classes.txt");
+  EXPECT_THAT(FindLabelFiles(labels, dataset),
+              ElementsAre(labels / "classes.txt", labels / "obj.names", dataset / "data.yaml"));
   const auto elsewhere = Write("elsewhere/labels/1.txt", "").parent_path();
-  EXPECT_FALSE(FindLabelFile(elsewhere, dataset));
+  EXPECT_THAT(FindLabelFiles(elsewhere, dataset), IsEmpty());
   const auto classes = Write("elsewhere/classes.txt", "cup\n");
-  EXPECT_EQ(FindLabelFile(elsewhere, dataset), classes);
+  EXPECT_THAT(FindLabelFiles(elsewhere, dataset), ElementsAre(classes));
 }
 
 // Indices as detectors give them, and category ids as COCO's annotation files have them.

@@ -33,12 +33,13 @@ TEST_F(YoloTextsTest, ExtrasOfToolsAreLeftOut) {
   Write("labels/train.txt", "0 0.1 0.1 0.1 0.1\n");  // an image of that name
   Write("labels/val.txt", "data/obj_train_data/1.jpg\n");
   Write("labels/classes.txt", "cup\nbook\n");
+  Write("labels/labels.txt", "cup\nbook\n");
   Write("labels/._1.txt", std::string("\0\5\x16\7Mac OS X", 12));
   Write("labels/.DS_Store", "x");
   Write("labels/README.roboflow.txt", "Exported\n");
   const YoloTexts texts = ReadYoloTexts(folder_ / "labels");
   EXPECT_THAT(Fields(texts.images, &YoloText::image), ElementsAre("1", "train"));
-  EXPECT_FALSE(texts.names);  // FindLabelFile finds those of folders
+  EXPECT_TRUE(texts.names.empty());  // FindLabelFiles finds those of folders
 }
 
 TEST_F(YoloTextsTest, ArchivesOfCvatAndMacOs) {
@@ -50,9 +51,9 @@ TEST_F(YoloTextsTest, ArchivesOfCvatAndMacOs) {
   Write("packed/__MACOSX/obj.names", "no\n");
   const YoloTexts texts = ReadYoloTexts(Pack());
   EXPECT_THAT(Fields(texts.images, &YoloText::image), ElementsAre("1"));
-  ASSERT_TRUE(texts.names);
-  EXPECT_THAT(*texts.names, ElementsAre("cup", "book"));
-  EXPECT_THAT(texts.names_place, testing::EndsWith("labels.tar.gz/packed/obj.names"));
+  const ClassNames names = Only(texts.names);
+  EXPECT_THAT(names.names, ElementsAre("cup", "book"));
+  EXPECT_THAT(names.place, testing::EndsWith("labels.tar.gz/packed/obj.names"));
 }
 
 TEST_F(YoloTextsTest, NothingToReadAndTwoOfOneNameAreNamed) {

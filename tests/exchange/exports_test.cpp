@@ -28,8 +28,8 @@ class CocoBoxesTest : public testing::Test {
     const TemporaryFolder folder;
     WriteBytes(folder / "results.json", CocoResultsText({world_}));
     WriteBytes(folder / "dataset.json", CocoDatasetText({world_}, CocoAnnotations::kNone));
-    return with_dataset ? ReadCocoResults(folder / "results.json", folder / "dataset.json")
-                        : ReadCocoResults(folder / "results.json");
+    return with_dataset ? ReadCocoResults(folder / "results.json", folder / "dataset.json").boxes
+                        : ReadCocoResults(folder / "results.json").boxes;
   }
 
   World world_ = ExportedWorld();
