@@ -39,8 +39,9 @@ struct DetectorOptions {
                   "height of the network's input, likewise");
     visit.Group("Images");
     visit.Choice("image_orientation", &image_orientation, kImageOrientationNames,
-                 "where EXIF turns images: boxes refer to the image as viewers show it, which the "
-                 "network sees in either case, or to the pixels as the file stores them");
+                 "where EXIF turns images: boxes refer to the image as viewers show it, or to the "
+                 "pixels as the file stores them. For the latter the network sees both, and its "
+                 "boxes are those with the larger sum of scores");
     visit.Group("Detections that are kept");
     visit.Text("rename_labels", &rename_labels,
                "other names for the network's labels: 'tv=monitor, couch=sofa'");

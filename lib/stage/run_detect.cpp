@@ -89,6 +89,25 @@ std::vector<fs::path> ImagePaths(const fs::path& dataset) {
   return images;
 }
 
+double SumOfScores(const std::vector<YoloDetection>& detections) {
+  double sum = 0.0;
+  for (const YoloDetection& detection : detections) sum += detection.score;
+  return sum;
+}
+
+// Detections in the pixels that a file stores. Networks want upright images, but EXIF may be wrong,
+// as where the camera looked down: the orientation with the larger sum of scores counts.
+std::vector<YoloDetection> DetectInStored(const fs::path& path, YoloDetector* detector) {
+  auto stored = detector->Detect(ReadImage(path, cv::IMREAD_COLOR, ImageOrientation::kStored));
+  const ImageHeader header = ReadImageHeader(path).value();
+  if (header.orientation == 1) return stored;
+  auto upright = detector->Detect(ReadImage(path, cv::IMREAD_COLOR));
+  for (YoloDetection& detection : upright) {
+    detection.box = BoxInStoredImage(detection.box, header);
+  }
+  return SumOfScores(upright) >= SumOfScores(stored) ? upright : stored;
+}
+
 // The detections of each image, and the number of all boxes that were found. Each worker has its
 // own network, which OpenCV runs on one thread, so that the result does not depend on the number of
 // workers.
@@ -108,13 +127,9 @@ AllDetections DetectAll(const std::vector<fs::path>& images, const NetworkFile& 
     YoloDetector detector(network, format, labels.groups, options);
     for (int i = worker; i < count; i += workers) {
       const auto frame = static_cast<size_t>(i);
-      all.of_image[frame] = detector.Detect(ReadImage(images[frame], cv::IMREAD_COLOR));
-      if (options.image_orientation == ImageOrientation::kStored) {
-        const ImageHeader header = ReadImageHeader(images[frame]).value();
-        for (YoloDetection& detection : all.of_image[frame]) {
-          detection.box = BoxInStoredImage(detection.box, header);
-        }
-      }
+      all.of_image[frame] = options.image_orientation == ImageOrientation::kStored
+                                ? DetectInStored(images[frame], &detector)
+                                : detector.Detect(ReadImage(images[frame], cv::IMREAD_COLOR));
       progress.Step();
     }
     tallies[worker] = detector.tally();

@@ -8,13 +8,16 @@
 #include <cstdlib>
 #include <filesystem>
 #include <list>
+#include <opencv2/imgcodecs.hpp>
 #include <random>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "dataset/labelled_box.h"
 #include "dataset/trajectories.h"
 #include "support/fake_colmap.h"
+#include "support/image_files.h"
 #include "support/run_command.h"
 #include "support/small_pipeline.h"
 
@@ -145,6 +148,25 @@ TEST_F(SlowMapTest, TakesAFinishedModel) {
                                 "DETECTIONS=" + detections_.string(), "NAME=room"}))
                   .errors,
               HasSubstr("is of other images"));
+}
+
+// The model is of the photos as they are stored, the boxes of the upright ones.
+TEST_F(SlowMapTest, TakesAModelOfPhotosThatExifTurns) {
+  for (int i = 0; i < kFrames; ++i) {
+    const fs::path png = photos_ / fmt::format("IMG {}.png", i);
+    WriteBytes(photos_ / fmt::format("IMG {}.jpg", i),
+               JpegWithExif(EncodedImage(".jpg", cv::imread(png.string())), ExifOf(6)));
+    fs::remove(png);
+  }
+  auto boxes = ReadDetectionsCsv(detections_);
+  for (LabelledBox& box : boxes) {
+    const Box& stored = box.box;
+    box.box = {359.0 - stored.y_max, stored.x_min, 359.0 - stored.y_min, stored.x_max};
+  }
+  WriteBytes(detections_, LabelledBoxesText(boxes));
+  std::vector<std::string> words = WordsForPhotos();
+  words.insert(words.end(), {"MODEL=" + (programs_ / "models/0").string(), "NAME=room", "SCALE=1"});
+  EXPECT_THAT(ExpectSuccess(RunCommand(words)), HasSubstr("3 objects, scale +- 4 %"));
 }
 
 TEST_F(SlowMapTest, OtherTargetsKnowAMapByItsName) {
