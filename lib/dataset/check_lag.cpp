@@ -115,6 +115,7 @@ std::optional<Lag> FindLag(const ImportView& view, const std::vector<TrackedObje
   constexpr double kMostOfSequence = 0.2;
   constexpr double kMostSteps = 100.0;  // in each direction
   constexpr int kRefinements = 3;
+  constexpr double kAsWell = 1.1;
   const double interval_s = MedianInterval(view.content.frames);
   const double range_s = kMostOfSequence * LongestSegment(view.content.frames);
   if (!(interval_s > 0.0) || range_s < interval_s) return std::nullopt;
@@ -136,6 +137,13 @@ std::optional<Lag> FindLag(const ImportView& view, const std::vector<TrackedObje
     const double middle_s = best.seconds;
     for (const int quarter : {-3, -2, -1, 1, 2, 3}) consider(middle_s + 0.25 * quarter * step_s);
     step_s *= 0.25;
+  }
+  // Box noise moves the minimum; a whole number of images with which rays meet as well is likelier.
+  const double whole = std::round(best.images);
+  const auto with_whole = shifted.ErrorAt(whole * interval_s);
+  if (IsComparable(with_whole, as_read) &&
+      with_whole->median_deg <= kAsWell * best.error.median_deg) {
+    best = {whole * interval_s, whole, *with_whole, *with_lag};
   }
   const auto opposite = shifted.ErrorAt(-best.seconds);
   if (!IsClearlyBetter(best.error, *with_lag, kClearlyBetter) || !IsComparable(opposite, as_read) ||
@@ -174,7 +182,8 @@ std::vector<Finding> CheckFrameNumbers(const ImportView& view,
                      "each box is of the image {} the one that it names",
                      as_read.median_deg, error->median_deg, is_late ? "before" : "after"),
          "frames that are rows of the list of images, from 0",
-         is_late ? "frames counted from 1" : "frames that begin one image late",
+         is_late ? "frames counted from 1, or poses that are one image early"
+                 : "frames that begin one image late, or poses that are one image late",
          is_late ? "subtract 1 from the frames of the detections"
                  : "add 1 to the frames of the detections"}};
   }
@@ -194,7 +203,7 @@ std::vector<Finding> CheckLag(const ImportView& view, const std::vector<TrackedO
   }
   const bool is_late = lag->seconds > 0.0;
   const double seconds = std::abs(lag->seconds);
-  return {{"pose_lag", Severity::kWarning,
+  return {{kPoseLag, Severity::kWarning,
            fmt::format("things are {:.2f} degrees from where they are seen (median), but {:.2f} if "
                        "each image takes the pose of {:.3g} s {} ({:.3g} images)",
                        lag->with_lag.median_deg, lag->error.median_deg, seconds,

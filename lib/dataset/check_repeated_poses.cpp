@@ -120,9 +120,9 @@ std::vector<Finding> CheckRepeatedPoses(const ImportView& view) {
     are_taken_twice &= stamp && stamp == frames[run.last].pose_timestamp;
   }
   return {{"repeated_poses", Severity::kWarning,
-           fmt::format("{} frames have exactly the pose of the frame before, while what they show "
-                       "moves: frames {}",
-                       repeated, NamesInWords(names, 5)),
+           fmt::format("{} with exactly the pose of the frame before, while what they show moves: "
+                       "frames {}",
+                       Counted(repeated, "frame"), NamesInWords(names, 5)),
            "a pose of its own for each image of a camera that moves",
            are_taken_twice ? "poses that are rarer than images, begin later or end earlier"
                            : "a tracker that was lost and repeated its last pose",

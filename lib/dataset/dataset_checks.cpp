@@ -36,7 +36,8 @@ std::vector<Finding> CheckDataset(const ImportView& view) {
   if (!has(&Finding::severity, Severity::kError) && !has(&Finding::check, kPoseConvention)) {
     const size_t before = findings.size();
     add({&CheckObjects, &CheckPlanes});
-    if (has(&Finding::check, kBoxesAgainstPoses) || has(&Finding::check, kFrameOrder)) {
+    if (has(&Finding::check, kBoxesAgainstPoses) || has(&Finding::check, kFrameOrder) ||
+        has(&Finding::check, kPoseLag)) {
       for (Finding& finding : std::span(findings).subspan(before)) {
         finding.cause = "what contradicts the boxes, rather than objects or planes";
         finding.remedy = "mend poses, order of frames or ids first";

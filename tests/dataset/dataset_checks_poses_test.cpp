@@ -98,7 +98,7 @@ TEST_F(DatasetChecksTest, PosesThatLagAreMeasured) {
 // Without images, boxes that move tell it.
 TEST_F(DatasetChecksTest, PosesThatATrackerRepeats) {
   dataset.pose_of_frame = [](int frame) { return frame < 10 || frame > 15 ? frame : 10; };
-  const std::vector<std::string> words = {"repeated_poses: 5 frames have exactly the pose",
+  const std::vector<std::string> words = {"repeated_poses: 5 frames with exactly the pose",
                                           "frames 10 to 15", "lost"};
   ExpectAmongWarnings(words);
   const auto write_images = [&](int shift_px) {
