@@ -98,6 +98,24 @@ std::vector<Finding> CheckFractions(const std::vector<Box>& boxes, const Camera&
        "yolo where its layout fits"}};
 }
 
+// Compares the image sizes that the file of boxes states with the camera's.
+std::vector<Finding> CheckImageSizes(const std::vector<DetectionRow>& rows, const Camera& camera) {
+  const ImageSize size{camera.width, camera.height};
+  const auto is_other = [&](const DetectionRow& row) {
+    return row.image_size && *row.image_size != size;
+  };
+  const auto first = std::ranges::find_if(rows, is_other);
+  if (first == rows.end()) return {};
+  return {{"box_image_size", Severity::kError,
+           fmt::format("{} of {} boxes are of images of {} x {} pixels, as their file says, the "
+                       "camera has {} x {}",
+                       std::ranges::count_if(rows, is_other), rows.size(), first->image_size->width,
+                       first->image_size->height, size.width, size.height),
+           "boxes in images of the camera's size",
+           "an annotation tool that changed the size of the images",
+           "export boxes of the original images, or correct width and height in the file"}};
+}
+
 std::vector<Finding> CheckConvention(const std::vector<Box>& boxes, const Camera& camera,
                                      const ImportOptions& options) {
   constexpr int kFewest = 3;
@@ -172,7 +190,8 @@ std::vector<Finding> CheckBoxes(const ImportView& view) {
     boxes.push_back(row.box_in_image_file.value_or(row.box));
   }
   const Camera& camera = view.sequence.camera;
-  std::vector<Finding> findings = CheckFractions(boxes, camera);
+  std::vector<Finding> findings = CheckImageSizes(view.content.rows, camera);
+  if (findings.empty()) findings = CheckFractions(boxes, camera);
   if (findings.empty()) findings = CheckConvention(boxes, camera, view.options);
   if (findings.empty()) findings = CheckUnusedPart(boxes, camera);
   return findings;

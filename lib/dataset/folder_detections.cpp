@@ -39,7 +39,7 @@ std::vector<LabelledBox> ReadKittiClasses(const fs::path& path) {
   return boxes;
 }
 
-FolderBoxes ReadCocoBoxes(const DatasetFiles& files, const Camera& camera) {
+FolderBoxes ReadCocoBoxes(const DatasetFiles& files) {
   CocoBoxes read = ReadCocoResults(files.detections, files.class_names);
   FolderBoxes boxes{std::move(read.boxes),
                     files.class_names ? std::vector<std::string>() : CocoLabels()};
@@ -54,17 +54,6 @@ FolderBoxes ReadCocoBoxes(const DatasetFiles& files, const Camera& camera) {
          "upright boxes, whose edges touch the object", "rotated rectangles of an annotation tool",
          "draw these boxes upright: those around rotated ones are larger than their objects"});
   }
-  const ImageSize size{camera.width, camera.height};
-  const auto other = std::ranges::find_if(read.image_sizes,
-                                          [&](const ImageSize& stated) { return stated != size; });
-  if (other == read.image_sizes.end()) return boxes;
-  boxes.findings.push_back(
-      {"box_image_size", Severity::kError,
-       fmt::format("{} states images of {} x {} pixels, the camera has {} x {}",
-                   files.class_names.value_or(files.detections).filename().string(), other->width,
-                   other->height, size.width, size.height),
-       "boxes in images of the camera's size", "an annotation tool that made the images smaller",
-       "export boxes of the original images, or correct the width and height in the file"});
   return boxes;
 }
 
@@ -95,7 +84,7 @@ FolderBoxes ReadFolderBoxes(const fs::path& folder, const ImportOptions& options
     case DetectionsFormat::kCsv:
       return {ReadDetectionsCsv(path)};
     case DetectionsFormat::kCoco:
-      return ReadCocoBoxes(*files, camera);
+      return ReadCocoBoxes(*files);
     case DetectionsFormat::kKitti:
       return {ReadKittiClasses(path)};
     case DetectionsFormat::kOaSlam: {
@@ -151,6 +140,7 @@ std::vector<DetectionRow> RowsOfBoxes(const std::vector<LabelledBox>& boxes,
     if (!frame) continue;
     const int object_id = box.object_id.value_or(first_free_id + static_cast<int>(i));
     rows.push_back({box.place, *frame, object_id, box.label, box.score, box.box});
+    rows.back().image_size = box.image_size;
   }
   if (const size_t copies = lookup.CountCopies(); copies > 0) {
     fmt::print(

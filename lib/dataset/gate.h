@@ -14,6 +14,7 @@
 #include "geometry/camera.h"
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
+#include "image/image_format.h"
 #include "model/sequence.h"
 
 namespace soslam {
@@ -31,6 +32,8 @@ struct DetectionRow {
   Box box;
   // Distorted box in the image file, in a dataset with distorted images.
   std::optional<Box> box_in_image_file = std::nullopt;
+  // Size of its image, where the file of boxes states it.
+  std::optional<ImageSize> image_size = std::nullopt;
   // Further values from the dataset's labels, if any; geometry is in the camera frame.
   double truncation = 0.0;  // amount outside the image, in the dataset's own measure
   int occlusion = 0;        // occlusion level, in the dataset's own measure

@@ -42,7 +42,7 @@ constexpr std::array kOptionalColumns = {OptionalColumn{"score", {"confidence", 
 CsvColumns ColumnsOfBoxes() {
   CsvColumns columns{{"frame", "label", "x1", "y1", "x2", "y2"},
                      {kAngles.begin(), kAngles.end()},
-                     "rows of MOTChallenge and trackers (frame from 1, id, left, top, width, "
+                     "; rows of MOTChallenge and trackers (frame from 1, id, left, top, width, "
                      "height, score) have no labels: docs/detections.md has the command that "
                      "converts them"};
   for (const auto& [name, other_names] : kOptionalColumns) {
@@ -115,7 +115,7 @@ using nlohmann::json;
 struct CocoNames {
   std::map<int, std::string> images;
   std::map<int, std::string> categories;
-  std::vector<ImageSize> image_sizes;
+  std::map<int, ImageSize> image_sizes;
 };
 
 std::map<int, std::string> ReadNames(const JsonEntry& document, const char* list_name,
@@ -130,17 +130,17 @@ std::map<int, std::string> ReadNames(const JsonEntry& document, const char* list
   return names;
 }
 
-// The sizes of the images that have one; programs write 0 or null if they do not know it.
-std::vector<ImageSize> ReadImageSizes(const json& images) {
-  std::vector<ImageSize> sizes;
-  for (const json& image : images) {
+// The sizes of the images that have one, by id; programs write 0 or null if they do not know it.
+std::map<int, ImageSize> ReadImageSizes(const JsonEntry& document) {
+  std::map<int, ImageSize> sizes;
+  for (const JsonEntry& image : EntriesOf(document.List("images"), document.place())) {
     const auto number = [&](const char* name) {
-      const auto field = image.find(name);
-      return field != image.end() && field->is_number() ? field->get<double>() : 0.0;
+      return image.Has(name) && image.Field(name).is_number() ? image.Real(name) : 0.0;
     };
     const double width = number("width"), height = number("height");
     if (!IsWholeImageSize(width, height)) continue;
-    sizes.push_back({static_cast<std::int64_t>(width), static_cast<std::int64_t>(height)});
+    sizes[image.Integer("id")] = {static_cast<std::int64_t>(width),
+                                  static_cast<std::int64_t>(height)};
   }
   return sizes;
 }
@@ -148,7 +148,7 @@ std::vector<ImageSize> ReadImageSizes(const json& images) {
 CocoNames NamesOf(const json& document, const fs::path& path) {
   const JsonEntry entry(document, path.string());
   return {ReadNames(entry, "images", "file_name"), ReadNames(entry, "categories", "name"),
-          ReadImageSizes(entry.List("images"))};
+          ReadImageSizes(entry)};
 }
 
 const std::string& NameOf(const std::map<int, std::string>& names, const JsonEntry& entry,
@@ -185,6 +185,8 @@ Eigen::Vector4d BoxNumbers(const JsonEntry& entry, const char* expected) {
 
 Box ParseBox(const JsonEntry& entry) {
   constexpr const char* kNumbers = "[x, y, width, height]";
+  constexpr const char* kMode = "bbox_mode";  // of detectron2
+  if (entry.Has(kMode) && entry.Field(kMode) != 1) entry.Refuse(kMode, "1, XYWH_ABS");
   const Eigen::Vector4d xywh = BoxNumbers(entry, kNumbers);
   if (xywh[2] < 0.0 || xywh[3] < 0.0) entry.Refuse("bbox", kNumbers);
   return FromCornerOrigin({xywh[0], xywh[1], xywh[0] + xywh[2], xywh[1] + xywh[3]});
@@ -262,6 +264,10 @@ void ReadEntry(const JsonEntry& entry, const std::optional<CocoNames>& names, Co
   }
   LabelledBox box{entry.place(),           ParseFrame(entry, names), ParseLabel(entry, names),
                   ScoreOf(entry, "score"), ParseBox(entry),          ParseTrack(entry, attributes)};
+  if (names && entry.Field("image_id").is_number()) {
+    const auto size = names->image_sizes.find(entry.Integer("image_id"));
+    if (size != names->image_sizes.end()) box.image_size = size->second;
+  }
   if (attributes && attributes->Has("rotation")) {
     const double angle_deg = attributes->Real("rotation");
     const Box around = BoxAround(box.box, angle_deg);
@@ -288,7 +294,6 @@ CocoBoxes ReadCocoResults(const fs::path& results, const std::optional<fs::path>
   if (!is_list && !names) names = NamesOf(document, results);
   const json& list = is_list ? document : JsonEntry(document, results.string()).List("annotations");
   CocoBoxes read;
-  if (names) read.image_sizes = names->image_sizes;
   for (const JsonEntry& entry :
        EntriesOf(list, results.string() + (is_list ? "#" : "#/annotations"))) {
     ReadEntry(entry, names, &read);

@@ -26,6 +26,8 @@ struct LabelledBox {
   Box box;
   // Object id, where the file has one.
   std::optional<int> object_id = std::nullopt;
+  // Size of its image, where the file states it.
+  std::optional<ImageSize> image_size = std::nullopt;
 };
 
 // Conversion of the pixel origin: detectors and annotation tools measure from the outer corner of
@@ -54,7 +56,6 @@ struct CocoBoxes {
   std::vector<LabelledBox> boxes;
   RejectionCounts left_out;  // boxes that are not of one object in the image
   int enlarged = 0;          // oblique boxes, replaced by the larger upright ones around them
-  std::vector<ImageSize> image_sizes;  // sizes of the images that state theirs
 };
 
 // Reads detections in COCO's results format: [{"image_id", "category_id", "bbox": [x, y, w, h],

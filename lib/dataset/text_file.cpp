@@ -213,10 +213,12 @@ std::map<std::string, size_t> PositionsOf(const CsvColumns& columns,
   };
   double number = 0.0;
   if (ParseWhole(std::string_view(header[0]).substr(0, header[0].find(' ')), &number)) {
+    const bool is_all_numbers = ParseNumbers(fmt::format("{}", fmt::join(header, " "))).has_value();
     throw InputError(
-        fmt::format("{}: has no header, but '{}'; expected the names of the columns, {}{}{}", place,
-                    fmt::join(header, ","), fmt::join(columns.required, ","),
-                    columns.without_header.empty() ? "" : "; ", columns.without_header));
+        fmt::format("{}: has no header, but '{}'; expected the names of the columns, "
+                    "{}{}",
+                    place, fmt::join(header, ","), fmt::join(columns.required, ","),
+                    is_all_numbers ? columns.rows_of_numbers : ""));
   }
   std::map<std::string, size_t> positions;
   for (size_t i = 0; i < header.size(); ++i) {

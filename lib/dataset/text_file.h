@@ -74,7 +74,7 @@ std::array<double, kCount> ParseReals(std::span<const std::string_view> words,
 struct CsvColumns {
   std::vector<std::string> required;
   std::vector<std::string> optional = {};
-  std::string without_header = {};  // what a table without header may be
+  std::string rows_of_numbers = {};  // end of the message about a table of numbers without header
 };
 
 struct CsvRow {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "base/error.h"
@@ -326,9 +327,17 @@ TEST_F(FolderFormatsTest, CopiesOfAnnotationToolsHaveTheImagesSize) {
               testing::HasSubstr("coco.json: 1 images are found by the names of copies"));
   EXPECT_TRUE(Import().findings.empty());
   Write("coco.json", DataSetOfCopies(640, 640));
-  ExpectRefused({"coco.json states images of 640 x 640", "640 x 480"});
+  ExpectRefused({"1 of 1 boxes are of images of 640 x 640 pixels", "640 x 480"});
   Write("coco.json", DataSetOfCopies(0, 0));
   EXPECT_TRUE(Import().findings.empty());
+}
+
+TEST_F(FolderFormatsTest, SizesOfImagesThatAreNotListedDoNotMatter) {
+  auto boxes = nlohmann::json::parse(DataSetOfCopies(640, 480));
+  boxes["images"].push_back({{"id", 2}, {"file_name", "x.png"}, {"width", 9}, {"height", 9}});
+  boxes["annotations"].push_back({{"image_id", 2}, {"category_id", 3}, {"bbox", {1, 1, 5, 5}}});
+  Write("coco.json", boxes.dump());
+  ImportOne(DetectionsFormat::kCoco, "coco.json");
 }
 
 TEST_F(FolderFormatsTest, ObliqueBoxesAreAFinding) {

@@ -107,10 +107,11 @@ TEST_F(DetectionsCsvTest, BadFilesAreNamed) {
        {"detections.csv:2", "'confidence' would be ignored", "score"}},
       {"frame,track_id,label,x1,y1,x2,y2\n0,1,cup,2,3,4,5\n",
        {"detections.csv:2", "'track_id' would be ignored", "object_id"}},
-      {"0,1,cup,0.9,1,2,3,4\n", {"detections.csv:1", "no header, but '0,1,cup,0.9,1,2,3,4'"}},
+      {"0,1,cup,0.9,1,2,3,4\n",
+       {"detections.csv:1", "no header, but '0,1,cup,0.9,1,2,3,4'; expected"}},
       {"1,3,794.27,247.59,71.245,174.88,-1,-1,-1,-1\n",
        {"detections.csv:1", "no header", "MOTChallenge", "frame from 1", "docs/detections.md"}},
-      {"1 3 794 247 71 174 -1 -1 -1 -1\n", {"detections.csv:1", "no header"}}};
+      {"1 3 794 247 71 174 -1 -1 -1 -1\n", {"detections.csv:1", "no header", "MOTChallenge"}}};
   ExpectBadTexts(cases, "detections.csv", [&](const std::string& text) { Read(text); });
 }
 
@@ -224,6 +225,8 @@ TEST_F(CocoResultsTest, BadResultsAreNamed) {
        {"#/0", "confidence is 0.5", "the score as score"}},
       {R"([{"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4, 30]}])",
        {"#/0", "bbox is [1,2,3,4,30]", "[x, y, width, height]", "oriented boxes are not read"}},
+      {R"([{"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4], "bbox_mode": 0}])",
+       {"#/0", "bbox_mode is 0", "XYWH_ABS"}},
       {R"([{"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4], "rotation": 30}])",
        {"#/0", "rotation is 30", "oriented boxes are not read"}},
       {R"([{"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4],
