@@ -233,6 +233,12 @@ void Print(const Diagnosis& diagnosis) {
 }  // namespace
 
 int RunDoctor(const DoctorOptions& options, const StageFiles& files, int /*threads*/) {
+  if (options.name.empty()) {
+    const std::vector<std::string> planned = PlannedDatasets(files.at("results"));
+    throw SettingsError(fmt::format(
+        "setting 'name' is ''; expected a dataset in {}: {}", files.at("results").string(),
+        planned.empty() ? "none was planned there yet" : NamesInWords(planned, 10)));
+  }
   const fs::path results = files.at("results") / options.name;
   const fs::path pipelines = ReadPlanFolders(results / "plan.mk").pipelines;
   const Plan plan = MakePlan(pipelines, options.name, PlannedVariants(pipelines, results));

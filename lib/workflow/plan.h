@@ -91,7 +91,7 @@ std::vector<WorkUnit> WorkUnitsOf(const Plan& plan);
 std::string PlanMakefile(const Plan& plan, const std::string& dataset, const PlanFolders& folders);
 
 // Reads the folders named in a makefile by PlanMakefile. Throws InputError when there is no such
-// file.
+// file, or no folder of settings, which is relative to where the plan was made.
 PlanFolders ReadPlanFolders(const std::filesystem::path& makefile);
 
 }  // namespace soslam

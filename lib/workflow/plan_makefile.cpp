@@ -9,6 +9,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/paths.h"
 #include "workflow/pipeline_settings.h"
 #include "workflow/plan.h"
 
@@ -230,7 +231,14 @@ PlanFolders ReadPlanFolders(const fs::path& makefile) {
     const size_t assigns = line.find(" := ");
     if (assigns != std::string::npos) values[line.substr(0, assigns)] = line.substr(assigns + 4);
   }
-  return {values["dataset"], values["pipelines"], values["results"]};
+  const fs::path& pipelines = values["pipelines"];
+  if (!IsFolder(pipelines)) {
+    throw InputError(fmt::format(
+        "{}: the folder of its settings, '{}', is not there, seen from {}; expected to be started "
+        "in the folder in which make made the results",
+        makefile.string(), pipelines.string(), fs::current_path().string()));
+  }
+  return {values["dataset"], pipelines, values["results"]};
 }
 
 }  // namespace soslam

@@ -130,5 +130,20 @@ TEST_F(DoctorTest, WithoutAPlanThereIsNothingToSay) {
   EXPECT_THAT(ExpectExit(3, Doctor()).errors, HasSubstr("nothing was planned yet"));
 }
 
+TEST_F(DoctorTest, WithoutANameThePlannedDatasetsAreNamed) {
+  const std::string results = pipeline_.Results().parent_path().string();
+  EXPECT_THAT(ExpectExit(2, RunCommand({StageProgram("doctor"), "--results", results})).errors,
+              AllOf(HasSubstr("setting 'name' is ''"), HasSubstr(results + ": small")));
+}
+
+// Plans name the folder of settings relative to where they were made.
+TEST_F(DoctorTest, ElsewhereItSaysWhereToStart) {
+  const fs::path plan = pipeline_.Results() / "plan.mk";
+  WriteBytes(plan, std::regex_replace(FileBytes(plan), std::regex("(^|\n)pipelines := [^\n]*"),
+                                      "$1pipelines := pipelines_elsewhere"));
+  EXPECT_THAT(ExpectExit(3, Doctor()).errors,
+              AllOf(HasSubstr("'pipelines_elsewhere', is not there"), HasSubstr("started")));
+}
+
 }  // namespace
 }  // namespace soslam
