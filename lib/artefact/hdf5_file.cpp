@@ -17,6 +17,7 @@
 #include "base/error.h"
 #include "base/paths.h"
 #include "base/run_log.h"
+#include "image/file_kind.h"
 
 namespace soslam {
 namespace {
@@ -119,7 +120,9 @@ Hdf5File Hdf5File::Open(const std::filesystem::path& path) {
   if (H5Fis_hdf5(path.c_str()) > 0) {
     throw InputError(fmt::format("{}: {}; expected a whole HDF5 file", path.string(), kDamaged));
   }
-  throw InputError(fmt::format("{}: is not an HDF5 file; expected one", path.string()));
+  const std::string kind = KindOfFile(path);
+  throw InputError(path.string() + (kind.empty() ? ": is not an HDF5 file; expected one"
+                                                 : ": is " + kind + "; expected an HDF5 file"));
 }
 
 void Hdf5File::FailWriting(const std::string& name) const {

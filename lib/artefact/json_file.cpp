@@ -18,6 +18,7 @@
 #include "base/paths.h"
 #include "base/run_log.h"
 #include "base/text.h"
+#include "image/file_kind.h"
 
 namespace soslam {
 namespace {
@@ -132,10 +133,13 @@ json ParseJsonText(std::istream& text, const std::string& name) {
   if (text.peek() == std::istream::traits_type::eof()) {
     throw InputError(name + ": is empty; expected JSON");
   }
-  CheckIsNotUtf16(text.peek(), name);
   try {
     return json::parse(text, StructureCheck(name));
   } catch (const json::exception& error) {
+    std::string begin(kFileKindSize, '\0');
+    text.clear();
+    text.seekg(0).read(begin.data(), static_cast<std::streamsize>(begin.size()));
+    CheckIsText(begin.substr(0, static_cast<size_t>(text.gcount())), name, "JSON in UTF-8");
     const std::string message = error.what();  // "[json.exception.parse_error.101] parse error ..."
     throw InputError(name + ": " + message.substr(message.find("] ") + 2));
   }

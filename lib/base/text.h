@@ -6,8 +6,6 @@
 #include <string_view>
 #include <vector>
 
-#include "base/error.h"
-
 namespace soslam {
 
 // The message as one line of printable text. Messages quote files, which may hold any bytes:
@@ -42,12 +40,5 @@ std::string Counted(size_t count, const char* what);
 
 // "7 near_border, 2 duplicate", the most frequent first; "none" when there are none.
 std::string CountsInWords(const std::map<std::string, int>& counts);
-
-// Throws InputError, naming the file, if a text's first byte belongs to a byte order mark of UTF-16
-// or UTF-32, as some editors write it. No text in UTF-8 begins with these bytes.
-inline void CheckIsNotUtf16(int first_byte, const std::string& file) {
-  if (first_byte != 0xFF && first_byte != 0xFE) return;
-  throw InputError(file + ": is UTF-16 text; expected UTF-8: save it with that encoding");
-}
 
 }  // namespace soslam

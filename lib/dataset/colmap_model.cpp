@@ -18,6 +18,7 @@
 #include "dataset/text_file.h"
 #include "geometry/camera.h"
 #include "geometry/image_size.h"
+#include "image/file_kind.h"
 
 namespace soslam {
 namespace {
@@ -123,6 +124,9 @@ class BinaryReader {
   size_t TakeCount(size_t bytes_each, const std::string& what) {
     const auto count = Take<std::uint64_t>();
     if (count > (bytes_.size() - at_) / bytes_each) {
+      if (const std::string kind = FileKind(bytes_); !kind.empty()) {
+        throw InputError(fmt::format("{}: is {}; expected a binary file of COLMAP", path_, kind));
+      }
       throw InputError(
           fmt::format("{}: byte {}: says {} {}; expected no more than its {} bytes can "
                       "hold: the file is cut short or damaged",

@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/paths.h"
 #include "base/run_log.h"
+#include "image/file_kind.h"
 
 namespace soslam {
 namespace {
@@ -115,8 +116,12 @@ using ArchivePointer = std::unique_ptr<archive, FreeArchive>;
 
 [[noreturn]] void Refuse(const std::filesystem::path& path, archive* opened) {
   const char* reason = archive_error_string(opened);
-  throw InputError(fmt::format("{}: cannot be read: {}; expected an archive (.tar.gz, .tar, .zip)",
-                               path.string(), reason == nullptr ? "damaged" : reason));
+  const std::string kind = KindOfFile(path);
+  throw InputError(
+      fmt::format("{}: {}; expected an archive (.tar.gz, .tar, .zip)", path.string(),
+                  kind.empty() || kind.ends_with("archive")
+                      ? fmt::format("cannot be read: {}", reason == nullptr ? "damaged" : reason)
+                      : "is " + kind));
 }
 
 ArchivePointer Open(const std::filesystem::path& path) {

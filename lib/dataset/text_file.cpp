@@ -17,6 +17,7 @@
 #include "base/paths.h"
 #include "base/run_log.h"
 #include "base/text.h"
+#include "image/file_kind.h"
 
 namespace soslam {
 
@@ -42,7 +43,7 @@ bool IsComment(std::string_view line) { return Trimmed(line).starts_with('#'); }
 
 // The lines of a text, all of them or neither blank ones nor comments.
 std::vector<TextLine> LinesOf(const std::string& text, const std::string& name, bool all) {
-  if (!text.empty()) CheckIsNotUtf16(static_cast<unsigned char>(text.front()), name);
+  CheckIsText(text, name, "UTF-8 text");
   std::string_view rest = text;
   if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
   const char line_end = rest.find('\n') == rest.npos ? '\r' : '\n';

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "image/file_kind.h"
 
 namespace soslam {
 namespace {
@@ -311,6 +312,10 @@ OnnxHeader ReadOnnxHeader(std::string_view bytes, const std::string& name) {
     });
     if (!has_graph) throw InputError("has no graph");
   } catch (const InputError& error) {
+    const std::string kind = FileKind(bytes);
+    if (!kind.empty()) {
+      throw InputError(fmt::format("{}: is {}; expected an ONNX network", name, kind));
+    }
     throw InputError(fmt::format("{}: is not an ONNX network, or damaged: {}", name, error.what()));
   }
   return header;

@@ -18,6 +18,7 @@
 #include "base/error.h"
 #include "base/paths.h"
 #include "base/run_log.h"
+#include "image/file_kind.h"
 
 namespace soslam {
 namespace {
@@ -70,9 +71,6 @@ std::vector<char> ReadBytes(const std::filesystem::path& path) {
   return bytes;
 }
 
-// HEIF and formats derived from it (ISO/IEC 14496-12), which newer phones write.
-bool IsHeif(std::string_view file) { return file.size() > 8 && file.substr(4, 4) == "ftyp"; }
-
 constexpr const char* kFormats = "JPEG, PNG, WebP, BMP or TIFF";
 
 // The format and header of an image that can be decoded. Checks a file before anything of its size
@@ -82,8 +80,9 @@ std::pair<const ImageFormat*, ImageHeader> Check(const std::filesystem::path& pa
   const std::string_view file(bytes->data(), bytes->size());
   const ImageFormat* format = FindImageFormat(file.substr(0, kSignatureSize));
   if (format == nullptr) {
-    throw InputError(fmt::format("{}: cannot be decoded; expected a {} image{}", path.string(),
-                                 kFormats, IsHeif(file) ? ", not HEIF (HEIC, AVIF)" : ""));
+    const std::string kind = FileKind(file);
+    throw InputError(fmt::format("{}: {}; expected a {} image", path.string(),
+                                 kind.empty() ? "cannot be decoded" : "is " + kind, kFormats));
   }
   const auto header = format->header(ImageBytes(file));
   if (header && !IsImageSize(header->stored.width, header->stored.height)) {

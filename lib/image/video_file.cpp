@@ -24,6 +24,7 @@ extern "C" {
 #include "base/paths.h"
 #include "base/run_log.h"
 #include "geometry/image_size.h"
+#include "image/file_kind.h"
 #include "image/image_format.h"
 
 namespace soslam {
@@ -135,8 +136,9 @@ VideoReader::VideoReader(const std::filesystem::path& path)
   }
   RecordInput(path);
   if (!IsVideo(ImageBytes::OfFile(path).UpTo(0, kSignatureSize))) {
-    throw InputError(
-        fmt::format("{}: is no video that can be read; expected {}", path.string(), kFormats));
+    const std::string kind = KindOfFile(path);
+    throw InputError(fmt::format("{}: is {}; expected {}", path.string(),
+                                 kind.empty() ? "no video that can be read" : kind, kFormats));
   }
   av_log_set_level(AV_LOG_QUIET);  // its messages do not name the file
   AVDictionary* limits = nullptr;

@@ -130,6 +130,7 @@ TEST_F(Hdf5FileTest, BadFilesAreNamed) {
   refused(folder_.path(), {});
   refused(Write("empty.h5", ""), {"not an HDF5 file"});
   refused(Write("text.h5", "hello"), {"not an HDF5 file"});
+  refused(Write("json.h5", "{}"), {"is JSON; expected an HDF5 file"});
   const std::string whole = FileBytes(
       Make("a.h5", [](Hdf5File& file) { file.WriteMatrix("/m", RandomMatrix(20, 20, CV_64FC1)); }));
   refused(Write("cut.h5", whole.substr(0, whole.size() - 1)), {"cut short"});

@@ -44,6 +44,8 @@ TEST_F(JsonFileTest, UnreadableTextIsRefused) {
                   {"{\n\"a\": nan}", {"parse error at line 2"}},
                   {"{} {}", {"parse error at line 1"}},
                   {"{\"a\": [{\"b\": 1, \"b\": 2}]}", {"key \"b\" twice"}},
+                  {"\x89HDF\r\n\x1a\n", {"is an HDF5 file; expected JSON"}},
+                  {"<html>", {"is an HTML page"}},
                   {nested(101), {"is nested more than 100 levels"}},
                   {nested(1'000'000), {"is nested more than 100 levels"}}},
                  "some.json: ", [&](const std::string& text) { Parse(text); });

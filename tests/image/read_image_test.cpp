@@ -205,7 +205,7 @@ TEST_F(ReadImageTest, OtherFormatsAreRefused) {
   const auto heif = Write("a.heic", std::string("\0\0\0\x18"
                                                 "ftypheic\0\0\0\0mif1heic",
                                                 24));
-  ExpectRefused(heif, {"not HEIF"});
+  ExpectRefused(heif, {"is an HEIF image", "expected a JPEG"});
   std::string packed = EncodedImage(".bmp", TestImage());
   packed[30] = 1;  // compression: by runs
   ExpectRefused(Write("a.bmp", packed), {"BMP"});

@@ -61,10 +61,12 @@ TEST(VideoReaderTest, RefusesWhatIsNoVideo) {
   ExpectError<InputError>(read, {path.string(), "no such file"});
   for (const std::string& bytes :
        {std::string(), std::string("text"), std::string("#EXTM3U\nhttp://example.org/a.ts\n"),
-        std::string("RIFF"), std::string("RIFF\0\0\0\0WEBP", 12)}) {
+        std::string("RIFF")}) {
     WriteBytes(path, bytes);
     ExpectError<InputError>(read, {path.string(), "is no video", "MP4"});
   }
+  WriteBytes(path, std::string("RIFF\0\0\0\0WEBP", 12));
+  ExpectError<InputError>(read, {path.string(), "is a WebP image; expected a video: MP4"});
   WriteVideo(folder / "whole.avi", {{DrawnViews(1)}});
   testing::internal::CaptureStderr();
   for (const std::string& bytes : {FileBytes(folder / "whole.avi").substr(0, 100),
