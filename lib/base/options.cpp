@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/spelling.h"
 
 namespace soslam::internal {
 namespace {
@@ -51,8 +52,10 @@ class Reader : public OptionVisitor {
   void RefuseUnknown() const {
     for (const auto& item : values_.items()) {
       if (!known_.contains(item.key())) {
-        throw SettingsError(fmt::format("{}: unknown setting '{}'; known are {}", where_,
-                                        item.key(), fmt::join(known_, ", ")));
+        const auto meant = LikelyMeant(item.key(), {known_.begin(), known_.end()});
+        throw SettingsError(fmt::format(
+            "{}: unknown setting '{}'; {}known are {}", where_, item.key(),
+            meant ? "did you mean '" + *meant + "'? " : "", fmt::join(known_, ", ")));
       }
     }
   }

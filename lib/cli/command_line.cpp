@@ -6,6 +6,7 @@
 #include <glog/logging.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -17,6 +18,7 @@
 #include "artefact/json_file.h"
 #include "base/process.h"
 #include "base/progress.h"
+#include "base/spelling.h"
 #include "base/text.h"
 #include "cli/run_recorder.h"
 #include "dataset/image_path.h"
@@ -230,6 +232,34 @@ int Fail(const CLI::App& app, const Error& error) {
   return exit_code;
 }
 
+// Throws SettingsError for the first option that the program does not have, with the name that was
+// probably meant.
+void RefuseUnknownOption(const CLI::App& app) {
+  for (const std::string& word : app.remaining()) {
+    if (!word.starts_with('-')) continue;
+    const std::string option = word.substr(0, word.find('='));
+    std::string name = option.substr(std::min(option.find_first_not_of('-'), option.size()));
+    std::ranges::replace(name, '-', '_');
+    std::vector<std::string> names;
+    for (const CLI::Option* known : app.get_options()) names.push_back(known->get_single_name());
+    const auto meant = LikelyMeant(name, names);
+    throw SettingsError(fmt::format("unknown option {}{} (see --help)", option,
+                                    meant ? "; did you mean --" + *meant + "?" : ""));
+  }
+}
+
+// A misspelt option is named before what is missing or wrong because of it.
+void Parse(int argc, const char* const* argv, CLI::App* app) {
+  try {
+    app->parse(argc, argv);
+  } catch (const CLI::Success&) {  // --help and its like
+    throw;
+  } catch (const CLI::ParseError&) {
+    RefuseUnknownOption(*app);
+    throw;
+  }
+}
+
 int RunRecorded(const ParsedArguments& parsed, const StageInfo& info, const StageBody& body) {
   const int threads = parsed.threads > 0 ? parsed.threads : ThisMachine().cores;
   RunRecorder recorder(info, parsed.files, parsed.settings_file, threads);
@@ -255,7 +285,7 @@ int ParseAndRun(int argc, const char* const* argv, const StageInfo& info, CLI::A
   AddFiles(info.outputs, "Outputs", app, &parsed);
   AddOptions(options, app, &parsed);
   AddCommon(options, app, &parsed);
-  app->parse(argc, argv);
+  Parse(argc, argv, app);
   std::optional<ProgressOnStderr> progress;
   if (!parsed.quiet) progress.emplace(info.name);
   return RunRecorded(parsed, info, body);

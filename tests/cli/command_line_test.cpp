@@ -177,6 +177,19 @@ TEST_F(CommandLineTest, FilesThatAreMissingOrGivenTwiceAreWrongUsage) {
   EXPECT_EQ(recorded.calls, 0);
 }
 
+TEST_F(CommandLineTest, MisspeltOptionIsNamedBeforeWhatIsMissing) {
+  EXPECT_EQ(RunBare({"--input", "in.json", "--ouput", "out.json"}), 2);
+  ExpectOneLineOfError("unknown option --ouput; did you mean --output?");
+  EXPECT_EQ(RunBare({"--inptu=in.json", "--output", "out.json"}), 2);
+  ExpectOneLineOfError("unknown option --inptu; did you mean --input?");
+  EXPECT_EQ(Run({"--offset-m", "1"}), 2);
+  ExpectOneLineOfError("unknown option --offset-m; did you mean --offset_m?");
+  EXPECT_EQ(Run({"--unheard_of"}), 2);
+  ExpectOneLineOfError("unknown option --unheard_of (see --help)");
+  EXPECT_EQ(RunBare({"--ouput", "--help"}), 0);
+  EXPECT_EQ(recorded.calls, 0);
+}
+
 TEST_F(CommandLineTest, HelpNamesEveryOptionUnderItsHeading) {
   EXPECT_EQ(RunBare({"--help"}), 0);
   for (const OptionRow& row : OptionRows<TestOptions>()) {
