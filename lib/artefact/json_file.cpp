@@ -197,6 +197,44 @@ void CheckArtefactHeader(const json& header, const std::string& kind, const std:
   }
 }
 
+namespace {
+
+// A list of a kind of artefact, each of whose rows has other ids under these keys.
+struct RowIds {
+  const char* kind;
+  const char* list;
+  std::vector<const char*> keys;
+};
+const std::vector<RowIds> kRowIds = {{"landmarks", "observations", {"frame", "object"}},
+                                     {"landmarks", "objects", {"object"}},
+                                     {"map", "objects", {"object"}},
+                                     {"metrics", "objects", {"object"}},
+                                     {"planes", "planes", {"plane"}},
+                                     {"planes", "objects", {"object"}}};
+
+// The first row whose ids an earlier one has as well, in words.
+std::optional<std::string> RowListedTwice(const json& document, const std::string& kind) {
+  for (const RowIds& ids : kRowIds) {
+    if (ids.kind != kind) continue;
+    const json& rows = document.at(ids.list);
+    std::set<std::vector<json>> seen;
+    for (size_t i = 0; i < rows.size(); ++i) {
+      std::vector<json> values;
+      for (const char* key : ids.keys) values.push_back(rows[i].at(key));
+      if (seen.insert(values).second) continue;
+      std::vector<std::string> names;
+      for (const char* key : ids.keys) {
+        names.push_back(fmt::format("{} {}", key, rows[i].at(key).dump()));
+      }
+      return fmt::format("/{}/{} is the second row of {}; expected one", ids.list, i,
+                         fmt::join(names, ", "));
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 json ReadArtefact(const std::filesystem::path& path, const std::string& kind) {
   json document = ParseJsonFile(path);
   const json header = document.is_object() ? document.value("artefact", json()) : json();
@@ -214,6 +252,9 @@ json ReadArtefact(const std::filesystem::path& path, const std::string& kind) {
             : fmt::format("; its schema version is {}, that of this software [{}]: run the stage "
                           "that made it again",
                           version.dump(), fmt::join(kSchemaVersion, ", "))));
+  }
+  if (const auto twice = RowListedTwice(document, kind)) {
+    throw InputError(fmt::format("{}: {}", path.string(), *twice));
   }
   return document;
 }

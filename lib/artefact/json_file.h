@@ -98,8 +98,8 @@ nlohmann::json ArtefactHeader(const std::string& kind, const ArtefactInfo& info)
 void CheckArtefactHeader(const nlohmann::json& header, const std::string& kind,
                          const std::string& file);
 
-// Reads an artefact of this kind, validated against schemas/<kind>.schema.json, with its header
-// under "artefact". Throws InputError.
+// Reads an artefact of this kind, validated against schemas/<kind>.schema.json and without rows of
+// the same ids, with its header under "artefact". Throws InputError.
 nlohmann::json ReadArtefact(const std::filesystem::path& path, const std::string& kind);
 
 // Reads an artefact and converts it with `from_json`; adds the file's name to InputErrors that this

@@ -157,14 +157,14 @@ std::vector<RejectedDetection> RejectedFromJson(const json& json,
   return all;
 }
 
-void CheckOrder(const std::vector<Detection>& detections) {
-  const auto key = [](const Detection& detection) {
-    return std::tuple(detection.frame_index, detection.object_index);
-  };
-  for (size_t i = 1; i < detections.size(); ++i) {
-    if (key(detections[i]) <= key(detections[i - 1])) {
+// Checks that rows, with a frame index and then an index or id of an object, ascend by these.
+template <typename Row>
+void CheckOrder(const char* list, const std::vector<Row>& rows, int Row::*object) {
+  const auto key = [&](const Row& row) { return std::tuple(row.frame_index, row.*object); };
+  for (size_t i = 1; i < rows.size(); ++i) {
+    if (key(rows[i]) <= key(rows[i - 1])) {
       throw InputError(
-          fmt::format("/detections/{} is out of order; expected ascending frame, then object", i));
+          fmt::format("/{}/{} is out of order; expected ascending frame, then object", list, i));
     }
   }
 }
@@ -245,6 +245,7 @@ void TruthFromJson(const json& json, Sequence* sequence) {
   CheckAscendingIds("true object", sequence->true_objects);
   sequence->truth_in_frames =
       ListFromJson(json, "truth_in_frames", &TruthInFrameFromJson, sequence->frames);
+  CheckOrder("truth_in_frames", sequence->truth_in_frames, &TruthInFrame::true_object_id);
   sequence->ignored = ListFromJson(json, "ignored", &IgnoredFromJson);
   sequence->odometry_world =
       EnumFromName<OdometryWorld>(kOdometryWorldNames, json.at("odometry_world"));
@@ -270,7 +271,7 @@ Sequence SequenceFromJson(const json& json) {
   CheckAscendingIds("object", sequence.objects);
   sequence.detections =
       ListFromJson(json, "detections", &DetectionFromJson, sequence.frames, sequence.objects);
-  CheckOrder(sequence.detections);
+  CheckOrder("detections", sequence.detections, &Detection::object_index);
   CheckBoxesInView(sequence);
   sequence.held_out = ListFromJson(json, "held_out", &HeldOutFromJson);
   CheckHeldOut(sequence);

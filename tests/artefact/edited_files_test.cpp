@@ -45,24 +45,29 @@ TEST_F(EditedFileTest, SequencesAreRefused) {
         "/detections/1/plane_in_camera is null; expected a plane"},
        {"/detections/1/nearer_in_view", "1",
         "/detections/1/nearer_in_view is 1; expected at most the 0 boxes_in_view"},
-       {"/detections/3/frame", "10", "/detections/3 is out of order"}},
+       {"/detections/3/frame", "10", "/detections/3 is out of order"},
+       {"/objects/1/object", "-3", "object -3 follows object -3; expected ascending ids"}},
       [&] { ReadSequence(file); });
 }
 
 TEST_F(EditedFileTest, LandmarksAreRefused) {
   WriteLandmarks(file, RandomLandmarkEstimates(), sequence, {});
-  ExpectEditsRefused(file,
-                     {{"/observations/1/object", "99",
-                       "/observations/1: the sequence has no detection of object 99"},
-                      {"/objects/0/object", "99", "object 99 is not in the sequence"},
-                      {"/objects/0/landmark/shape_exponent", "\"cuboid\"",
-                       "/objects/0/landmark/shape_exponent is \"cuboid\""},
-                      {"/observations/0/hypotheses/0/landmark/shape_exponent", "2.01",
-                       "/observations/0/hypotheses/0/landmark/shape_exponent is 2.01"},
-                      {"/objects/0/covariance/4", "[1]", "/objects/0/covariance/4 is [1]"},
-                      {"/observations/0/hypotheses/0/landmark/camera_from_object", nullptr,
-                       "/observations/0/hypotheses/0/landmark"}},
-                     [&] { ReadLandmarks(file, sequence); });
+  ExpectEditsRefused(
+      file,
+      {{"/observations/1/object", "99",
+        "/observations/1: the sequence has no detection of object 99"},
+       {"/objects/0/object", "99", "object 99 is not in the sequence"},
+       {"/objects/1/object", "-3", "/objects/1 is the second row of object -3"},
+       {"/observations/1", R"({"frame": 10, "object": -3, "hypotheses": [], "failure": "none"})",
+        "/observations/1 is the second row of frame 10, object -3"},
+       {"/objects/0/landmark/shape_exponent", "\"cuboid\"",
+        "/objects/0/landmark/shape_exponent is \"cuboid\""},
+       {"/observations/0/hypotheses/0/landmark/shape_exponent", "2.01",
+        "/observations/0/hypotheses/0/landmark/shape_exponent is 2.01"},
+       {"/objects/0/covariance/4", "[1]", "/objects/0/covariance/4 is [1]"},
+       {"/observations/0/hypotheses/0/landmark/camera_from_object", nullptr,
+        "/observations/0/hypotheses/0/landmark"}},
+      [&] { ReadLandmarks(file, sequence); });
 }
 
 TEST_F(EditedFileTest, MapsAreRefused) {
@@ -73,6 +78,7 @@ TEST_F(EditedFileTest, MapsAreRefused) {
        {"/objects/0/landmark/shape_exponent", "3", "/objects/0/landmark/shape_exponent is 3"},
        {"/objects/0/points/1/responsibility", "1.5", "/objects/0/points/1/responsibility is 1.5"},
        {"/trajectory/2/frame", "21", "/trajectory/2/frame is 21; expected 20"},
+       {"/objects/1/object", "-3", "/objects/1 is the second row of object -3"},
        {"/solver/iterations", "1.5", "/solver/iterations is 1.5"}},
       [&] { ReadMap(file, sequence); });
 }
