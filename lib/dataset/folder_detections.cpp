@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <limits>
 #include <stdexcept>
@@ -120,14 +121,18 @@ std::vector<DetectionRow> RowsWithoutObject(const std::vector<LabelledBox>& boxe
 
 std::vector<DetectionRow> RowsOfBoxes(const std::vector<LabelledBox>& boxes,
                                       const DatasetFiles& files,
-                                      const std::vector<ListedImage>& images, int first_free_id,
-                                      RejectionCounts* rejected) {
+                                      const std::vector<ListedImage>& images,
+                                      std::int64_t first_free_id, RejectionCounts* rejected) {
   FrameLookup lookup(images);
   const std::string list = files.images.value_or(files.detections).filename().string();
-  const int max_boxes = std::numeric_limits<int>::max() - std::max(first_free_id, 0);
-  if (boxes.size() > static_cast<size_t>(max_boxes)) {
-    throw InputError(fmt::format("{}: has {} boxes; expected at most {}", files.detections.string(),
-                                 boxes.size(), max_boxes));
+  const auto last_id = first_free_id + static_cast<std::int64_t>(boxes.size()) - 1;
+  constexpr int kLargestId = std::numeric_limits<int>::max();
+  if (!HaveObjectIds(boxes) && last_id > kLargestId) {
+    throw InputError(fmt::format(
+        "{}: has {} boxes without ids, which get ids above the {} of {}; expected ids in that file "
+        "that leave room for them below {}",
+        files.detections.string(), boxes.size(), first_free_id - 1,
+        files.objects.value_or("objects.json").filename().string(), kLargestId));
   }
   std::vector<DetectionRow> rows;
   for (size_t i = 0; i < boxes.size(); ++i) {
@@ -138,7 +143,9 @@ std::vector<DetectionRow> RowsOfBoxes(const std::vector<LabelledBox>& boxes,
                                    *row, list, images.size() - 1));
     }
     if (!frame) continue;
-    const int object_id = box.object_id.value_or(first_free_id + static_cast<int>(i));
+    const int object_id = box.object_id
+                              ? *box.object_id
+                              : static_cast<int>(first_free_id + static_cast<std::int64_t>(i));
     rows.push_back({box.place, *frame, object_id, box.label, box.score, box.box});
     rows.back().image_size = box.image_size;
   }

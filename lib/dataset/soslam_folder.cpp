@@ -153,7 +153,8 @@ DatasetContent ReadSoslamFolder(const std::filesystem::path& folder, const Impor
   if (files.planes) content.sequence.planes = ReadPlanes(*files.planes);
   content.frames = ReadFolderFrames(folder, files, options, images, calibration.body_from_camera,
                                     &content.findings);
-  const int first_free_id = listed.empty() ? 0 : std::max(0, listed.back().id + 1);
+  const std::int64_t first_free_id =
+      listed.empty() ? 0 : std::max(std::int64_t{0}, std::int64_t{listed.back().id} + 1);
   content.rows = RowsOfBoxes(boxes, files, images, first_free_id, &content.rejected.counts);
   content.has_object_ids = HaveObjectIds(boxes);
   if (content.has_object_ids) {

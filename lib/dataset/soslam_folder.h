@@ -55,8 +55,8 @@ FolderBoxes ReadFolderBoxes(const std::filesystem::path& folder, const ImportOpt
 // is of a listed image.
 std::vector<DetectionRow> RowsOfBoxes(const std::vector<LabelledBox>& boxes,
                                       const DatasetFiles& files,
-                                      const std::vector<ListedImage>& images, int first_free_id,
-                                      RejectionCounts* rejected);
+                                      const std::vector<ListedImage>& images,
+                                      std::int64_t first_free_id, RejectionCounts* rejected);
 
 // Rows of the boxes of listed images, with no object.
 std::vector<DetectionRow> RowsWithoutObject(const std::vector<LabelledBox>& boxes,

@@ -102,6 +102,17 @@ TEST_F(FolderFormatsTest, GivenPlanesHoldForDetectionsWithoutIds) {
   EXPECT_EQ(sequence.detections[0].plane_in_camera.offset, 1.0);  // the camera is at height 1
 }
 
+TEST_F(FolderFormatsTest, BoxesWithoutIdsGetIdsAboveThoseOfTheListedObjects) {
+  Write("objects.json", R"([{"id": 2147483640, "label": "cup"}])");
+  EXPECT_EQ(Import().objects.back().id, 2147483643);
+  Write("objects.json", R"([{"id": 2147483647, "label": "cup"}])");
+  ExpectRefused({"above the 2147483647 of objects.json"});
+  Write("detections.csv",
+        "frame,object_id,label,score,x1,y1,x2,y2\n0,2147483647,cup,0.9,100,100,200,200\n"
+        "1,2147483647,cup,0.9,100,100,200,200\n2,2147483647,cup,0.9,100,100,200,200\n");
+  EXPECT_EQ(Only(Import().objects).id, 2147483647);
+}
+
 TEST_F(FolderFormatsTest, OdometryOfItsOwnWorldIsAligned) {
   Write("slam.txt", "1 5 0 0 0 0 0.70710678 0.70710678\n2 5 0.1 0 0 0 0.70710678 0.70710678\n");
   options_.folder.odometry = "slam.txt";
