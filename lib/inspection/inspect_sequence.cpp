@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <set>
 
 #include "artefact/files.h"
 #include "artefact/json_file.h"
@@ -11,6 +10,7 @@
 #include "base/text.h"
 #include "inspection/inspection.h"
 #include "model/label_groups.h"
+#include "model/segments.h"
 
 // Sequences: rows are objects.
 
@@ -30,15 +30,13 @@ std::string CameraInWords(const Sequence& sequence) {
 
 std::string FramesInWords(const Sequence& sequence) {
   if (sequence.frames.empty()) return "none";
-  std::set<int> segments;
-  for (const Frame& frame : sequence.frames) segments.insert(frame.segment);
   const auto count = [&](const auto& holds) {
     return std::ranges::count_if(sequence.frames, holds);
   };
   return fmt::format(
       "{}, ids {} to {}, segments: {}; {} with an image, {} with a true pose; {} held out",
       sequence.frames.size(), sequence.frames.front().id, sequence.frames.back().id,
-      segments.size(), count([](const Frame& frame) { return !frame.image.empty(); }),
+      SegmentsOf(sequence).size(), count([](const Frame& frame) { return !frame.image.empty(); }),
       count([](const Frame& frame) { return bool(frame.true_world_from_camera); }),
       sequence.held_out.size());
 }

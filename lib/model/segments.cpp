@@ -5,6 +5,14 @@
 
 namespace soslam {
 
+std::vector<int> SegmentsOf(const Sequence& sequence) {
+  std::vector<int> segments;
+  for (const Frame& frame : sequence.frames) {
+    if (segments.empty() || segments.back() != frame.segment) segments.push_back(frame.segment);
+  }
+  return segments;
+}
+
 std::vector<std::optional<int>> SegmentsOfObjects(const Sequence& sequence) {
   std::vector<std::optional<int>> segments(sequence.objects.size());
   if (sequence.frames.empty()) return segments;

@@ -273,10 +273,7 @@ class MapOfVariant {
   }
 
   std::string PlanFigure(const PlanView& plan, int segment) const {
-    std::vector<int> segments;  // in the order of their frames
-    for (const Frame& frame : sequence_.frames) {
-      if (segments.empty() || segments.back() != frame.segment) segments.push_back(frame.segment);
-    }
+    const std::vector<int> segments = SegmentsOf(sequence_);
     const auto key = [](const char* colour, const char* text) {
       return fmt::format("<span class=\"key\" style=\"background: var(--{})\"></span> {}", colour,
                          text);

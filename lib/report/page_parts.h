@@ -147,7 +147,7 @@ PageSelection SelectForPage(const Sequence& sequence, const std::set<int>& shown
 //   detections: frame and object (indices), box, truth (outline or null); the truth is the cuboid
 //     around the object, with which estimates are compared
 //   planes: see PageGrids
-//   segments: up, a direction of the world
+//   segments: up, a direction of the world. Frames and objects have the index of theirs
 //   rejected: reason -> detections that were not used
 nlohmann::json PageSequence(const Sequence& sequence, const PageSelection& selection);
 

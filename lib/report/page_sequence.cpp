@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <map>
 #include <numeric>
 #include <optional>
 
@@ -75,11 +76,20 @@ Landmark AsCuboid(Landmark landmark) {
   return landmark;
 }
 
-json PageFrame(const Sequence& sequence, const Frame& frame, bool is_shown) {
+// Places of segments in the order of their frames; pages know them by these.
+std::map<int, int> PlacesOfSegments(const Sequence& sequence) {
+  std::map<int, int> places;
+  for (const int segment : SegmentsOf(sequence)) {
+    places.emplace(segment, static_cast<int>(places.size()));
+  }
+  return places;
+}
+
+json PageFrame(const Sequence& sequence, const Frame& frame, int segment, bool is_shown) {
   const Camera& camera = sequence.CameraOf(frame);
   return {{"id", frame.id},
           {"timestamp", frame.timestamp},
-          {"segment", frame.segment},
+          {"segment", segment},
           {"width", camera.width},
           {"height", camera.height},
           {"pose", PagePose(frame.world_from_camera)},
@@ -89,10 +99,12 @@ json PageFrame(const Sequence& sequence, const Frame& frame, bool is_shown) {
 }
 
 json PageFrames(const Sequence& sequence, const PageSelection& selection, const PlaneGrids& grids) {
+  const std::map<int, int> places = PlacesOfSegments(sequence);
   json frames = json::array();
   for (const int index : selection.frames) {
     const bool is_shown = selection.Shows(index);
-    json page = PageFrame(sequence, sequence.frames[index], is_shown);
+    const Frame& frame = sequence.frames[index];
+    json page = PageFrame(sequence, frame, places.at(frame.segment), is_shown);
     if (is_shown) {
       page["grid"] = PageGridInFrame(sequence, index, grids, [&](const Detection& detection) {
         return CameraAbovePlane(sequence, detection);
@@ -105,6 +117,7 @@ json PageFrames(const Sequence& sequence, const PageSelection& selection, const 
 
 json PageObjects(const Sequence& sequence) {
   const std::vector<std::optional<int>> segments = SegmentsOfObjects(sequence);
+  const std::map<int, int> places = PlacesOfSegments(sequence);
   json objects = json::array();
   for (size_t i = 0; i < segments.size(); ++i) {
     const Object& object = sequence.objects[i];
@@ -113,7 +126,7 @@ json PageObjects(const Sequence& sequence) {
         {{"id", object.id},
          {"label", object.label},
          {"labels", LabelInWords(object)},
-         {"segment", segments[i] ? json(*segments[i]) : json()},
+         {"segment", segments[i] ? json(places.at(*segments[i])) : json()},
          {"plane", object.plane_index == kNoPlane ? json() : json(object.plane_index)},
          {"truth", truth ? PageLandmark(AsCuboid(truth->landmark_in_world)) : json()}});
   }
@@ -137,8 +150,7 @@ json PageDetections(const Sequence& sequence, const PageSelection& selection) {
 
 json PageSegments(const Sequence& sequence) {
   json segments = json::array();
-  const int count = sequence.frames.empty() ? 0 : sequence.frames.back().segment + 1;
-  for (int segment = 0; segment < count; ++segment) {
+  for (const int segment : SegmentsOf(sequence)) {
     segments.push_back({{"up", PageVector(UpOfSegment(sequence, segment))}});
   }
   return segments;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <set>
 
 #include "base/error.h"
 #include "geometry/angles.h"
@@ -128,6 +129,24 @@ TEST(CameraAbovePlane, SeesGivenPlanesFromTheTruePose) {
   const Rigid3d camera_from_world = CameraAbovePlane(sequence, detection);
   const Rigid3d& truth = *sequence.FrameOf(detection).true_world_from_camera;
   EXPECT_LT(((camera_from_world * truth).Matrix() - Eigen::Matrix4d::Identity()).norm(), 1e-9);
+}
+
+// Segments are known by any numbers.
+TEST(PageSequence, SegmentsAreCountedFromZero) {
+  Sequence sequence = CuboidSequence(3, 5);
+  const int first_of_second = static_cast<int>(sequence.frames.size() / 2);
+  for (size_t i = 0; i < sequence.frames.size(); ++i) {
+    sequence.frames[i].segment = static_cast<int>(i) < first_of_second ? 2147483647 : -5;
+  }
+  std::set<int> ids;
+  for (const Frame& frame : sequence.frames) ids.insert(frame.id);
+  const nlohmann::json page = PageSequence(sequence, SelectForPage(sequence, ids));
+  EXPECT_EQ(page.at("segments").size(), 2u);
+  EXPECT_EQ(page.at("frames").front().at("segment"), 0);
+  EXPECT_EQ(page.at("frames").back().at("segment"), 1);
+  for (const auto& object : page.at("objects")) {
+    EXPECT_THAT(object.at("segment"), testing::AnyOf(0, 1));
+  }
 }
 
 TEST(GridsOfMap, AreOnThePlanesOfTheMap) {
