@@ -119,7 +119,7 @@ struct SequenceCounts {
   int objects = 0;  // objects that were observed
 };
 
-// Throws InputError for a file that cannot be read or has no detections of objects.
+// Throws InputError as ReadSequence.
 SequenceCounts CountObservations(const std::filesystem::path& sequence_file);
 
 // None without metrics, observations, or the timing of one of these stages.

@@ -6,15 +6,12 @@
 #include <map>
 #include <set>
 
-#include "artefact/json_file.h"
-#include "base/error.h"
+#include "artefact/files.h"
 #include "base/paths.h"
 #include "report/tables.h"
 
 namespace soslam {
 namespace {
-
-using nlohmann::json;
 
 constexpr std::array kLandmarkStages = {"edges", "track", "initialise", "refine"};
 constexpr const char* kMapStage = "optimise";
@@ -94,15 +91,10 @@ void AddPublishedTimes(const PublishedTimes& published, Table* table) {
 }  // namespace
 
 SequenceCounts CountObservations(const std::filesystem::path& sequence_file) {
-  const json sequence = ParseJsonFile(sequence_file);
-  std::set<json> objects;
-  try {
-    for (const json& detection : sequence.at("detections")) objects.insert(detection.at("object"));
-    return {static_cast<int>(sequence.at("detections").size()), static_cast<int>(objects.size())};
-  } catch (const json::exception& error) {
-    throw InputError(fmt::format("{}: expected detections, each of an object: {}",
-                                 sequence_file.string(), error.what()));
-  }
+  const Sequence sequence = ReadSequence(sequence_file, PlaneNeed::kNotNeeded);
+  std::set<int> objects;
+  for (const Detection& detection : sequence.detections) objects.insert(detection.object_index);
+  return {static_cast<int>(sequence.detections.size()), static_cast<int>(objects.size())};
 }
 
 std::optional<LandmarkTime> TimePerLandmark(const VariantResult& variant,

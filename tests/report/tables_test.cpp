@@ -6,10 +6,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "artefact/files.h"
 #include "base/error.h"
 #include "base/hash.h"
 #include "report/results_tree.h"
+#include "support/edited_json.h"
 #include "support/expect_error.h"
+#include "support/random_estimates.h"
 #include "support/results_folder.h"
 #include "support/temporary_folder.h"
 
@@ -224,11 +227,6 @@ TEST(QualityTables, TitlesSayWhatAlignedTheMaps) {
   EXPECT_EQ(title({{unknown}}), "alignment none");
 }
 
-// Eight observations of two objects.
-constexpr const char* kSequence = R"({"detections": [
-  {"object": 1}, {"object": 1}, {"object": 2}, {"object": 1},
-  {"object": 2}, {"object": 2}, {"object": 2}, {"object": 2}]})";
-
 class TimingTableTest : public testing::Test {
  protected:
   // A variant made of these runs, of which `optimise-4` takes 4 s of wall and 4.5 s of CPU time.
@@ -236,7 +234,7 @@ class TimingTableTest : public testing::Test {
              bool is_single_frame) {
     results_.WriteMetrics("room", variant, {{.id = 1}, {.id = 2}}, is_single_frame);
     results_.WriteStages("room", variant, runs);
-    WriteBytes(results_.VariantFolder("room", variant) / "sequence.json", kSequence);
+    WriteSequence(results_.VariantFolder("room", variant) / "sequence.json", RandomSequence(), {});
     for (const std::string& run : runs) {
       const double seconds = std::stod(run.substr(run.rfind('-') + 1));
       results_.WriteTiming("room", run, seconds, seconds + 0.5);
@@ -285,14 +283,15 @@ TEST_F(TimingTableTest, NoTimesWithoutStagesOrTimingOrSequence) {
   EXPECT_THAT(TimeTable(Read(), {}).rows, IsEmpty());
 }
 
+// The sequence has ten observations.
 TEST_F(TimingTableTest, MeasuredAndPublishedTimesOnTheirMachines) {
   Write("InitP", {"initialise-2"}, true);
   Published published;
   published.times = {"A paper", "desk", "A laptop", {{"InitP", 5.8, 1.4, 1.0}}};
   const Table table = TimeTable(Read(), published);
   EXPECT_THAT(CellTexts(table),
-              ElementsAre("room wall ms - - 250.0 - - - - - - - - - - - - - - - -",
-                          "room CPU ms - - 312.5 - - - - - - - - - - - - - - - -",
+              ElementsAre("room wall ms - - 200.0 - - - - - - - - - - - - - - - -",
+                          "room CPU ms - - 250.0 - - - - - - - - - - - - - - - -",
                           "room observations - - 1.0 - - - - - - - - - - - - - - - -",
                           "desk published ms - - 5.8 ± 1.4 - - - - - - - - - - - - - - - -",
                           "desk published observations - - 1.0 - - - - - - - - - - - - - - - -"));
@@ -302,11 +301,16 @@ TEST_F(TimingTableTest, MeasuredAndPublishedTimesOnTheirMachines) {
   EXPECT_EQ(table.notes.back(), "Published: A paper, on A laptop.");
 }
 
-TEST(CountObservations, RefusesASequenceWithoutDetectionsByName) {
+TEST(CountObservations, ReadsWhatTheSchemaAllows) {
   const TemporaryFolder folder;
-  WriteBytes(folder / "sequence.json", R"({"frames": []})");
-  ExpectError<InputError>([&] { CountObservations(folder / "sequence.json"); },
-                          {"sequence.json", "detections"});
+  const auto file = folder / "sequence.json";
+  WriteSequence(file, RandomSequence(), {});
+  EXPECT_EQ(CountObservations(file).observations, 10);
+  EXPECT_EQ(CountObservations(file).objects, 4);
+  ExpectEditsRefused(file,
+                     {{"/detections", nullptr, "the document"},
+                      {"/detections/0/object", "\"1\"", "/detections/0/object is \"1\""}},
+                     [&] { CountObservations(file); });
 }
 
 using testing::HasSubstr;
