@@ -249,7 +249,7 @@ json PageData(const DatasetResult& dataset, const ImageSourceOf& images, size_t 
 json OverviewData(const std::vector<json>& pages) {
   json datasets = json::array();
   for (const json& page : pages) {
-    json dataset = {{"counts", nullptr}, {"variants", json::array()}};
+    json dataset = {{"counts", CountsOfDataset(page)}, {"variants", json::array()}};
     for (const char* key :
          {"dataset", "url", "has_true_objects", "unfinished", "notes", "problems", "findings"}) {
       dataset[key] = page.at(key);
@@ -262,9 +262,6 @@ json OverviewData(const std::vector<json>& pages) {
       }
       dataset["variants"].push_back(
           {{"name", variant.at("name")}, {"kind", variant.at("kind")}, {"metrics", metrics}});
-    }
-    if (!page.at("variants").empty()) {
-      dataset["counts"] = page.at("sequences").front().at("counts");
     }
     datasets.push_back(std::move(dataset));
   }

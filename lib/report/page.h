@@ -49,6 +49,10 @@ nlohmann::json PageData(const DatasetResult& dataset, const ImageSourceOf& image
 // metrics.
 nlohmann::json OverviewData(const std::vector<nlohmann::json>& pages);
 
+// "60 frames, 8 objects, 350 detections used" of a dataset's page, by the variant of most interest,
+// which is named where others use other detections; empty without variants.
+std::string CountsOfDataset(const nlohmann::json& page);
+
 // The part of a page that needs no scripts, as HTML: for a dataset (see PageData) and for all
 // datasets (see OverviewData). Texts of the data are escaped.
 std::string DatasetTables(const nlohmann::json& page);

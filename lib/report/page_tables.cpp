@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "base/table.h"
 #include "base/text.h"
@@ -348,18 +349,36 @@ std::string LinkToFindings(const json& page) {
   return fmt::format("<p><a href=\"#remarks\">{}</a> below</p>\n", Counted(count, "finding"));
 }
 
-std::string FramesObjectsDetections(const json& counts) {
-  return fmt::format("{}, {}, {} used", Counted(counts.at("frames").get<size_t>(), "frame"),
-                     Counted(counts.at("objects").get<size_t>(), "object"),
-                     Counted(counts.at("detections").get<size_t>(), "detection"));
+// The variant of most interest.
+const json& MainVariant(const json& page) {
+  const std::vector<size_t> detailed = DetailedVariants(page);
+  return page.at("variants")[detailed.empty() ? 0 : detailed.front()];
 }
 
 }  // namespace
 
 std::string DatasetTables(const json& page) {
   if (page.at("variants").empty()) return "";
-  const json& sequence = page.at("sequences").front();
-  std::string counts = FramesObjectsDetections(sequence.at("counts"));
+std::string CountsOfDataset(const json& page) {
+  if (page.at("variants").empty()) return "";
+  const json& main = MainVariant(page);
+  const json& counts = page.at("sequences").at(main.at("sequence").get<size_t>()).at("counts");
+  std::set<size_t> others;  // numbers of detections in the sequences of other variants
+  for (const json& sequence : page.at("sequences")) {
+    others.insert(sequence.at("counts").at("detections").get<size_t>());
+  }
+  others.erase(counts.at("detections").get<size_t>());
+  return fmt::format("{}, {}, {} used{}", Counted(counts.at("frames").get<size_t>(), "frame"),
+                     Counted(counts.at("objects").get<size_t>(), "object"),
+                     Counted(counts.at("detections").get<size_t>(), "detection"),
+                     others.empty()
+                         ? ""
+                         : fmt::format(" by {} (by others {})", main.at("name").get<std::string>(),
+                                       fmt::join(others, ", ")));
+}
+
+  const json& sequence = page.at("sequences").at(MainVariant(page).at("sequence").get<size_t>());
+  std::string counts = CountsOfDataset(page);
   const json& frames = sequence.at("frames");
   const auto shown = std::ranges::count_if(
       frames, [](const json& frame) { return frame.at("shown").get<bool>(); });
@@ -380,10 +399,10 @@ std::string OverviewTables(const json& overview) {
   for (const json& dataset : overview.at("datasets")) {
     const auto url = dataset.at("url").get<std::string>();
     std::string content = Faint("Nothing of it can be shown.");
-    if (!dataset.at("counts").is_null()) {
+    if (dataset.at("counts") != "") {
       content = fmt::format(
           "<p>{}. <a href=\"./{}/report.html\">Map, frames, objects and figures</a></p>\n",
-          FramesObjectsDetections(dataset.at("counts")), HtmlText(url));
+          HtmlText(dataset.at("counts")), HtmlText(url));
     }
     content += Remarks(dataset);
     if (!dataset.at("variants").empty()) {

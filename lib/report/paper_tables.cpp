@@ -49,7 +49,8 @@ struct Layout {
 
 constexpr const char* kBoldNote =
     "Bold: the best measured value of a row, if over all of its objects. Values over fewer objects "
-    "have their number in brackets.";
+    "have their number in brackets. Where variants have different observations, the most are "
+    "given, with the first variant that has them in brackets.";
 
 const std::vector<std::string> kInitialVariants = {"SVD",     "Cube",      "Init1-1", "InitP",
                                                    "InitPT",  "MultiView", "InitS",   "InitST",
@@ -112,18 +113,31 @@ std::string BestText(const Means& means, const Quantity& quantity) {
   return best ? ValueText(*best, quantity) : kNoValue;
 }
 
-std::vector<Cell> MeasuredRow(const std::string& dataset, const std::string& kind,
-                              const Means& means, const Quantity& quantity,
-                              const DatasetFacts& facts = {}) {
-  int objects = 0;
-  int observations = 0;
-  for (const auto& mean : means) {
-    objects = std::max(objects, mean ? mean->objects : 0);
-    observations = std::max(observations, mean ? mean->observations : 0);
+// The most observations of a variant.
+std::string ObservationsText(const Means& means, const std::vector<std::string>& variants) {
+  std::set<int> counts;
+  std::string variant_with_most;
+  for (size_t i = 0; i < means.size(); ++i) {
+    if (!means[i]) continue;
+    if (counts.empty() || means[i]->observations > *counts.rbegin()) {
+      variant_with_most = variants[i];
+    }
+    counts.insert(means[i]->observations);
   }
+  if (counts.empty() || *counts.rbegin() == 0) return kNoValue;
+  return std::to_string(*counts.rbegin()) +
+         (counts.size() > 1 ? fmt::format(" ({})", variant_with_most) : "");
+}
+
+std::vector<Cell> MeasuredRow(const std::string& dataset, const std::string& kind,
+                              const Means& means, const Layout& layout,
+                              const DatasetFacts& facts = {}) {
+  const Quantity& quantity = layout.quantity;
+  int objects = 0;
+  for (const auto& mean : means) objects = std::max(objects, mean ? mean->objects : 0);
   const std::string best = BestText(means, quantity);
   std::vector<Cell> row = {dataset, kind, MarksOf(facts, objects), std::to_string(objects),
-                           observations == 0 ? kNoValue : std::to_string(observations)};
+                           ObservationsText(means, layout.variants)};
   for (const auto& mean : means) {
     if (!mean) {
       row.emplace_back(kNoValue);
@@ -203,8 +217,7 @@ void AddDatasetRows(const std::vector<DatasetResult>& datasets, const PublishedT
     for (const RowKind& kind : layout.row_kinds) {
       const Means means = MeansOf(dataset, layout, kind);
       if (!HasAny(means)) continue;
-      table->rows.push_back(
-          MeasuredRow(dataset.name, kind.title, means, layout.quantity, dataset.facts));
+      table->rows.push_back(MeasuredRow(dataset.name, kind.title, means, layout, dataset.facts));
     }
     return table->rows.size() > rows;
   };
@@ -279,7 +292,7 @@ void AddDetectorRow(const std::vector<DatasetResult>& datasets, const Layout& la
   }
   if (common.datasets.size() < 2) return;
   table->rows.push_back(
-      MeasuredRow("detector's boxes", "common objects", Averages(common), layout.quantity));
+      MeasuredRow("detector's boxes", "common objects", Averages(common), layout));
   table->notes.push_back(fmt::format(
       "Detector's boxes: over the objects that all of {} have, all observations, of {}.",
       fmt::join(measured, ", "), fmt::join(common.datasets, ", ")));
@@ -289,7 +302,7 @@ void AddAverages(const std::vector<DatasetResult>& datasets, const Layout& layou
   for (const RowKind& kind : layout.row_kinds) {
     const Complete complete = CompleteDatasets(datasets, layout, kind);
     if (complete.datasets.size() < 2) continue;
-    table->rows.push_back(MeasuredRow("average", kind.title, Averages(complete), layout.quantity));
+    table->rows.push_back(MeasuredRow("average", kind.title, Averages(complete), layout));
     table->notes.push_back(fmt::format(
         "Average ({}): weighted by objects, over the datasets in which no variant lacks a value: "
         "{}.",

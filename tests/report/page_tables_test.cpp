@@ -75,6 +75,17 @@ TEST(DatasetTables, HaveTheNumbersOfAllVariantsTheBestBold) {
               HasSubstr("<td>InitP</td><td>2</td><td>9</td><td class=\"best\">0.400</td></tr>"));
 }
 
+TEST(DatasetTables, CountTheDetectionsOfTheVariantThatIsShownFirst) {
+  json page = Page();
+  json others = page["sequences"][0];
+  others["counts"]["detections"] = 7;
+  page["sequences"].push_back(others);
+  page["variants"][2]["sequence"] = 1;
+  EXPECT_EQ(CountsOfDataset(page), "2 frames, 2 objects, 7 detections used by OursS (by others 1)");
+  EXPECT_THAT(DatasetTables(page), HasSubstr("7 detections used by OursS (by others 1); 1 frames"));
+  EXPECT_EQ(OverviewData({page})["datasets"][0]["counts"], CountsOfDataset(page));
+}
+
 TEST(DatasetTables, HaveTheObjectsOfEachVariantWorstFirst) {
   const std::string html = DatasetTables(Page());
   EXPECT_THAT(html, HasSubstr("<details open><summary>OursS</summary>"));

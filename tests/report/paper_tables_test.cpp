@@ -67,6 +67,15 @@ TEST_F(PaperTablesTest, SingleFrameVariantsHaveARowForTheFirstObservation) {
                           "room first observation f 1 1 - - - *0.500* - - - - - - -"));
 }
 
+TEST_F(PaperTablesTest, ObservationsThatDifferAreThoseOfANamedVariant) {
+  results_.WriteMetrics("room", "Quadric", {{.id = 1, .iou = 0.5, .observations = 5}});
+  for (const char* variant : {"OursS", "OursST"}) {
+    results_.WriteMetrics("room", variant, {{.id = 1, .iou = 0.5, .observations = 7}});
+  }
+  EXPECT_THAT(CellTexts(TableOf(Read())),
+              ElementsAre("room measured f 1 7 (OursS) *0.500* - - *0.500* *0.500* - - -"));
+}
+
 TEST_F(PaperTablesTest, ValuesOverFewerObjectsSaySo) {
   results_.WriteMetrics("room", "Quadric", {{.id = 1, .rotation_deg = 5.0}, {.id = 2}});
   for (const char* variant : {"OursP", "OursPT"}) {
