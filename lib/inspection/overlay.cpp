@@ -27,12 +27,18 @@ std::string CaptionOf(const Object& object) {
   return fmt::format("{} {}", object.id, object.label);
 }
 
-void DrawAxes(const Landmark& landmark_in_camera, const Stroke& front, const Stroke& others,
-              Canvas* canvas) {
+// Draws the x axis as an arrow to the front where that is known, else through the body.
+void DrawAxes(const Landmark& landmark_in_camera, bool front_is_known, const Stroke& x_axis,
+              const Stroke& others, Canvas* canvas) {
   const Eigen::Vector3d& centre = landmark_in_camera.Centre();
+  const Eigen::Vector3d front = PointAt(landmark_in_camera, Eigen::Vector3d::UnitX());
   canvas->Segment(centre, PointAt(landmark_in_camera, Eigen::Vector3d::UnitY()), others);
   canvas->Segment(centre, PointAt(landmark_in_camera, Eigen::Vector3d::UnitZ()), others);
-  canvas->Arrow(centre, PointAt(landmark_in_camera, Eigen::Vector3d::UnitX()), front);
+  if (front_is_known) {
+    canvas->Arrow(centre, front, x_axis);
+  } else {
+    canvas->Segment(PointAt(landmark_in_camera, -Eigen::Vector3d::UnitX()), front, x_axis);
+  }
 }
 
 void DrawCircumscribedBox(const Landmark& landmark_in_camera, const Stroke& stroke,
@@ -46,7 +52,8 @@ void DrawBody(const OverlayInput::Body& body, const Camera& camera, Canvas* canv
   const Polygon outline = OutlinePolygon(camera, body.landmark_in_camera);
   if (outline.empty()) return;
   canvas->Lines(outline, true, kLandmarkStroke);
-  DrawAxes(body.landmark_in_camera, kLandmarkStroke, kLandmarkAxis, canvas);
+  DrawAxes(body.landmark_in_camera, /*front_is_known=*/false, kLandmarkStroke, kLandmarkAxis,
+           canvas);
 }
 
 // Drawn last, on top of all lines.
@@ -164,7 +171,7 @@ void DrawOverlay(const OverlayInput& input, cv::Mat* image) {
   Canvas canvas(input.camera, image);
   for (const Landmark& truth : input.truths_in_camera) {
     DrawCircumscribedBox(truth, kTruthStroke, &canvas);
-    DrawAxes(truth, kTruthStroke, kTruthAxis, &canvas);
+    DrawAxes(truth, /*front_is_known=*/true, kTruthStroke, kTruthAxis, &canvas);
   }
   for (const auto& body : input.landmarks) DrawBody(body, input.camera, &canvas);
   for (const auto& [box, caption] : input.detections) {
@@ -179,8 +186,8 @@ std::vector<CaptionEntry> OverlayLegend(const OverlayInput& input) {
     if (count > 0) legend.push_back({fmt::format("{} {}", count, text), colour, true});
   };
   add(input.detections.size(), "detected", kDetectionStroke.colour);
-  add(input.landmarks.size(), "estimated (arrow: front)", kLandmarkStroke.colour);
-  add(input.truths_in_camera.size(), "true (box around it)", kTruthStroke.colour);
+  add(input.landmarks.size(), "estimated (thick axis: front or back)", kLandmarkStroke.colour);
+  add(input.truths_in_camera.size(), "true (box around it, arrow: front)", kTruthStroke.colour);
   std::map<double, size_t> grounds_by_cell;
   for (const auto& [plane, feet] : input.grounds) ++grounds_by_cell[GridAround(plane, feet).cell];
   for (const auto& [cell, count] : grounds_by_cell) {

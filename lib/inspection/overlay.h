@@ -55,8 +55,8 @@ OverlayInput OverlayOfMap(const Sequence& sequence, const MapEstimate& map, int 
 
 // Draws on `image` (CV_8UC3), which shows the view of `input`'s camera in its size or a whole
 // multiple of it (see DrawingGround): detections as boxes, landmarks by their silhouette and axes,
-// the ground truth as circumscribed boxes as for IoU, support planes as grids. An arrow marks an
-// object's front.
+// the ground truth as circumscribed boxes as for IoU, support planes as grids. An arrow marks the
+// front of a true object; the x axis of an estimate is drawn both ways, as nothing tells its front.
 void DrawOverlay(const OverlayInput& input, cv::Mat* image);
 
 // Legend of DrawOverlay, for WithCaption.

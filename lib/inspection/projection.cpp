@@ -48,13 +48,14 @@ Polygon OutlinePolygon(const Camera& camera, const Landmark& landmark_in_camera)
 
 std::optional<std::array<LineSegment2, 3>> ProjectedAxes(const Camera& camera,
                                                          const Landmark& landmark_in_camera) {
-  const auto centre = camera.Project(landmark_in_camera.Centre());
-  if (!centre) return std::nullopt;
   std::array<LineSegment2, 3> axes;
   for (int i = 0; i < 3; ++i) {
-    const auto end = camera.Project(PointAt(landmark_in_camera, Eigen::Vector3d::Unit(i)));
-    if (!end) return std::nullopt;
-    axes[i] = {*centre, *end};
+    const Eigen::Vector3d axis = Eigen::Vector3d::Unit(i);
+    const Eigen::Vector3d from = i == 0 ? Eigen::Vector3d(-axis) : Eigen::Vector3d::Zero();
+    const auto begin = camera.Project(PointAt(landmark_in_camera, from));
+    const auto end = camera.Project(PointAt(landmark_in_camera, axis));
+    if (!begin || !end) return std::nullopt;
+    axes[i] = {*begin, *end};
   }
   return axes;
 }

@@ -163,7 +163,7 @@ nlohmann::json PagePose(const Rigid3d& pose);
 nlohmann::json PageLandmark(const Landmark& landmark_in_world);
 // [x, y, x, y, ...] px
 nlohmann::json PagePixels(const std::vector<Eigen::Vector2d>& pixels);
-// {"outline": pixels, "axes": [front, left, up as pixels from centre to face] or null}
+// {"outline": pixels, "axes": pixels of ProjectedAxes or null}
 nlohmann::json PageOutline(const Camera& camera, const Landmark& landmark_in_camera);
 
 // The lines of a grid on each of Sequence::planes, in the world; none for planes without objects.

@@ -71,17 +71,21 @@ TEST(OverlayTest, DetectionsAreDrawnWithTheirCaption) {
   EXPECT_GT(cv::countNonZero(above.reshape(1)), 0);
 }
 
-// The arrow is where the object's x axis ends, nothing is where its -x axis does.
-TEST(OverlayTest, TheArrowShowsTheFront) {
+// The front of the truth is where its x axis ends; that of an estimate is there or opposite.
+TEST(OverlayTest, OnlyTheTruthHasAFront) {
   const Landmark landmark{{Eigen::Quaterniond::Identity(), {0.0, 0.0, 4.0}}, {1.0, 0.5, 0.5}};
-  const cv::Mat image = Drawn({.camera = kCamera, .landmarks = {{landmark, ""}}});
-  const auto is_drawn = [&](double x) {
+  const auto is_drawn = [&](const OverlayInput& input, const cv::Scalar& colour, double x) {
+    const cv::Mat image = Drawn(input);
     const Eigen::Vector2d pixel = *kCamera.Project({x, 0.0, 4.0});
     const cv::Rect near(static_cast<int>(pixel.x()) - 2, static_cast<int>(pixel.y()) - 2, 5, 5);
-    return !Where(image(near), palette::kSkyBlue).empty();
+    return !Where(image(near), colour).empty();
   };
-  EXPECT_TRUE(is_drawn(0.8));
-  EXPECT_FALSE(is_drawn(-0.8));
+  const OverlayInput truth{.camera = kCamera, .truths_in_camera = {landmark}};
+  EXPECT_TRUE(is_drawn(truth, palette::kVermilion, 0.8));
+  EXPECT_FALSE(is_drawn(truth, palette::kVermilion, -0.8));
+  const OverlayInput estimate{.camera = kCamera, .landmarks = {{landmark, ""}}};
+  EXPECT_TRUE(is_drawn(estimate, palette::kSkyBlue, 0.8));
+  EXPECT_TRUE(is_drawn(estimate, palette::kSkyBlue, -0.8));
 }
 
 TEST(OverlayTest, WhatIsBehindTheCameraIsNotDrawn) {

@@ -52,15 +52,13 @@ function bodyMesh(landmark, name, opacity) {
   return placed(mesh, landmark.pose);
 }
 
-function frontArrow(landmark) {
+// The axis through front and back, of which nothing tells one from the other.
+function frontBackAxis(landmark) {
   const [a] = landmark.half_axes;
-  const arrow = new THREE.ArrowHelper(new THREE.Vector3(1, 0, 0), new THREE.Vector3(), 1.35 * a,
-    colour("front"), 0.3 * a, 0.2 * a);
-  for (const part of arrow.children) {  // drawn last: it shows inside the body as well
-    Object.assign(part.material, { depthTest: false, transparent: true });
-    part.renderOrder = 1;
-  }
-  return placed(new THREE.Group().add(arrow), landmark.pose);
+  const axis = new THREE.Mesh(new THREE.BoxBufferGeometry(2.7 * a, 0.05 * a, 0.05 * a), new THREE.MeshBasicMaterial(
+    { color: colour("front"), depthTest: false, transparent: true }));  // shows inside the body as well
+  axis.renderOrder = 1;
+  return placed(axis, landmark.pose);
 }
 
 // Three standard deviations of the centre: x = L u of the unit sphere, L L^T the covariance.

@@ -115,7 +115,7 @@ function figuresSection(page, variants) {
     ...figure("Samples and mirrored pairs", "Samples are orange, the pixels that the mirror plane of the estimate takes them to white (fig. 5 of the paper).",
       pairFigures(page, ways)),
     ...figure("Single-frame initialisation", "The first observations of some objects (fig. 6): detection dashed, " +
-      (page.has_true_objects ? "ground truth green, " : "") + "estimate blue with its front orange.",
+      (page.has_true_objects ? "ground truth green, " : "") + "estimate blue, the axis through its front and back orange.",
       comparison(page, variants, ["Init1-1", "InitP", "InitS", "InitSTE"], 3)),
     ...figure("Cost over yaw", page.has_true_objects ?
       "Which descriptor finds the yaw (fig. 7)? The tables count all observations: how far the lowest cost is from the true yaw, modulo half a turn, " +

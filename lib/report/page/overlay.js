@@ -36,7 +36,7 @@ function boundsOf(pixels) {
   return [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)];
 }
 
-// Outline, its box, and axes: the front is thick.
+// Outline, its box, and axes: the thick one leads from front to back, or from back to front.
 function estimateShapes(shown, name) {
   if (!shown || shown.outline.length === 0) return [];
   const shapes = [polygon(shown.outline, name, { "fill": `var(--${name})`, "fill-opacity": 0.12 })];
