@@ -28,7 +28,7 @@ constexpr const char* kOfFound =
     "mean IoU {of_found/iou_mean:.3f}, centre {of_found/centre_m_mean:.3f} m "
     "({of_found/centre_relative_mean:.2f} of the size), log scale "
     "{of_found/log_scale_abs_mean:.3f}, log size {of_found/log_size_abs_mean/0:.2f}, "
-    "{of_found/log_size_abs_mean/1:.2f}, {of_found/log_size_abs_mean/2:.2f}, yaw "
+    "{of_found/log_size_abs_mean/1:.2f}, {of_found/log_size_abs_mean/2:.2f}, yaw of body "
     "{of_found/yaw_error_deg_mean:.2f} deg, up {of_found/up_error_deg_mean:.2f} deg, plane "
     "{of_found/plane_offset_m_abs_mean:.3f} m and {of_found/plane_tilt_deg_mean:.1f} deg; "
     "{of_found/labels_agree} of {found} labels right, {of_found/ids_agree} of "

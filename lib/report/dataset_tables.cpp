@@ -201,9 +201,10 @@ std::vector<Table> QualityTables(const DatasetResult& dataset) {
   errors.name = "map_errors_" + dataset.name;
   errors.title = fmt::format("{}: errors of what is right at IoU {}, {}", dataset.name,
                              kMapIous.front(), AlignmentInWords(maps));
-  errors.header = {"variant", "centre m",    "centre / size", "log size x, y, z", "log scale",
-                   "yaw deg", "up deg",      "plane m",       "plane deg",        "labels",
-                   "ids",     "IoU, frames", "IoU, world"};
+  errors.header = {"variant",   "centre m",        "centre / size", "log size x, y, z",
+                   "log scale", "yaw of body deg", "up deg",        "plane m",
+                   "plane deg", "labels",          "ids",           "IoU, frames",
+                   "IoU, world"};
   const bool are_alike = std::ranges::all_of(maps, [&](const VariantResult& map) {
     return KindOfAlignment(map) == KindOfAlignment(maps.front());
   });
@@ -220,7 +221,9 @@ std::vector<Table> QualityTables(const DatasetResult& dataset) {
       "precision, recall, F1, mean IoU.",
       OdometryNote(maps)};
   errors.notes = {
-      "Means of absolute values; logarithms are of estimate over truth. Labels and ids: how many "
+      "Means of absolute values; logarithms are of estimate over truth. Yaw of body: modulo a "
+      "quarter "
+      "turn, as a body with permuted axes is the same. Labels and ids: how many "
       "agree. IoU in the frames that saw what is right or wrong in part, and of the same in the "
       "world."};
   return {quality, errors};

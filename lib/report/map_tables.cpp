@@ -135,12 +135,12 @@ Table LimitsTable(const std::vector<DatasetResult>& datasets,
   Table table = {"limits",
                  "What limits the found objects",
                  {"dataset", "variant", "object", "part", "IoU", "corrected", "centre m",
-                  "log size x, y, z", "yaw deg"},
+                  "log size x, y, z", "yaw of body deg"},
                  {},
                  4,
                  {"The part of the landmark (plane, size, yaw, place) that gains most if it is "
                   "replaced by the true one, and the IoU then. Logarithms are of estimate over "
-                  "truth, along the true axes."}};
+                  "truth, along the true axes. Yaw of body: modulo a quarter turn."}};
   for (const EvaluatedMap& map : MapsOf(datasets, variants)) {
     for (const json& landmark : map.quality.at("landmarks")) {
       if (landmark.at("fate") == "found") table.rows.push_back(WithMap(map, LimitsRow(landmark)));

@@ -249,7 +249,9 @@ std::string ObjectsSection(const json& page) {
                           ObjectsTable(sequence.at("objects"), variant, has_true_objects));
   }
   if (tables.empty()) return "";
-  return Section("objects", "Objects", (has_true_objects ? Faint("Worst first.") : "") + tables);
+  return Section(
+      "objects", "Objects",
+      (has_true_objects ? Faint("Worst first. Yaw error: modulo half a turn.") : "") + tables);
 }
 
 std::string Signed(const json& value, int decimals) {
@@ -357,8 +359,6 @@ const json& MainVariant(const json& page) {
 
 }  // namespace
 
-std::string DatasetTables(const json& page) {
-  if (page.at("variants").empty()) return "";
 std::string CountsOfDataset(const json& page) {
   if (page.at("variants").empty()) return "";
   const json& main = MainVariant(page);
@@ -377,6 +377,8 @@ std::string CountsOfDataset(const json& page) {
                                        fmt::join(others, ", ")));
 }
 
+std::string DatasetTables(const json& page) {
+  if (page.at("variants").empty()) return "";
   const json& sequence = page.at("sequences").at(MainVariant(page).at("sequence").get<size_t>());
   std::string counts = CountsOfDataset(page);
   const json& frames = sequence.at("frames");
