@@ -92,14 +92,14 @@ void WritePlanes(const std::filesystem::path& path, const PlanesEstimate& estima
 namespace {
 
 json UpToJson(const GroundEstimate& estimate) {
-  return {
-      {"up_in_input", estimate.up_in_input},
-      {"sigma_deg", kDegPerRad * estimate.tilt_sigma},
-      {"found_by", estimate.planes.empty() ? "cameras" : "planes"},
-      {"cameras_held", estimate.cameras_are_turned ? "turned" : NameOf(estimate.attitude.holding)},
-      {"verticals", estimate.verticals},
-      {"sigma_of_cameras_deg", kDegPerRad * estimate.attitude_tilt_sigma},
-      {"angle_to_cameras_deg", kDegPerRad * estimate.attitude_tilt}};
+  return {{"up_in_input", estimate.up_in_input},
+          {"sigma_deg", kDegPerRad * estimate.tilt_sigma},
+          {"found_by", estimate.planes.empty() ? "cameras" : "planes"},
+          {"cameras_held",
+           estimate.cameras_are_turned ? "turned" : NameOf(estimate.up_of_cameras.holding)},
+          {"verticals", estimate.verticals},
+          {"sigma_of_cameras_deg", kDegPerRad * estimate.cameras_tilt_sigma},
+          {"angle_to_cameras_deg", kDegPerRad * estimate.tilt_to_cameras}};
 }
 
 json ScaleToJson(const GroundEstimate& estimate, const std::vector<Finding>& findings) {

@@ -85,14 +85,14 @@ std::optional<double> MeanCost(const std::vector<MultiViewObservation>& boxes,
   return count == 0 ? std::nullopt : std::optional(sum / count);
 }
 
-UpEstimate UpOf(const UpPrior& attitude, double tilt_variance) {
-  const Eigen::Vector3d& up = attitude.up_in_world;
+UpEstimate UpOf(const UpPrior& up_prior, double tilt_variance) {
+  const Eigen::Vector3d& up = up_prior.up_in_world;
   // Rotations about these two axes move up by their cross products with it.
   Eigen::Matrix<double, 3, 2> axes;
   axes.col(0) = up.unitOrthogonal();
   axes.col(1) = up.cross(axes.col(0));
   const Eigen::Matrix<double, 3, 2> d_turns = -Skew(up) * axes;
-  const Eigen::Matrix2d information = d_turns.transpose() * attitude.information * d_turns;
+  const Eigen::Matrix2d information = d_turns.transpose() * up_prior.information * d_turns;
   Eigen::Matrix2d covariance = information.inverse();
   covariance.diagonal().array() += 0.5 * tilt_variance;
   return {up, axes * covariance * axes.transpose()};
@@ -100,20 +100,20 @@ UpEstimate UpOf(const UpPrior& attitude, double tilt_variance) {
 
 UpEstimate UpOf(const Segment& segment, const BoxesOfLabels& boxes,
                 const AssociateOptions& options) {
-  std::vector<UpPrior> attitudes;
+  std::vector<UpPrior> up_priors;
   std::vector<HoldingEvidence> evidence;
   for (const CameraHolding holding : kHoldings) {
-    const UpPrior attitude =
+    const UpPrior up_prior =
         UpPriorFromCameras(segment.world_from_camera, options.camera_roll_sigma_deg * kRadPerDeg,
                            options.camera_pitch_sigma_deg * kRadPerDeg,
                            options.view_correlation_deg * kRadPerDeg, holding);
-    const bool is_known = std::ranges::any_of(attitudes, [&](const UpPrior& other) {
-      return IsSameUp(other.up_in_world, attitude.up_in_world);
+    const bool is_known = std::ranges::any_of(up_priors, [&](const UpPrior& other) {
+      return IsSameUp(other.up_in_world, up_prior.up_in_world);
     });
     if (is_known) continue;
-    attitudes.push_back(attitude);
+    up_priors.push_back(up_prior);
     HoldingEvidence one{
-        .holding = holding, .up_in_world = attitude.up_in_world, .object_costs = {}};
+        .holding = holding, .up_in_world = up_prior.up_in_world, .object_costs = {}};
     for (const auto& of_label : boxes) {
       one.object_costs.push_back(MeanCost(of_label, one.up_in_world));
     }
@@ -121,7 +121,7 @@ UpEstimate UpOf(const Segment& segment, const BoxesOfLabels& boxes,
   }
   const double expected_cost = 0.5 * static_cast<double>(boxes.size());
   const HoldingChoice choice = ChooseHolding(evidence, expected_cost, kClear);
-  UpEstimate up = UpOf(attitudes[choice.best], choice.tilt_variance);
+  UpEstimate up = UpOf(up_priors[choice.best], choice.tilt_variance);
   up.holding = evidence[choice.best].holding;
   up.holding_tilt_variance = choice.tilt_variance;
   for (size_t i = 0; i < evidence.size(); ++i) {

@@ -71,14 +71,14 @@ Similarity NormalisedFromInput(const Sequence& sequence, const std::vector<Groun
   return {scale, {inverse.rotation, scale * inverse.translation}};
 }
 
-// The attitude with an error that all cameras and edges share: edges that are taken for vertical
+// The up prior with an error that all cameras and edges share: edges that are taken for vertical
 // need not be.
-UpPrior WithCommonError(const UpPrior& attitude) {
+UpPrior WithCommonError(const UpPrior& up_prior) {
   constexpr double kCommonError = 1.0 * kRadPerDeg;
-  const Eigen::Matrix<double, 3, 2> d_turns = UpByTurns(attitude.up_in_world);
-  Eigen::Matrix2d covariance = TiltCovariance(attitude);
+  const Eigen::Matrix<double, 3, 2> d_turns = UpByTurns(up_prior.up_in_world);
+  Eigen::Matrix2d covariance = TiltCovariance(up_prior);
   covariance.diagonal().array() += kCommonError * kCommonError;
-  return {d_turns * covariance.inverse() * d_turns.transpose(), attitude.up_in_world};
+  return {d_turns * covariance.inverse() * d_turns.transpose(), up_prior.up_in_world};
 }
 
 // All steps, in the normalised world.
@@ -90,8 +90,8 @@ class Estimation {
 
   // Runs all steps for cameras that are held in this way.
   void Run(const UpEstimate& held, const std::vector<SegmentView>& views) {
-    result.attitude = held;
-    FindAttitude(views);
+    result.up_of_cameras = held;
+    FindUpPrior(views);
     Run();
   }
 
@@ -100,7 +100,7 @@ class Estimation {
   void RunTurned(const UpEstimate& up_of_cameras) {
     constexpr double kSigma = 30.0 * kRadPerDeg;
     constexpr double kLeast = 0.5;  // length of the mean: less is of cameras turned in all ways
-    result.attitude = up_of_cameras;
+    result.up_of_cameras = up_of_cameras;
     result.cameras_are_turned = true;
     Eigen::Vector3d up = Eigen::Vector3d::Zero();  // halfway between level and looking down
     for (const Frame& frame : sequence_.frames) {
@@ -108,8 +108,8 @@ class Estimation {
     }
     if (up.norm() < kLeast * static_cast<double>(sequence_.frames.size())) return;
     up.normalize();
-    attitude = {(Eigen::Matrix3d::Identity() - up * up.transpose()) / (kSigma * kSigma), up};
-    without_verticals = attitude;
+    up_prior = {(Eigen::Matrix3d::Identity() - up * up.transpose()) / (kSigma * kSigma), up};
+    without_verticals = up_prior;
     Run();
   }
 
@@ -120,7 +120,7 @@ class Estimation {
   }
 
   double units_per_input = 1.0;  // units of the input in a normalised one
-  UpPrior attitude;              // from cameras and vertical edges
+  UpPrior up_prior;              // from cameras and vertical edges
   UpPrior without_verticals;
   HorizontalPlanes planes;
   std::vector<MeasuredObject> objects;
@@ -128,34 +128,34 @@ class Estimation {
 
  private:
   void Run() {
-    planes = FindHorizontalPlanes(points_, attitude);
+    planes = FindHorizontalPlanes(points_, up_prior);
     CheckVerticals();
     result.planes_of_points = static_cast<int>(planes.planes.size());
     if (result.planes_of_points > 0) on_lowest_plane_ = planes.planes.front().centre_in_world;
     const auto groups = GroupBoxes(sequence_, points_, planes, threads_);
     Measure(groups);
     if (DropPlanesWithoutObjects()) {
-      planes = Refined(planes, points_, attitude);
+      planes = Refined(planes, points_, up_prior);
       Measure(groups);
     }
   }
 
-  void FindAttitude(const std::vector<SegmentView>& views) {
+  void FindUpPrior(const std::vector<SegmentView>& views) {
     const std::vector<Rigid3d> poses = PosesOf(sequence_);
     const double correlation = options_.view_correlation_deg * kRadPerDeg;
-    attitude = RobustUpPriorFromCameras(poses, options_.camera_roll_sigma_deg * kRadPerDeg,
+    up_prior = RobustUpPriorFromCameras(poses, options_.camera_roll_sigma_deg * kRadPerDeg,
                                         options_.camera_pitch_sigma_deg * kRadPerDeg, correlation,
-                                        result.attitude.holding);
-    without_verticals = WithCommonError(attitude);
+                                        result.up_of_cameras.holding);
+    without_verticals = WithCommonError(up_prior);
     result.verticals = !views.empty();
     if (result.verticals) {
       constexpr double kMaxTilt = 12.0 * kRadPerDeg;
       std::vector<SegmentView> in_world = views;
       for (size_t i = 0; i < poses.size(); ++i) in_world[i].world_from_camera = poses[i];
-      attitude = WithVerticals(attitude, in_world, options_.vertical_sigma_deg * kRadPerDeg,
+      up_prior = WithVerticals(up_prior, in_world, options_.vertical_sigma_deg * kRadPerDeg,
                                correlation, kMaxTilt);
     }
-    attitude = WithCommonError(attitude);
+    up_prior = WithCommonError(up_prior);
   }
 
   // Cameras that all look in one direction do not tell vertical edges from others. Where more
@@ -172,7 +172,7 @@ class Estimation {
     const double points = planes.PointCount(), other_points = other.PointCount();
     if (other_points > points) {
       std::swap(planes, other);
-      attitude = without_verticals;
+      up_prior = without_verticals;
       result.verticals = false;
     }
     const double weight =
@@ -181,7 +181,7 @@ class Estimation {
   }
 
   void Measure(const std::vector<std::vector<int>>& groups) {
-    UpEstimate up = result.attitude;
+    UpEstimate up = result.up_of_cameras;
     up.up_in_world = planes.up_in_world;
     const Eigen::Matrix3d level = UprightRotation(up.up_in_world, 0.0).toRotationMatrix();
     up.covariance = level.leftCols<2>() * planes.tilt_covariance * level.leftCols<2>().transpose();
@@ -365,9 +365,9 @@ GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoi
   result.up_in_input =
       normalised_from_input.rigid.rotation.conjugate() * estimation.planes.up_in_world;
   result.tilt_sigma = std::sqrt(estimation.planes.tilt_covariance.trace());
-  result.attitude_tilt_sigma = std::sqrt(TiltCovariance(estimation.attitude).trace());
-  result.attitude_tilt =
-      AngleBetween(estimation.attitude.up_in_world, estimation.planes.up_in_world);
+  result.cameras_tilt_sigma = std::sqrt(TiltCovariance(estimation.up_prior).trace());
+  result.tilt_to_cameras =
+      AngleBetween(estimation.up_prior.up_in_world, estimation.planes.up_in_world);
   Shift(-log_units, &result.scale);
   Shift(-log_units, &result.scale_of_objects);
   for (KnownScale& known : result.known_scales) known.log_scale -= log_units;

@@ -56,10 +56,10 @@ struct GroundObject {
 struct GroundEstimate {
   Similarity output_from_input;  // the output's world has z up, in metres
   Eigen::Vector3d up_in_input = Eigen::Vector3d::UnitZ();
-  double tilt_sigma = 0.0;           // of up, both tilts together (rad)
-  double attitude_tilt_sigma = 0.0;  // of up from the cameras and vertical edges alone (rad)
-  double attitude_tilt = 0.0;        // from that up to the final one (rad)
-  UpEstimate attitude;               // from the cameras alone
+  double tilt_sigma = 0.0;          // of up, both tilts together (rad)
+  double cameras_tilt_sigma = 0.0;  // of up from the cameras and vertical edges alone (rad)
+  double tilt_to_cameras = 0.0;     // from that up to the final one (rad)
+  UpEstimate up_of_cameras;         // from the cameras alone
   CameraHolding holding_of_boxes = CameraHolding::kLevel;  // where planes do not contradict it
   bool cameras_are_turned = false;                         // in many ways: only planes tell up
   bool verticals = false;                                  // vertical edges were used
@@ -76,7 +76,7 @@ struct GroundEstimate {
   // boxes, nor any on which at least half of the objects stand.
   bool IsUpByBoxes() const {
     const bool planes_agree = !planes.empty() && 2 * StandingObjects() >= std::ssize(objects);
-    return attitude.holding == holding_of_boxes && !cameras_are_turned && !planes_agree;
+    return up_of_cameras.holding == holding_of_boxes && !cameras_are_turned && !planes_agree;
   }
 
   std::ptrdiff_t StandingObjects() const {

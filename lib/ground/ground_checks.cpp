@@ -163,7 +163,7 @@ void CheckHolding(const GroundEstimate& estimate, std::vector<Finding>* findings
          "surfaces of points come out tilted",
          kSeeWhetherUpright});
   }
-  const CameraHolding holding = estimate.attitude.holding;
+  const CameraHolding holding = estimate.up_of_cameras.holding;
   if (holding == estimate.holding_of_boxes) return;
   findings->push_back(
       {kHoldingOfPlanesCheck, Severity::kWarning,

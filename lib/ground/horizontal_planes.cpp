@@ -90,14 +90,14 @@ double Sharpness(const std::vector<GroundPoint>& points, const Eigen::Vector3d& 
   return sum;
 }
 
-// Directions that the attitude allows, sharpest first.
+// Directions that the up prior allows, sharpest first.
 std::vector<Eigen::Vector3d> Starts(const std::vector<GroundPoint>& points,
-                                    const UpPrior& attitude) {
-  const double lowest = attitude.up_in_world.dot(attitude.information * attitude.up_in_world);
-  const std::vector<Eigen::Vector3d> directions = UpDirections(attitude, kTiltStep);
+                                    const UpPrior& up_prior) {
+  const double lowest = up_prior.up_in_world.dot(up_prior.information * up_prior.up_in_world);
+  const std::vector<Eigen::Vector3d> directions = UpDirections(up_prior, kTiltStep);
   std::vector<double> costs;
   for (const Eigen::Vector3d& up : directions) {
-    const double cost = up.dot(attitude.information * up) - lowest;
+    const double cost = up.dot(up_prior.information * up) - lowest;
     costs.push_back(-Sharpness(points, up) * std::exp(-0.25 * cost));
   }
   return LowestApart(directions, costs, kBetweenStarts, kStarts);
@@ -181,15 +181,15 @@ std::optional<size_t> PlaneOfPoint(const Fit& fit, const GroundPoint& point, dou
 }
 
 // One step of reweighted least squares.
-void Step(const std::vector<GroundPoint>& points, const UpPrior& attitude, Fit* fit) {
+void Step(const std::vector<GroundPoint>& points, const UpPrior& up_prior, Fit* fit) {
   const auto count = static_cast<Eigen::Index>(2 + fit->heights.size());
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(count);
   const Eigen::Matrix<double, 3, 2> d_turns = UpByTurns(fit->up);
-  information.topLeftCorner<2, 2>() = d_turns.transpose() * attitude.information * d_turns;
-  gradient.head<2>() = d_turns.transpose() * attitude.information * fit->up;
+  information.topLeftCorner<2, 2>() = d_turns.transpose() * up_prior.information * d_turns;
+  gradient.head<2>() = d_turns.transpose() * up_prior.information * fit->up;
   const GemanMcClureLoss loss(kBound);
-  fit->gain = -0.5 * fit->up.dot(attitude.information * fit->up);
+  fit->gain = -0.5 * fit->up.dot(up_prior.information * fit->up);
   for (const GroundPoint& point : points) {
     const double sigma = Sigma(point, fit->up);
     const auto plane = PlaneOfPoint(*fit, point, sigma);
@@ -214,10 +214,10 @@ void Step(const std::vector<GroundPoint>& points, const UpPrior& attitude, Fit* 
   fit->covariance = solver.solve(Eigen::MatrixXd::Identity(count, count));
 }
 
-Fit FitPlanes(const std::vector<GroundPoint>& points, const UpPrior& attitude, Eigen::Vector3d up,
+Fit FitPlanes(const std::vector<GroundPoint>& points, const UpPrior& up_prior, Eigen::Vector3d up,
               std::vector<double> heights) {
   Fit fit{std::move(up), std::move(heights), {}, 0.0};
-  for (int round = 0; round < kRounds; ++round) Step(points, attitude, &fit);
+  for (int round = 0; round < kRounds; ++round) Step(points, up_prior, &fit);
   return fit;
 }
 
@@ -264,11 +264,11 @@ Eigen::Matrix3d CovarianceOf(const Fit& fit, size_t plane, const Eigen::Vector3d
 }
 
 // Adds the scatter of fits that leave out one sector each (delete-a-block jackknife).
-void AddScatter(const std::vector<GroundPoint>& points, const UpPrior& attitude, const Fit& fit,
+void AddScatter(const std::vector<GroundPoint>& points, const UpPrior& up_prior, const Fit& fit,
                 HorizontalPlanes* result) {
   constexpr double kShare = (kSectors - 1.0) / kSectors;
   for (const auto& others : WithoutSectors(points, fit)) {
-    const Fit without = FitPlanes(others, attitude, fit.up, fit.heights);
+    const Fit without = FitPlanes(others, up_prior, fit.up, fit.heights);
     for (size_t k = 0; k < result->planes.size(); ++k) {
       PlaneOfPoints& plane = result->planes[k];
       const Eigen::Vector3d change = Change(fit, without, k, plane.centre_in_world);
@@ -277,7 +277,7 @@ void AddScatter(const std::vector<GroundPoint>& points, const UpPrior& attitude,
   }
 }
 
-HorizontalPlanes PlanesOf(const std::vector<GroundPoint>& points, const UpPrior& attitude,
+HorizontalPlanes PlanesOf(const std::vector<GroundPoint>& points, const UpPrior& up_prior,
                           const Fit& fit, const Eigen::Matrix2d& ambiguity) {
   HorizontalPlanes result;
   result.ambiguity = ambiguity;
@@ -296,7 +296,7 @@ HorizontalPlanes PlanesOf(const std::vector<GroundPoint>& points, const UpPrior&
     plane.height = fit.heights[k];
     plane.covariance = CovarianceOf(fit, k, plane.centre_in_world);
   }
-  AddScatter(points, attitude, fit, &result);
+  AddScatter(points, up_prior, fit, &result);
   for (PlaneOfPoints& plane : result.planes) {
     plane.covariance.diagonal().head<2>().array() += kLyingThings * kLyingThings;
     plane.covariance(2, 2) += kCommonHeight * kCommonHeight;
@@ -330,10 +330,10 @@ Eigen::Matrix2d AmbiguityOf(std::vector<Fit> fits, const Fit& best) {
   return squares / sum;
 }
 
-HorizontalPlanes WithoutPlanes(const UpPrior& attitude) {
+HorizontalPlanes WithoutPlanes(const UpPrior& up_prior) {
   HorizontalPlanes result;
-  result.up_in_world = attitude.up_in_world;
-  result.tilt_covariance = TiltCovariance(attitude);
+  result.up_in_world = up_prior.up_in_world;
+  result.tilt_covariance = TiltCovariance(up_prior);
   return result;
 }
 
@@ -349,22 +349,22 @@ std::vector<GroundPoint> GroundPoints(const Sequence& sequence,
 }
 
 HorizontalPlanes FindHorizontalPlanes(const std::vector<GroundPoint>& points,
-                                      const UpPrior& attitude) {
-  const std::vector<GroundPoint> usable = UsablePoints(points, attitude.up_in_world);
+                                      const UpPrior& up_prior) {
+  const std::vector<GroundPoint> usable = UsablePoints(points, up_prior.up_in_world);
   std::vector<Fit> fits;
-  for (const Eigen::Vector3d& start : Starts(usable, attitude)) {
+  for (const Eigen::Vector3d& start : Starts(usable, up_prior)) {
     Eigen::Vector3d up = start;
     for (int round = 0; round < 2; ++round) {
       const std::vector<double> heights = PeakHeights(usable, up);
       if (heights.empty()) break;
-      fits.push_back(FitPlanes(usable, attitude, up, heights));
+      fits.push_back(FitPlanes(usable, up_prior, up, heights));
       up = fits.back().up;
     }
   }
-  if (fits.empty()) return WithoutPlanes(attitude);
+  if (fits.empty()) return WithoutPlanes(up_prior);
   const Fit& best = *std::ranges::max_element(fits, {}, &Fit::gain);
   const Eigen::Matrix2d ambiguity = AmbiguityOf(fits, best);
-  return PlanesOf(usable, attitude, best, ambiguity);
+  return PlanesOf(usable, up_prior, best, ambiguity);
 }
 
 void AddAmbiguity(double variance, HorizontalPlanes* planes) {
@@ -377,12 +377,12 @@ void AddAmbiguity(double variance, HorizontalPlanes* planes) {
 }
 
 HorizontalPlanes Refined(const HorizontalPlanes& planes, const std::vector<GroundPoint>& points,
-                         const UpPrior& attitude) {
-  if (planes.planes.empty()) return WithoutPlanes(attitude);
+                         const UpPrior& up_prior) {
+  if (planes.planes.empty()) return WithoutPlanes(up_prior);
   std::vector<double> heights;
   for (const PlaneOfPoints& plane : planes.planes) heights.push_back(plane.height);
   const std::vector<GroundPoint> usable = UsablePoints(points, planes.up_in_world);
-  return PlanesOf(usable, attitude, FitPlanes(usable, attitude, planes.up_in_world, heights),
+  return PlanesOf(usable, up_prior, FitPlanes(usable, up_prior, planes.up_in_world, heights),
                   planes.ambiguity);
 }
 

@@ -52,15 +52,15 @@ struct HorizontalPlanes {
 // Adds a variance of up (rad^2).
 void AddAmbiguity(double variance, HorizontalPlanes* planes);
 
-// Finds the up direction, among those that the attitude of the cameras allows, in which most points
+// Finds the up direction, among those that the up prior of the cameras allows, in which most points
 // lie on few planes, by least squares over the points of all planes. The unit of length is the
-// typical distance of the points from the cameras. Without planes, up is that of the attitude.
+// typical distance of the points from the cameras. Without planes, up is that of the up prior.
 HorizontalPlanes FindHorizontalPlanes(const std::vector<GroundPoint>& points,
-                                      const UpPrior& attitude);
+                                      const UpPrior& up_prior);
 
 // The up direction and the heights from the points of these planes only. The covariances include
 // the scatter over sectors of the planes, which shows planes that are not even or not parallel.
 HorizontalPlanes Refined(const HorizontalPlanes& planes, const std::vector<GroundPoint>& points,
-                         const UpPrior& attitude);
+                         const UpPrior& up_prior);
 
 }  // namespace soslam

@@ -65,7 +65,7 @@ struct GroundOptions {
                "the box's width or height, at least 1 px");
     visit.Real("view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
                "boxes from viewpoints closer than this angle at the object count as one; so do the "
-               "attitudes of cameras that look less than this apart");
+               "tilts of cameras that look less than this apart");
     visit.Group("Up");
     visit.Real("camera_roll_sigma_deg", &camera_roll_sigma_deg, {1e-3, 1e3},
                "standard deviation of the tilt of the cameras' x axes; large: unknown");

@@ -40,12 +40,12 @@ double ExpectedCost(const MultiViewObservation& observation) {
 }
 
 // Estimates the planes of all objects with one mount. The z axes of their bodies point up as in
-// `attitude`.
+// `up_prior`.
 class Estimator {
  public:
   Estimator(const Sequence& sequence, const std::vector<std::optional<ShapePrior>>& priors,
-            Mount mount, const UpPrior& attitude, const PlanesOptions& options, int threads)
-      : sequence_(sequence), options_(options), threads_(threads), attitude_(attitude) {
+            Mount mount, const UpPrior& up_prior, const PlanesOptions& options, int threads)
+      : sequence_(sequence), options_(options), threads_(threads), up_prior_(up_prior) {
     auto detections = DetectionsByObject(sequence);
     for (size_t i = 0; i < sequence.objects.size(); ++i) {
       // A moving object has no single place in the world.
@@ -58,7 +58,7 @@ class Estimator {
 
   // Adds the costs of the objects with this mount.
   void AddCostsOfUprightBodies(BodyCosts* costs) const {
-    const Eigen::Vector3d up = SearchUp(attitude_, sparse_, threads_).front();
+    const Eigen::Vector3d up = SearchUp(up_prior_, sparse_, threads_).front();
     for (size_t i = 0; i < sparse_.size(); ++i) {
       if (!sparse_[i]) continue;
       costs->of_objects[i] = CostOfUprightBody(up, *sparse_[i]);
@@ -70,7 +70,7 @@ class Estimator {
   std::optional<PlanesEstimate> Estimate() {
     std::optional<PlanesEstimate> best;
     double lowest = 0.0;
-    for (const Eigen::Vector3d& up : SearchUp(attitude_, sparse_, threads_)) {
+    for (const Eigen::Vector3d& up : SearchUp(up_prior_, sparse_, threads_)) {
       auto estimate = EstimateFrom(up);
       if (!estimate) continue;
       const double cost = CostOfAll(*estimate);
@@ -98,7 +98,7 @@ class Estimator {
   // None when no body's views determine the height of its base, or a fit fails.
   std::optional<PlanesEstimate> EstimateFrom(const Eigen::Vector3d& up) {
     PlanesEstimate estimate;
-    estimate.up_of_cameras = attitude_.up_in_world;
+    estimate.up_of_cameras = up_prior_.up_in_world;
     Plane reference{up, 0.0};
     std::pair<std::vector<size_t>, std::vector<int>> before;
     for (; estimate.rounds < kMaxRounds && !estimate.settled; ++estimate.rounds) {
@@ -115,7 +115,7 @@ class Estimator {
   }
 
   // Cost of all objects' boxes (including objects that do not decide about planes), of the cameras'
-  // attitude, and of the number of planes.
+  // up prior, and of the number of planes.
   double CostOfAll(const PlanesEstimate& estimate) const {
     double cost =
         *estimate.cost + static_cast<double>(estimate.planes.size()) * options_.new_plane_cost;
@@ -160,8 +160,8 @@ class Estimator {
       heights.push_back(-body.observation.plane_in_world.SignedDistance(pivot));
     }
     const PlaneHeights levels = ClusterPlaneHeights(
-        evidence, heights, EvidenceOf(attitude_, *reference), kMaxTilt, options_.new_plane_cost);
-    standing_ = {own_, levels.level_of, {}, attitude_, options_.height_sigma_fraction};
+        evidence, heights, EvidenceOf(up_prior_, *reference), kMaxTilt, options_.new_plane_cost);
+    standing_ = {own_, levels.level_of, {}, up_prior_, options_.height_sigma_fraction};
     for (const double height : levels.heights) {
       standing_.planes.push_back(
           Moved(*reference, pivot, {levels.tilt.x(), levels.tilt.y(), height}));
@@ -183,7 +183,7 @@ class Estimator {
     if (options_.parallel) return RefineTogether(&standing_);
     for (size_t plane = 0; plane < standing_.planes.size(); ++plane) {
       StandingBodies alone{
-          {}, {}, {standing_.planes[plane]}, attitude_, options_.height_sigma_fraction};
+          {}, {}, {standing_.planes[plane]}, up_prior_, options_.height_sigma_fraction};
       for (size_t i = 0; i < standing_.bodies.size(); ++i) {
         if (standing_.plane_of[i] == static_cast<int>(plane)) {
           alone.bodies.push_back(standing_.bodies[i]);
@@ -204,7 +204,7 @@ class Estimator {
 
   void Write(PlanesEstimate* estimate) const {
     estimate->cost = 0.0;
-    estimate->attitude_information = attitude_.information;
+    estimate->attitude_information = up_prior_.information;
     for (const RefinedPlanes& refined : refined_) *estimate->cost += refined.cost;
     for (const auto& observation : observations_) {
       if (observation) estimate->expected_cost += ExpectedCost(*observation);
@@ -285,7 +285,7 @@ class Estimator {
   const Sequence& sequence_;
   const PlanesOptions& options_;
   int threads_;
-  UpPrior attitude_;
+  UpPrior up_prior_;
   // Per object; none for an object without detections.
   std::vector<std::optional<MultiViewObservation>> observations_;
   std::vector<std::optional<MultiViewObservation>> sparse_;
@@ -296,10 +296,10 @@ class Estimator {
   std::vector<RefinedPlanes> refined_;  // one for all planes where they are parallel
 };
 
-// Attitude for hanging objects, whose z axes point down. Ceilings are parallel to floors, if there
+// Up prior for hanging objects, whose z axes point down. Ceilings are parallel to floors, if there
 // are any.
-UpPrior DownOf(const UpPrior& attitude, const std::optional<PlanesEstimate>& floors) {
-  UpPrior down{attitude.information, -attitude.up_in_world};
+UpPrior DownOf(const UpPrior& up_prior, const std::optional<PlanesEstimate>& floors) {
+  UpPrior down{up_prior.information, -up_prior.up_in_world};
   if (!floors) return down;
   const EstimatedPlane& floor = floors->planes.front();
   down.up_in_world = -floor.plane_in_world.normal;
@@ -345,28 +345,28 @@ PlanesEstimate JoinedPlanes(const PlanesEstimate& floors, const PlanesEstimate& 
 
 BodyCosts CostsOfUprightBodies(const Sequence& sequence,
                                const std::vector<std::optional<ShapePrior>>& priors,
-                               const UpPrior& attitude, const PlanesOptions& options, int threads) {
+                               const UpPrior& up_prior, const PlanesOptions& options, int threads) {
   BodyCosts costs{std::vector<std::optional<double>>(sequence.objects.size())};
   for (const Mount mount : {Mount::kStanding, Mount::kHanging}) {
-    Estimator(sequence, priors, mount, attitude, options, threads).AddCostsOfUprightBodies(&costs);
+    Estimator(sequence, priors, mount, up_prior, options, threads).AddCostsOfUprightBodies(&costs);
   }
   return costs;
 }
 
 std::optional<PlanesEstimate> FindPlanes(const Sequence& sequence,
                                          const std::vector<std::optional<ShapePrior>>& priors,
-                                         const UpPrior& attitude, const PlanesOptions& options,
+                                         const UpPrior& up_prior, const PlanesOptions& options,
                                          int threads) {
   const auto planes_of = [&](Mount mount, const UpPrior& up) {
     return Estimator(sequence, priors, mount, up, options, threads).Estimate();
   };
-  const auto floors = planes_of(Mount::kStanding, attitude);
-  const auto ceilings = planes_of(Mount::kHanging, DownOf(attitude, floors));
+  const auto floors = planes_of(Mount::kStanding, up_prior);
+  const auto ceilings = planes_of(Mount::kHanging, DownOf(up_prior, floors));
   std::optional<PlanesEstimate> estimate = floors ? floors : ceilings;
   if (!estimate) return std::nullopt;
   if (floors && ceilings) estimate = JoinedPlanes(*floors, *ceilings, options.parallel, priors);
-  estimate->up_of_cameras = attitude.up_in_world;
-  estimate->attitude_information = attitude.information;
+  estimate->up_of_cameras = up_prior.up_in_world;
+  estimate->attitude_information = up_prior.information;
   for (size_t i = 0; i < priors.size(); ++i) {
     const Mount mount = MountOf(priors[i]);
     const bool has_planes =

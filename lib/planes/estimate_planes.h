@@ -19,17 +19,17 @@ struct BodyCosts {
 };
 
 // Costs with an upright body of free height per object, at the up direction that is best for all
-// objects among those that the attitude allows.
+// objects among those that the up prior allows.
 BodyCosts CostsOfUprightBodies(const Sequence& sequence,
                                const std::vector<std::optional<ShapePrior>>& priors,
-                               const UpPrior& attitude, const PlanesOptions& options, int threads);
+                               const UpPrior& up_prior, const PlanesOptions& options, int threads);
 
 // Estimates the planes that the sequence's upright objects stand on, from their boxes in several
 // frames, the trajectory, the objects' priors and the prior on up. None when no object's views
 // determine the height of its base (one view, or all from the same place).
 std::optional<PlanesEstimate> FindPlanes(const Sequence& sequence,
                                          const std::vector<std::optional<ShapePrior>>& priors,
-                                         const UpPrior& attitude, const PlanesOptions& options,
+                                         const UpPrior& up_prior, const PlanesOptions& options,
                                          int threads);
 
 }  // namespace soslam

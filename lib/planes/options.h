@@ -54,7 +54,7 @@ struct PlanesOptions {
                "width or height; at least 1 px");
     visit.Real("view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
                "boxes from viewpoints closer than this angle at the object share what "
-               "the label's shape cannot explain, so that they count as one; so do the attitudes "
+               "the label's shape cannot explain, so that they count as one; so do the tilts "
                "of cameras that look less than this apart; 0: all are independent");
     visit.Real("huber_delta", &huber_delta, {1e-9, 1e9},
                "edges farther off than this many standard deviations count linearly");

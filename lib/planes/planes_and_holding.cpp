@@ -187,7 +187,7 @@ void AddHypothesis(const Sequence& sequence, const LevelTrajectory& trajectory,
                    const HoldingEvidence& holding,
                    const std::vector<std::optional<ShapePrior>>& priors,
                    const PlanesOptions& options, int threads, std::vector<Hypothesis>* hypotheses) {
-  const Eigen::Vector3d& up = trajectory.attitude.up_in_world;
+  const Eigen::Vector3d& up = trajectory.up_prior.up_in_world;
   const bool is_known = std::ranges::any_of(*hypotheses, [&](const Hypothesis& other) {
     return IsSameUp(other.evidence.up_in_world, up);
   });
@@ -196,7 +196,7 @@ void AddHypothesis(const Sequence& sequence, const LevelTrajectory& trajectory,
   hypothesis.evidence.up_in_world = up;
   if (!TakeOppositeCosts(*hypotheses, &hypothesis)) {
     const BodyCosts costs = CostsOfUprightBodies(WithPoses(sequence, trajectory.world_from_camera),
-                                                 priors, trajectory.attitude, options, threads);
+                                                 priors, trajectory.up_prior, options, threads);
     hypothesis.evidence.object_costs = costs.of_objects;
     hypothesis.expected_cost = costs.expected;
   }
@@ -239,7 +239,7 @@ void EstimatePlanesOf(const Sequence& sequence,
                       const PlanesOptions& options, int threads, Hypothesis* hypothesis) {
   PlanesAndHolding held;
   held.level = WithPoses(sequence, hypothesis->trajectory.world_from_camera);
-  auto estimate = FindPlanes(held.level, priors, hypothesis->trajectory.attitude, options, threads);
+  auto estimate = FindPlanes(held.level, priors, hypothesis->trajectory.up_prior, options, threads);
   if (!estimate) {
     hypothesis->evidence.other_cost = options.new_plane_cost;
     hypothesis->evidence.can_be_chosen = false;

@@ -17,7 +17,7 @@ namespace soslam {
 // Trajectory without drift about the horizontal axes.
 struct LevelTrajectory {
   std::vector<Rigid3d> world_from_camera;  // the first pose is unchanged
-  UpPrior attitude;                        // of the first camera's world
+  UpPrior up_prior;                        // of the first camera's world
 };
 
 // Removes the drift of odometry about the horizontal axes. Because of drift, up differs from frame

@@ -62,13 +62,13 @@ struct PlanesEstimate {
   Eigen::Vector3d up_of_cameras = Eigen::Vector3d::UnitZ();
   std::optional<Eigen::Matrix3d> attitude_information;
   // Tried holdings in the order of kCameraHoldings, and the chosen one; empty where the cameras'
-  // attitude was given.
+  // up prior was given.
   std::vector<TriedHolding> holdings;
   CameraHolding holding = CameraHolding::kLevel;
   bool verticals = false;
   // Variance of the normals (rad^2) over other possible holdings; zero where the choice is clear.
   double holding_tilt_variance = 0.0;
-  std::optional<double> cost;  // total cost of all boxes, ratios and camera attitudes
+  std::optional<double> cost;  // total cost of all boxes, ratios and the up prior
   double expected_cost = 0.0;  // cost expected from the boxes' noise alone
   int rounds = 0;              // iterations of assigning objects to planes
   bool settled = false;        // the last iteration did not change the assignment

@@ -135,7 +135,7 @@ Eigen::VectorXd NoMotion(const StandingBodies& standing) {
   return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(standing.planes.size()) + 2);
 }
 
-// The cost of all bodies and of the cameras' attitude to second order in the planes' motions.
+// The cost of all bodies and of the cameras' up prior to second order in the planes' motions.
 QuadraticModel<Eigen::Dynamic> ModelOf(const StandingBodies& standing,
                                        const Eigen::Vector3d& pivot) {
   const Eigen::VectorXd zero = NoMotion(standing);
@@ -146,7 +146,7 @@ QuadraticModel<Eigen::Dynamic> ModelOf(const StandingBodies& standing,
     sum.gradient(at) += evidence.gradient;
     sum.information(at, at) += evidence.information;
   };
-  add(EvidenceOf(standing.attitude, standing.planes.front()), 0);
+  add(EvidenceOf(standing.up_prior, standing.planes.front()), 0);
   for (size_t i = 0; i < standing.bodies.size(); ++i) {
     const StandingBody& body = standing.bodies[i];
     const double sigma = HeightSigma(body, standing.height_sigma_fraction);
@@ -184,13 +184,13 @@ std::optional<StandingBodies> Stepped(const StandingBodies& standing, const Eige
 
 }  // namespace
 
-PlaneEvidence EvidenceOf(const UpPrior& attitude, const Plane& plane) {
+PlaneEvidence EvidenceOf(const UpPrior& up_prior, const Plane& plane) {
   const Eigen::Matrix<double, 3, 2> d_turns = UpByTurns(plane.normal);
-  const Eigen::Vector3d d_normal = attitude.information * plane.normal;
+  const Eigen::Vector3d d_normal = up_prior.information * plane.normal;
   PlaneEvidence evidence;
   evidence.cost = 0.5 * plane.normal.dot(d_normal);
   evidence.gradient.head<2>() = d_turns.transpose() * d_normal;
-  evidence.information.topLeftCorner<2, 2>() = d_turns.transpose() * attitude.information * d_turns;
+  evidence.information.topLeftCorner<2, 2>() = d_turns.transpose() * up_prior.information * d_turns;
   return evidence;
 }
 

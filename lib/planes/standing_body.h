@@ -48,12 +48,12 @@ struct StandingBodies {
   std::vector<StandingBody> bodies;
   std::vector<int> plane_of;  // for each body, an index into planes
   std::vector<Plane> planes;  // all with the same normal
-  UpPrior attitude;
+  UpPrior up_prior;
   double height_sigma_fraction = 0.0;  // see PlanesOptions
 };
 
-// The attitude's cost as a function of a plane's motion.
-PlaneEvidence EvidenceOf(const UpPrior& attitude, const Plane& plane);
+// The up prior's cost as a function of a plane's motion.
+PlaneEvidence EvidenceOf(const UpPrior& up_prior, const Plane& plane);
 
 // Standard deviation of a body's height over its plane (m).
 double HeightSigma(const StandingBody& body, double height_sigma_fraction);

@@ -187,25 +187,25 @@ Eigen::Matrix3d InformationOfVerticals(const SegmentView& view, double sigma,
   return NormalsOf({view}, sigma, 0.0).Information(up_in_world);
 }
 
-UpPrior WithVerticals(const UpPrior& attitude, const std::vector<SegmentView>& views, double sigma,
+UpPrior WithVerticals(const UpPrior& up_prior, const std::vector<SegmentView>& views, double sigma,
                       double correlation_rad, double max_tilt) {
   const LevelDirections normals = NormalsOf(views, sigma, correlation_rad);
   const auto cost = [&](const Eigen::Vector3d& up) {
-    return 0.5 * up.dot(attitude.information * up) + normals.Cost(up);
+    return 0.5 * up.dot(up_prior.information * up) + normals.Cost(up);
   };
-  Eigen::Vector3d best = attitude.up_in_world;
+  Eigen::Vector3d best = up_prior.up_in_world;
   double lowest = cost(best);
-  const Eigen::Quaterniond level = UprightRotation(attitude.up_in_world, 0.0);
+  const Eigen::Quaterniond level = UprightRotation(up_prior.up_in_world, 0.0);
   for (int i = -kUpSteps; i <= kUpSteps; ++i) {
     for (int k = -kUpSteps; k <= kUpSteps; ++k) {
       const Eigen::Vector3d turn = Eigen::Vector3d(i, k, 0.0) * (max_tilt / kUpSteps);
-      const Eigen::Vector3d up = ExpRotation(level * turn) * attitude.up_in_world;
+      const Eigen::Vector3d up = ExpRotation(level * turn) * up_prior.up_in_world;
       if (cost(up) >= lowest) continue;
       lowest = cost(up);
       best = up;
     }
   }
-  return normals.Descend(attitude.information, best);
+  return normals.Descend(up_prior.information, best);
 }
 
 namespace {
@@ -217,9 +217,9 @@ constexpr size_t kStarts = 4;
 constexpr double kBetweenStarts = 1.6 * kTiltStep;
 constexpr double kYawStepOfSearch = 6.0 * kRadPerDeg;
 
-double CostOf(const Eigen::Vector3d& up, const UpPrior& attitude,
+double CostOf(const Eigen::Vector3d& up, const UpPrior& up_prior,
               const std::vector<std::optional<MultiViewObservation>>& observations) {
-  double cost = 0.5 * up.dot(attitude.information * up);
+  double cost = 0.5 * up.dot(up_prior.information * up);
   for (const auto& observation : observations) {
     if (observation) cost += CostOfUprightBody(up, *observation).value_or(kCostWithoutBody);
   }
@@ -272,13 +272,13 @@ std::optional<double> CostOfUprightBody(const Eigen::Vector3d& up_in_world,
 }
 
 std::vector<Eigen::Vector3d> SearchUp(
-    const UpPrior& attitude, const std::vector<std::optional<MultiViewObservation>>& observations,
+    const UpPrior& up_prior, const std::vector<std::optional<MultiViewObservation>>& observations,
     int threads) {
-  const std::vector<Eigen::Vector3d> candidates = UpDirections(attitude, kTiltStep);
+  const std::vector<Eigen::Vector3d> candidates = UpDirections(up_prior, kTiltStep);
   std::vector<double> costs(candidates.size());
   ParallelFor("directions of up", static_cast<int>(candidates.size()), threads, [&](int i) {
     const auto index = static_cast<size_t>(i);
-    costs[index] = CostOf(candidates[index], attitude, observations);
+    costs[index] = CostOf(candidates[index], up_prior, observations);
   });
   return LowestApart(candidates, costs, kBetweenStarts, kStarts);
 }

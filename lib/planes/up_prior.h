@@ -56,15 +56,15 @@ struct SegmentView {
 Eigen::Matrix3d InformationOfVerticals(const SegmentView& view, double sigma,
                                        const Eigen::Vector3d& up_in_world);
 
-// Adds vertical edges of man-made structures to the attitude. The plane through a camera's centre
+// Adds vertical edges of man-made structures to the up prior. The plane through a camera's centre
 // and the image of a vertical edge contains the up direction. Each segment is weighted by its
 // length, relative to a tenth of the image's height; `sigma` (rad) is the standard deviation of the
 // angle between up and its plane. The loss is bounded (Geman-McClure), so that segments off by more
 // than three standard deviations, which are not vertical, have little influence. Cameras whose
 // optical axes are closer than about `correlation_rad` see the same edges and count together as
 // one. The result is linearised at the up direction of least cost within `max_tilt` (rad) of the
-// attitude's own.
-UpPrior WithVerticals(const UpPrior& attitude, const std::vector<SegmentView>& views, double sigma,
+// up prior's own.
+UpPrior WithVerticals(const UpPrior& up_prior, const std::vector<SegmentView>& views, double sigma,
                       double correlation_rad, double max_tilt);
 
 // Directions around the prior's own, which comes first, in steps of `step` (rad): up to 45 degrees
@@ -89,7 +89,7 @@ std::optional<double> CostOfUprightBody(const Eigen::Vector3d& up_in_world,
 // height fit the boxes best, lowest cost first. There are several minima, because bodies may stand
 // on another of their axes. `observations`: per object; none for objects that do not take part.
 std::vector<Eigen::Vector3d> SearchUp(
-    const UpPrior& attitude, const std::vector<std::optional<MultiViewObservation>>& observations,
+    const UpPrior& up_prior, const std::vector<std::optional<MultiViewObservation>>& observations,
     int threads);
 
 // world_from_camera of each view.

@@ -315,8 +315,8 @@ void RunGround(const GroundOptions& options, const StageFiles& files, int thread
                      ReadSemanticTable(files.at("table")), options, threads);
   info.findings = CheckGround(estimate, options);
   if (estimate.IsUpByBoxes()) {
-    std::ranges::move(CheckUp(estimate.attitude.holding, estimate.attitude.holdings,
-                              estimate.attitude.holding_tilt_variance),
+    std::ranges::move(CheckUp(estimate.up_of_cameras.holding, estimate.up_of_cameras.holdings,
+                              estimate.up_of_cameras.holding_tilt_variance),
                       std::back_inserter(info.findings));
   }
   ReportFindings("ground", info.findings);

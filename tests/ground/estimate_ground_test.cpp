@@ -274,12 +274,12 @@ TEST(CheckGroundTest, FewObjectsOnPlanesAreAFinding) {
 
 TEST(CheckGroundTest, AnotherWayToHoldCamerasThanThatOfTheBoxesIsAFinding) {
   GroundEstimate estimate;
-  estimate.attitude.holding = CameraHolding::kRolled90;
+  estimate.up_of_cameras.holding = CameraHolding::kRolled90;
   EXPECT_THAT(CheckGround(estimate, {}),
               Contains(AllOf(Field(&Finding::check, "camera_holding_of_planes"),
                              Field(&Finding::found, HasSubstr("turned clockwise")))));
   estimate.holding_of_boxes = CameraHolding::kLookingDown;
-  estimate.attitude.holding = CameraHolding::kLookingDownRolled90;
+  estimate.up_of_cameras.holding = CameraHolding::kLookingDownRolled90;
   EXPECT_THAT(CheckGround(estimate, {}),
               Contains(Field(&Finding::found,
                              AllOf(HasSubstr("was held looking straight down, with upright images"),
@@ -362,7 +362,7 @@ TEST(EstimateGroundTest, UpIsByBoxesUnlessPlanesTell) {
   estimate.objects[2].plane = 0;
   EXPECT_FALSE(estimate.IsUpByBoxes());
   estimate.planes.clear();
-  estimate.attitude.holding = CameraHolding::kRolled90;
+  estimate.up_of_cameras.holding = CameraHolding::kRolled90;
   EXPECT_FALSE(estimate.IsUpByBoxes());
 }
 

@@ -30,16 +30,16 @@ class HorizontalPlanesTest : public testing::Test {
   }
 
   // Known to this many degrees, and as far off.
-  UpPrior Attitude(double off_deg) const {
-    UpPrior attitude;
+  UpPrior CamerasUp(double off_deg) const {
+    UpPrior up_prior;
     const double off = off_deg * kRadPerDeg;
     const Eigen::Vector3d up =
         Eigen::AngleAxisd(off, Eigen::Vector3d::UnitX()) * Eigen::Vector3d::UnitZ();
-    attitude.up_in_world = world_from_room_ * up;
-    attitude.information =
-        (Eigen::Matrix3d::Identity() - attitude.up_in_world * attitude.up_in_world.transpose()) /
+    up_prior.up_in_world = world_from_room_ * up;
+    up_prior.information =
+        (Eigen::Matrix3d::Identity() - up_prior.up_in_world * up_prior.up_in_world.transpose()) /
         (off * off);
-    return attitude;
+    return up_prior;
   }
 
   Eigen::Quaterniond world_from_room_ = RandomRotation();
@@ -48,7 +48,7 @@ class HorizontalPlanesTest : public testing::Test {
 
 TEST_F(HorizontalPlanesTest, FindsFloorAndTable) {
   AddRoom();
-  const HorizontalPlanes found = FindHorizontalPlanes(points_, Attitude(5.0));
+  const HorizontalPlanes found = FindHorizontalPlanes(points_, CamerasUp(5.0));
   EXPECT_LT(AngleBetweenDeg(found.up_in_world, world_from_room_ * Eigen::Vector3d::UnitZ()), 0.1);
   ASSERT_EQ(found.planes.size(), 2u);
   EXPECT_NEAR(found.planes[0].height, 0.0, 0.001);
@@ -59,37 +59,37 @@ TEST_F(HorizontalPlanesTest, FindsFloorAndTable) {
 
 TEST_F(HorizontalPlanesTest, CovarianceGrowsWithPlanesThatAreNotParallel) {
   AddRoom();
-  const HorizontalPlanes even = FindHorizontalPlanes(points_, Attitude(5.0));
+  const HorizontalPlanes even = FindHorizontalPlanes(points_, CamerasUp(5.0));
   for (int i = 0; i < 300; ++i) {  // a ramp of a degree beside the floor
     const double x = RandomUniform(-4, -2);
     AddPoint({x, RandomUniform(-2, 2), 0.0175 * (-2 - x)});
   }
-  const HorizontalPlanes uneven = Refined(even, points_, Attitude(5.0));
+  const HorizontalPlanes uneven = Refined(even, points_, CamerasUp(5.0));
   EXPECT_GT(uneven.tilt_covariance.trace(), 1.05 * even.tilt_covariance.trace());
 }
 
 TEST_F(HorizontalPlanesTest, RefinedUsesOnlyTheGivenPlanes) {
   AddRoom();
-  HorizontalPlanes planes = FindHorizontalPlanes(points_, Attitude(5.0));
+  HorizontalPlanes planes = FindHorizontalPlanes(points_, CamerasUp(5.0));
   ASSERT_EQ(planes.planes.size(), 2u);
   planes.planes.erase(planes.planes.begin());
-  const HorizontalPlanes refined = Refined(planes, points_, Attitude(5.0));
+  const HorizontalPlanes refined = Refined(planes, points_, CamerasUp(5.0));
   ASSERT_EQ(refined.planes.size(), 1u);
   EXPECT_NEAR(refined.planes[0].height, 0.7 / kUnit, 0.003);
   EXPECT_GT(refined.tilt_covariance.trace(), planes.tilt_covariance.trace());
 }
 
 TEST_F(HorizontalPlanesTest, WithoutPointsUpIsThatOfTheCameras) {
-  const UpPrior attitude = Attitude(5.0);
-  const HorizontalPlanes found = FindHorizontalPlanes({}, attitude);
+  const UpPrior up_prior = CamerasUp(5.0);
+  const HorizontalPlanes found = FindHorizontalPlanes({}, up_prior);
   EXPECT_TRUE(found.planes.empty());
-  EXPECT_TRUE(found.up_in_world.isApprox(attitude.up_in_world));
+  EXPECT_TRUE(found.up_in_world.isApprox(up_prior.up_in_world));
   EXPECT_NEAR(std::sqrt(found.tilt_covariance(0, 0)), 5.0 * kRadPerDeg, 1e-6);
 }
 
 TEST_F(HorizontalPlanesTest, AWallAloneIsNoPlane) {
   for (int i = 0; i < 300; ++i) AddPoint({2.0, RandomUniform(-2, 2), RandomUniform(0, 2.5)});
-  EXPECT_TRUE(FindHorizontalPlanes(points_, Attitude(3.0)).planes.empty());
+  EXPECT_TRUE(FindHorizontalPlanes(points_, CamerasUp(3.0)).planes.empty());
 }
 
 }  // namespace

@@ -30,12 +30,13 @@ Scene CuboidScene(int seed, int objects) {
   return RandomScene(seed, objects, kFrames, {Shape::kBox});
 }
 
-UpPrior Attitude(const Sequence& sequence) {
+UpPrior CamerasUp(const Sequence& sequence) {
   return UpPriorFromCameras(PosesOf(sequence), 5.0 * kRadPerDeg, 30.0 * kRadPerDeg, 0.3);
 }
 
 PlanesEstimate Estimate(const Sequence& sequence, const PlanesOptions& options = ModelOptions()) {
-  return FindPlanes(sequence, TrueCuboidPriors(sequence, kLogSigma), Attitude(sequence), options, 2)
+  return FindPlanes(sequence, TrueCuboidPriors(sequence, kLogSigma), CamerasUp(sequence), options,
+                    2)
       .value();
 }
 
@@ -100,8 +101,8 @@ TEST(EstimatePlanes, WhatHangsHasCeilings) {
     SCOPED_TRACE(seed);
     const Sequence sequence = SyntheticSequence(WithCeiling(CuboidScene(seed, 8), 1.15), false);
     const PlanesEstimate estimate =
-        FindPlanes(sequence, WithHanging(TrueCuboidPriors(sequence, kLogSigma)), Attitude(sequence),
-                   ModelOptions(), 2)
+        FindPlanes(sequence, WithHanging(TrueCuboidPriors(sequence, kLogSigma)),
+                   CamerasUp(sequence), ModelOptions(), 2)
             .value();
     ASSERT_EQ(estimate.planes.size(), 2u);
     ExpectGiven(sequence, estimate, 0.2 * kRadPerDeg, 0.005);
@@ -116,7 +117,7 @@ TEST(EstimatePlanes, WhatHasNoPlaneToBeMountedOnHasNoSupport) {
   priors[1]->mount = Mount::kHanging;  // seen once: no height
   KeepOneDetectionOf(1, &sequence);
   const PlanesEstimate estimate =
-      FindPlanes(sequence, priors, Attitude(sequence), ModelOptions(), 2).value();
+      FindPlanes(sequence, priors, CamerasUp(sequence), ModelOptions(), 2).value();
   EXPECT_EQ(estimate.planes.size(), 1u);
   EXPECT_EQ(estimate.objects[0].reason, SupportReason::kNone);
   EXPECT_EQ(estimate.objects[1].reason, SupportReason::kNone);
@@ -140,7 +141,7 @@ TEST(EstimatePlanes, PlanesNeedNotBeParallel) {
 }
 
 // How well one object shows the tilt is another matter: from 0.5 to 11 degrees here. Exact boxes
-// leave only the pull of the cameras' attitude, which is less than what the covariance allows for.
+// leave only the pull of the cameras' up prior, which is less than what the covariance allows for.
 TEST(EstimatePlanes, OneObjectIsEnough) {
   for (int seed = 0; seed < 4; ++seed) {
     SCOPED_TRACE(seed);
@@ -197,7 +198,7 @@ PlanesEstimate EstimateWithHeights(const Sequence& sequence, double log_sigma, b
   }
   PlanesOptions options = ModelOptions();
   options.size_prior = size_prior;
-  return FindPlanes(sequence, priors, Attitude(sequence), options, 2).value();
+  return FindPlanes(sequence, priors, CamerasUp(sequence), options, 2).value();
 }
 
 // From places so near to each other that rays hardly cross, only known heights say how far the

@@ -161,17 +161,17 @@ std::vector<SegmentView> Room(const std::vector<Eigen::Vector3d>& directions, in
   return views;
 }
 
-UpPrior HeldAttitude(const std::vector<SegmentView>& views) {
+UpPrior HeldUp(const std::vector<SegmentView>& views) {
   return UpPriorFromCameras(PosesOf(views), kRollSigma, kPitchSigma, kCorrelation);
 }
 
-// Edges are exact, so only those of other directions and the cameras' attitude disturb: far less
+// Edges are exact, so only those of other directions and the cameras' up prior disturb: far less
 // than one edge's standard deviation. Without verticals it is degrees.
 TEST(WithVerticals, FindsUpAmongOtherEdges) {
   double before = 0.0;
   for (int i = 0; i < 10; ++i) {
     const auto views = Room({kZ}, 8, 16);
-    const UpPrior held = HeldAttitude(views);
+    const UpPrior held = HeldUp(views);
     const auto found = WithVerticals(held, views, kSigma, kCorrelation, kMaxVerticalTilt);
     EXPECT_LT(AngleBetween(found.up_in_world, kZ), 0.3 * kRadPerDeg);
     before += AngleBetween(held.up_in_world, kZ) / 10;
@@ -180,10 +180,10 @@ TEST(WithVerticals, FindsUpAmongOtherEdges) {
 }
 
 // Up is what most edges say, but never far from how cameras are held.
-TEST(WithVerticals, StaysNearTheAttitude) {
+TEST(WithVerticals, StaysNearThePrior) {
   const Eigen::Vector3d slanted(std::sin(0.7), 0.0, std::cos(0.7));
   const auto views = Room({slanted}, 8, 16);
-  const UpPrior held = HeldAttitude(views);
+  const UpPrior held = HeldUp(views);
   const auto found = WithVerticals(held, views, kSigma, kCorrelation, kMaxVerticalTilt);
   EXPECT_LT(AngleBetween(found.up_in_world, held.up_in_world), 1.5 * kMaxVerticalTilt);
 }
@@ -259,7 +259,7 @@ TEST(Level, TakesDriftOutOfATrajectory) {
   const LevelTrajectory level = LevelInRoom(ViewsOf(truth, drifted), 0.2);
   ASSERT_EQ(level.world_from_camera.size(), truth.size());
   EXPECT_GT(WorstUp(truth, drifted, kZ), 5.0 * kRadPerDeg);
-  EXPECT_LT(WorstUp(truth, level.world_from_camera, level.attitude.up_in_world),
+  EXPECT_LT(WorstUp(truth, level.world_from_camera, level.up_prior.up_in_world),
             0.25 * kTurnFrames * kDrift);
   EXPECT_LT(WorstPosition(truth, level.world_from_camera), 0.5 * WorstPosition(truth, drifted));
   EXPECT_EQ(level.world_from_camera.front().translation, truth.front().translation);
@@ -270,7 +270,7 @@ TEST(Level, TakesDriftOutOfATrajectory) {
 TEST(Level, LeavesATrajectoryWithoutDrift) {
   const std::vector<Rigid3d> truth = TrueTrajectory();
   const LevelTrajectory level = LevelInRoom(ViewsOf(truth, truth), 0.2);
-  EXPECT_LT(WorstUp(truth, level.world_from_camera, level.attitude.up_in_world), 0.2 * kRadPerDeg);
+  EXPECT_LT(WorstUp(truth, level.world_from_camera, level.up_prior.up_in_world), 0.2 * kRadPerDeg);
   EXPECT_LT(WorstPosition(truth, level.world_from_camera), 0.02);
 }
 

@@ -283,9 +283,9 @@ TEST_P(DegenerateTest, Association) {
 TEST_P(DegenerateTest, SupportPlanes) {
   ExpectAnswerOrRefusal(
       [](const Sequence& sequence, const Priors& priors) {
-        const UpPrior attitude = UpPriorFromCameras(PosesOf(sequence), 0.1, 0.5, 0.3);
+        const UpPrior up_prior = UpPriorFromCameras(PosesOf(sequence), 0.1, 0.5, 0.3);
         const auto estimate =
-            FindPlanes(sequence, priors, attitude, PlanesOptions(), /*threads=*/1);
+            FindPlanes(sequence, priors, up_prior, PlanesOptions(), /*threads=*/1);
         if (!estimate) throw NothingUsableError("no planes");
         for (const EstimatedPlane& plane : estimate->planes) {
           EXPECT_TRUE(plane.plane_in_world.normal.allFinite());
