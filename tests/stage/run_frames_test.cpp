@@ -235,7 +235,8 @@ TEST_F(RunFramesTest, RefusesWhatMakesNoDataset) {
   WritePhoto(photos_ / "2.jpg", DrawnView(0));
   ExpectError<NothingUsableError>([&] { Run(photos_); },
                                   {photos_.string(), "1 of 2 images", "1 no_motion"});
-  ExpectError<InputError>([&] { Run(photos_ / "1.jpg"); }, {"1.jpg: is a JPEG image; expected a video"});
+  ExpectError<InputError>([&] { Run(photos_ / "1.jpg"); },
+                          {"1.jpg: is a JPEG image; expected a video"});
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 1) << "nothing is left";
 }
 
