@@ -150,7 +150,7 @@ void ReadGraph(std::string_view graph, OnnxHeader* header) {
 // Fields of TensorProto in onnx.proto.
 constexpr std::uint64_t kDims = 1, kDataType = 2, kName = 8, kRawData = 9;
 constexpr std::uint64_t kFloatData = 4, kInt32Data = 5, kInt64Data = 7, kDoubleData = 10;
-constexpr std::uint64_t kUint64Data = 11;
+constexpr std::uint64_t kUint64Data = 11, kExternalData = 13, kDataLocation = 14;
 
 // Storage of the numbers of a type: in raw_data, or in a field of their own.
 struct DataType {
@@ -194,6 +194,17 @@ class Tensor {
     ForEachField(message, [&](const ProtobufField& field) { Add(field); });
   }
 
+  // The file that has the numbers; none if this one has them.
+  std::optional<std::string> ExternalFile() const {
+    constexpr std::uint64_t kKey = 1, kValue = 2;  // of StringStringEntryProto
+    if (!is_external_) return std::nullopt;
+    std::string file;
+    for (const std::string_view entry : external_data_) {
+      if (Last(entry, kKey).bytes == "location") file = Last(entry, kValue).bytes;
+    }
+    return file;
+  }
+
   void Check() const {
     const auto type = std::ranges::find(kDataTypes, type_.value_or(0), &DataType::type);
     if (type == std::end(kDataTypes)) Refuse(fmt::format("is of type {}", type_.value_or(0)));
@@ -217,6 +228,8 @@ class Tensor {
   void Add(const ProtobufField& field) {
     if (field.number == kName) name_ = field.bytes;
     if (field.number == kDims) AddSides(field);
+    if (field.number == kExternalData) external_data_.push_back(field.bytes);
+    if (field.number == kDataLocation) is_external_ = field.integer == 1;
     if (field.number == kDataType) SetOnce(field, Kind::kVarint, field.integer, &type_);
     if (field.number == kRawData) SetOnce(field, Kind::kBytes, field.bytes.size(), &raw_bytes_);
     if (std::ranges::find(kDataTypes, field.number, &DataType::field) == std::end(kDataTypes))
@@ -253,6 +266,8 @@ class Tensor {
 
   std::string_view name_;
   std::uint64_t count_ = 1;
+  bool is_external_ = false;
+  std::vector<std::string_view> external_data_;
   std::optional<std::uint64_t> type_, raw_bytes_;
   std::map<std::uint64_t, std::uint64_t> numbers_;  // count of numbers by field
 };
@@ -272,10 +287,18 @@ constexpr Member kMembers[] = {
     {Message::kAttribute, 10, Message::kTensor}, {Message::kAttribute, 11, Message::kGraph},
 };
 
-void Check(Message message, std::string_view bytes, int depth) {
+void Check(Message message, std::string_view bytes, int depth, OnnxHeader* header) {
   constexpr int kMaxDepth = 64;
   if (depth > kMaxDepth) throw InputError("is nested too deep");
-  if (message == Message::kTensor) return Tensor(bytes).Check();
+  if (message == Message::kTensor) {
+    const Tensor tensor(bytes);
+    if (auto file = tensor.ExternalFile()) {
+      header->files_of_weights.insert(std::move(*file));
+    } else {
+      tensor.Check();
+    }
+    return;
+  }
   bool has_tensor = false;
   ForEachField(bytes, [&](const ProtobufField& field) {
     const auto member = std::ranges::find_if(kMembers, [&](const Member& candidate) {
@@ -288,7 +311,7 @@ void Check(Message message, std::string_view bytes, int depth) {
     if (is_only_tensor && std::exchange(has_tensor, true)) {  // readers would merge the two
       throw InputError("an attribute has two tensors");
     }
-    Check(member->is, field.bytes, depth + 1);
+    Check(member->is, field.bytes, depth + 1, header);
   });
 }
 
@@ -298,7 +321,7 @@ OnnxHeader ReadOnnxHeader(std::string_view bytes, const std::string& name) {
   OnnxHeader header;
   bool has_graph = false;
   try {
-    Check(Message::kModel, bytes, 0);
+    Check(Message::kModel, bytes, 0, &header);
     ForEachField(bytes, [&](const ProtobufField& field) {  // ModelProto
       if (field.number == 7) {
         has_graph = true;

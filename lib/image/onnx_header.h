@@ -25,12 +25,14 @@ struct OnnxHeader {
   int opset = 0;                                // version of ONNX's own operators
   std::set<std::string> operators;              // those of the graph's nodes: "Conv", "Mul", ...
   bool has_half_weights = false;                // 16-bit floating point
+  std::set<std::string> files_of_weights;       // external data, relative to the folder of the file
   std::map<std::string, std::string> metadata;  // Ultralytics: "names", "task", "end2end", ...
 };
 
 // Reads the header of an ONNX file. Throws InputError, naming the file `name`, for one that is
 // damaged, has no graph or absurdly many inputs or outputs; and, naming the tensor, for a tensor
-// that has not as many numbers as its shape needs: OpenCV derives their number from the shape.
+// that has neither external data nor as many numbers as its shape needs: OpenCV derives their
+// number from the shape.
 OnnxHeader ReadOnnxHeader(std::string_view bytes, const std::string& name);
 
 // The shape as text, "[1, 3, ?, 640]".

@@ -57,7 +57,7 @@ bool IsHalf(const OnnxHeader& header) {
 
 // The command of Ultralytics that exports a network that OpenCV runs.
 std::string ExportCommand(const NetworkFile& file, const std::string& further = "") {
-  const cv::Size size = file.InputSize();
+  const cv::Size size = file.header.inputs.empty() ? cv::Size() : file.InputSize();
   return fmt::format(
       "yolo export model={}.pt format=onnx opset=12 imgsz={} half=False dynamic=False{}",
       fs::path(file.name).stem().string(),
@@ -98,6 +98,56 @@ std::string LikelyReason(const NetworkFile& file) {
                        ExportCommand(file));
   }
   return "";
+}
+
+// The format of a network that is no ONNX file, by its first bytes; none for others.
+std::optional<std::string> OtherFormat(std::string_view bytes) {
+  struct Signature {
+    size_t place;
+    std::string_view bytes;
+    const char* format;
+  };
+  using namespace std::string_view_literals;
+  constexpr const char* kPyTorch = "a checkpoint of PyTorch";
+  constexpr const char* kTensorRt = "an engine of TensorRT";
+  constexpr Signature kSignatures[] = {{0, "PK\x03\x04"sv, "a zip archive"},
+                                       {0, "\x80\x02"sv, kPyTorch},
+                                       {8, "{\""sv, "a safetensors file"},
+                                       {4, "TFL3"sv, "a model of TensorFlow Lite"},
+                                       {4, "{\""sv, kTensorRt},
+                                       {0, "ftrt"sv, kTensorRt},
+                                       {0, "<?xml"sv, "a model of OpenVINO"},
+                                       {0, "\x89HDF"sv, "a model of Keras"},
+                                       {0, "7767517"sv, "a model of NCNN"}};
+  if (bytes.starts_with("PK"sv) && bytes.find("/data.pkl"sv) != bytes.npos) return kPyTorch;
+  for (const Signature& signature : kSignatures) {
+    if (bytes.substr(std::min(signature.place, bytes.size())).starts_with(signature.bytes)) {
+      return signature.format;
+    }
+  }
+  return std::nullopt;
+}
+
+void RefuseOtherFormats(const NetworkFile& file) {
+  const auto format = OtherFormat(file.bytes);
+  if (!format) return;
+  throw InputError(fmt::format(
+      "{}: is {}; expected an ONNX file: a network of Ultralytics is exported with {}, others as "
+      "docs/detections.md says",
+      file.name, *format, ExportCommand(file)));
+}
+
+// OpenCV reads networks from memory.
+void RefuseExternalWeights(const NetworkFile& file) {
+  if (file.header.files_of_weights.empty()) return;
+  const fs::path path = file.name;
+  const std::string& weights = *file.header.files_of_weights.begin();
+  throw InputError(fmt::format(
+      "{}: its weights are in {}{}; expected one file with all of them: export it with "
+      "external_data=False, or join them with python3 -c \"import onnx; onnx.save(onnx.load('{}'), "
+      "'one_file.onnx')\"",
+      file.name, weights, IsFile(path.parent_path() / weights) ? "" : ", which is not beside it",
+      path.filename().string()));
 }
 
 // Throws InputError for a network that is none of those that detect objects in one image.
@@ -149,7 +199,9 @@ NetworkFile ReadNetworkFile(const fs::path& path) {
   NetworkFile file{path.string(),
                    {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()},
                    {}};
+  RefuseOtherFormats(file);
   file.header = ReadOnnxHeader(file.bytes, file.name);
+  RefuseExternalWeights(file);
   if (const auto reason = CertainlyFails(file); reason && kIsOldOpenCv) {
     throw InputError(
         fmt::format("{}: does not run in OpenCV {}: {}", file.name, CV_VERSION, *reason));

@@ -105,6 +105,17 @@ TEST(OnnxCheckTest, WhatReadersTakeDifferentlyIsRefused) {
                 {"'weights'"});
 }
 
+TEST(OnnxCheckTest, FilesOfExternalDataAreNamed) {
+  const auto location = ProtoMessage().Text(1, "location").Text(2, "net.onnx.data");
+  const auto offset = ProtoMessage().Text(1, "offset").Text(2, "64");
+  ProtoMessage tensor = Tensor(kFloat, {2, 3}).Message(kExternalData, location);
+  tensor.Message(kExternalData, offset);
+  ExpectRefused(File(tensor), {"0 numbers"});  // it does not say that they are elsewhere
+  constexpr int kDataLocation = 14;
+  EXPECT_EQ(Only(Read(File(tensor.Integer(kDataLocation, 1))).files_of_weights), "net.onnx.data");
+  EXPECT_EQ(Read(File(Tensor(kFloat, {}).Text(kRawData, Zeros(4)))).files_of_weights.size(), 0u);
+}
+
 // Those of nodes, and of graphs within them.
 TEST(OnnxCheckTest, TensorsAreFoundWhereverTheyAre) {
   const ProtoMessage bad = Tensor(kFloat, {2}).Text(kRawData, Zeros(4));

@@ -140,5 +140,32 @@ TEST_F(YoloDetectorTest, BadFilesAreNamed) {
                           {folder_.path().string(), "cannot be read"});
 }
 
+TEST_F(YoloDetectorTest, OtherFormatsAreNamedWithTheExport) {
+  using Format = std::pair<std::string, const char*>;
+  for (const auto& [bytes, format] :
+       {Format(std::string("PK\3\4\0\0 yolo11n/data.pkl", 23), "checkpoint of PyTorch"),
+        Format("PK\3\4 net.onnx", "zip archive"),
+        Format(std::string("\x80\2\x8a\x0a", 4), "checkpoint of PyTorch"),
+        Format(std::string("\x40\0\0\0\0\0\0\0{\"weights\"", 18), "safetensors"),
+        Format(std::string("\x1c\0\0\0TFL3", 8), "TensorFlow Lite"), Format("ftrt", "TensorRT"),
+        Format("<?xml version=\"1.0\"?>", "OpenVINO")}) {
+    const auto path = Write("yolo11n.pt", bytes);
+    ExpectError<InputError>([&] { ReadNetworkFile(path); },
+                            {path.string(), format, "ONNX", "yolo export model=yolo11n.pt"});
+  }
+}
+
+TEST_F(YoloDetectorTest, ExternalWeightsAreNamed) {
+  const auto location = ProtoMessage().Text(1, "location").Text(2, "net.onnx.data");
+  const auto weights =
+      ProtoMessage().Integer(1, 7).Integer(2, 1).Message(13, location).Integer(14, 1);
+  const auto path =
+      Write("net.onnx", ProtoMessage().Message(7, ProtoMessage().Message(5, weights)).bytes());
+  const auto read = [&] { ReadNetworkFile(path); };
+  ExpectError<InputError>(read, {path.string(), "net.onnx.data, which is not beside it"});
+  Write("net.onnx.data", "weights");
+  ExpectError<InputError>(read, {"weights are in net.onnx.data;", "external_data=False"});
+}
+
 }  // namespace
 }  // namespace soslam
