@@ -29,7 +29,7 @@ $(steps)/dataset: $(steps)/frames $(steps)/camera.txt
 	@rm -rf $(folder).new && mkdir -p $(MAP_ROOT)/data
 	@cp -rl $(MAP_ROOT)/frames $(folder).new 2> /dev/null || \
 	  { rm -rf $(folder).new && cp -r $(MAP_ROOT)/frames $(folder).new; }
-	@rm -f $(folder).new/run.json $(folder).new/timing.json
+	@rm -f $(folder).new/run.json $(folder).new/timing.json $(folder).new/SHA256SUMS
 	@test -z "$$MAP_CAMERA" || cp -- "$$MAP_CAMERA" $(folder).new/camera.json
 	$(call step,dataset,rm -rf $(folder) && mv $(folder).new $(folder))
 

@@ -5,14 +5,18 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "artefact/atomic_file.h"
 #include "base/error.h"
+#include "base/hash.h"
 #include "base/paths.h"
 #include "base/run_log.h"
 
@@ -35,6 +39,41 @@ bool Exchange(const fs::path& one, const fs::path& other) {
   return ::renameat2(AT_FDCWD, one.c_str(), AT_FDCWD, other.c_str(), RENAME_EXCHANGE) == 0;
 }
 
+// In the format of sha256sum.
+constexpr const char* kSums = "SHA256SUMS";
+
+// Files that a folder has besides those that kSums lists: itself, and the record of the last run.
+bool IsRecord(const fs::path& name) {
+  return name == kSums || name == "run.json" || name == "timing.json";
+}
+
+// The files of a folder and of those in it, except records, relative to it. Links count as files.
+std::vector<fs::path> FilesIn(const fs::path& folder) {
+  std::vector<fs::path> names;
+  try {
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+      fs::path name = entry.path().lexically_relative(folder);
+      const bool is_folder = fs::is_directory(entry.symlink_status());
+      if (!is_folder && !IsRecord(name)) names.push_back(std::move(name));
+    }
+  } catch (const fs::filesystem_error& error) {
+    Refuse(folder, "cannot be listed: " + error.code().message());
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+// Digests by the name of the file.
+std::map<fs::path, std::string> ReadSums(const fs::path& folder) {
+  constexpr size_t kDigest = 64, kName = kDigest + 2;
+  std::map<fs::path, std::string> sums;
+  std::ifstream stream(folder / kSums);
+  for (std::string line; std::getline(stream, line);) {
+    if (line.size() > kName) sums[line.substr(kName)] = line.substr(0, kDigest);
+  }
+  return sums;
+}
+
 }  // namespace
 
 DatasetFolder::DatasetFolder(const fs::path& folder, std::string writer)
@@ -54,16 +93,35 @@ DatasetFolder::~DatasetFolder() {
 std::string DatasetFolder::Mark() const { return "<!-- Written by " + writer_; }
 
 void DatasetFolder::CheckReplaceable() const {
-  std::error_code error;
   if (!Exists(folder_)) return;
   if (!IsFolder(folder_)) Refuse(folder_, "is not a folder; expected one, or nothing");
+  const std::vector<fs::path> files = FilesIn(folder_);
+  if (files.empty()) return;
   std::ifstream readme(folder_ / "README.md");
   std::string first_line;
   std::getline(readme, first_line);
-  if (!fs::is_empty(folder_, error) && !first_line.starts_with(Mark())) {
-    Refuse(folder_,
-           fmt::format("is not empty and was not written by {}; expected a new folder", writer_));
+  if (!first_line.starts_with(Mark()) || !IsFile(folder_ / kSums)) {
+    Refuse(folder_, fmt::format("is not empty and was not written by {}, or by an older version; "
+                                "expected a new folder",
+                                writer_));
   }
+  const auto sums = ReadSums(folder_);
+  for (const fs::path& file : files) {
+    const auto sum = sums.find(file);
+    const bool is_own = sum != sums.end() && IsFile(folder_ / file);
+    if (is_own && Sha256OfFile(folder_ / file) == sum->second) continue;
+    Refuse(folder_, fmt::format("has {}, which {} and would be lost; expected a new folder, or one "
+                                "as {} left it: move that file elsewhere, or remove the folder",
+                                file.string(), is_own ? "was changed" : "is of others", writer_));
+  }
+}
+
+void DatasetFolder::WriteSums() const {
+  std::string text;
+  for (const fs::path& file : FilesIn(temporary_)) {
+    text += fmt::format("{}  {}\n", Sha256OfFile(temporary_ / file), file.string());
+  }
+  Write(kSums, text);
 }
 
 void DatasetFolder::Write(const std::string& name, std::string_view bytes) const {
@@ -77,6 +135,7 @@ void DatasetFolder::Write(const std::string& name, std::string_view bytes) const
 void DatasetFolder::Commit() {
   CheckInputsUnchanged();
   CheckReplaceable();
+  WriteSums();
   if (const int error = SyncWith(::syncfs, temporary_)) {
     Refuse(folder_, fmt::format("cannot be written: {}", std::strerror(error)));
   }
@@ -106,9 +165,13 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SourceFrame, source, frame_number, time_s, sh
 std::string FramesText(const std::filesystem::path& path, const FramesRecord& record,
                        const ArtefactInfo& info) {
   using nlohmann::json;
-  json body = {{"name", record.name},     {"width", record.width},
-               {"height", record.height}, {"focal_hint", record.focal_hint},
-               {"frames", json::array()}, {"left_out", json::array()}};
+  json body = {{"name", record.name},
+               {"width", record.width},
+               {"height", record.height},
+               {"focal_hint", record.focal_hint},
+               {"ordered_by", record.ordered_by},
+               {"frames", json::array()},
+               {"left_out", json::array()}};
   for (const SourceFrame& frame : record.frames) {
     json entry = frame;
     if (frame.rejection) {

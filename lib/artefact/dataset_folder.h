@@ -13,12 +13,13 @@
 namespace soslam {
 
 // A dataset folder that a program writes, and that appears completely or not at all: fill it with
-// Write, then Commit().
+// Write, then Commit(). SHA256SUMS in it lists its files, so that those that others have added or
+// changed since are never replaced.
 class DatasetFolder {
  public:
   // Creates the temporary folder beside `folder`. `writer` is the name of the program. Throws
   // SettingsError when `folder` is not a folder, contains anything but an earlier dataset of this
-  // writer, or cannot be written.
+  // writer, unchanged, and records of runs, or cannot be written.
   DatasetFolder(const std::filesystem::path& folder, std::string writer);
   // Removes the temporary folder, or the one that it replaced.
   ~DatasetFolder();
@@ -27,8 +28,7 @@ class DatasetFolder {
 
   const std::filesystem::path& Temporary() const { return temporary_; }
 
-  // Begin of the first line of README.md, by which a later run recognises a folder that it may
-  // replace.
+  // Begin of the first line of README.md, by which a later run recognises a folder of its own.
   std::string Mark() const;
 
   // Writes a file of the folder. Throws SettingsError when the disk refuses.
@@ -40,6 +40,7 @@ class DatasetFolder {
 
  private:
   void CheckReplaceable() const;
+  void WriteSums() const;
   void Replace();
 
   std::filesystem::path folder_;
@@ -69,7 +70,8 @@ struct FramesRecord {
   int width = 0;     // of the images of the dataset, px
   int height = 0;
   std::optional<FocalHint> focal_hint;
-  std::vector<SourceFrame> frames;  // all, in the order in which they were taken
+  std::string ordered_by = "time";  // of the video, or in the EXIF data of photos; or "name"
+  std::vector<SourceFrame> frames;  // all, in this order
 };
 
 // The text of frames.json (kind "frames", schemas/frames.schema.json). Errors as ArtefactText.

@@ -7,10 +7,12 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "base/error.h"
 #include "base/paths.h"
+#include "base/run_log.h"
 #include "base/text.h"
 #include "dataset/dataset_files.h"
 #include "dataset/text_file.h"
@@ -29,30 +31,19 @@ constexpr const char* kConversion =
     "mkdir jpg; for f in *.HEIC; do heif-convert -q 95 \"$f\" \"jpg/$f.jpg\"; done (Debian's "
     "package libheif-examples), and give the folder jpg";
 
-// Image formats that are not read.
-bool HasNameOfOtherImage(const fs::path& path) {
-  static const std::set<std::string> kExtensions = {".heic", ".heif", ".avif", ".dng", ".cr2",
-                                                    ".cr3",  ".nef",  ".arw",  ".gif", ".jxl"};
-  return kExtensions.contains(LowerCase(path.extension().string()));
+bool HasNameOfHeif(const fs::path& path) {
+  const std::string extension = LowerCase(path.extension().string());
+  return extension == ".heic" || extension == ".heif" || extension == ".avif";
 }
 
-// Compares like the name, with numbers as numbers: they are all made equally long. Of two equal
-// ones the name counts: a7 after a007, in any folder.
-std::pair<std::string, std::string> OrderOf(const fs::path& path) {
-  constexpr const char* kDigits = "0123456789";
-  constexpr size_t kMaxName = 255;  // bytes of a file's name
-  const std::string name = path.filename().string();
-  std::string order;
-  for (size_t begin = 0; begin < name.size();) {
-    const size_t number = std::min(name.find_first_of(kDigits, begin), name.size());
-    const size_t end = std::min(name.find_first_not_of(kDigits, number), name.size());
-    order.append(name, begin, number - begin);
-    if (number < end) order.append(kMaxName - (end - number), '0');
-    order.append(name, number, end - number);
-    begin = end;
-  }
-  return {order, name};
+// Image formats that are not read.
+bool HasNameOfOtherImage(const fs::path& path) {
+  const std::string extension = LowerCase(path.extension().string());
+  return HasNameOfHeif(path) || HasNameOfRawPhoto(path) || extension == ".gif" ||
+         extension == ".jxl";
 }
+
+constexpr std::string_view kDigits = "0123456789";
 
 struct FilesOfFolder {
   std::vector<fs::path> images;
@@ -73,14 +64,85 @@ FilesOfFolder PhotosAndOthersIn(const fs::path& folder) {
       files.images.push_back(path);
     }
   }
-  std::ranges::sort(files.images, {}, &OrderOf);
+  std::ranges::sort(files.images, {}, &OrderOfName);
   return files;
 }
 
 bool HasHeader(const Photo& photo) { return photo.header.stored.width > 0; }
 
+bool IsDuplicate(const Photo& photo) { return !photo.original.empty(); }
+
+void FindDuplicates(std::vector<Photo>* photos) {
+  std::map<std::uintmax_t, std::vector<Photo*>> by_length;
+  for (Photo& photo : *photos) {
+    std::error_code ignored;
+    if (HasHeader(photo)) by_length[fs::file_size(photo.path, ignored)].push_back(&photo);
+  }
+  std::map<std::string, std::vector<Photo*>> by_content;
+  for (const auto& [length, of_length] : by_length) {
+    if (of_length.size() == 1) continue;
+    for (Photo* photo : of_length) by_content[DigestOfInput(photo->path)].push_back(photo);
+  }
+  const auto name = [](const Photo* photo) { return photo->path.filename().string(); };
+  for (const auto& [digest, same] : by_content) {
+    const Photo* original =
+        *std::ranges::min_element(same, {}, [&](const Photo* photo) { return name(photo).size(); });
+    for (Photo* photo : same) {
+      if (photo != original) photo->original = name(original);
+    }
+  }
+}
+
+bool IsDigit(char c) { return kDigits.find(c) != kDigits.npos; }
+
+// The name without its extension, each number as a 0.
+std::string PatternOfName(const Photo& photo) {
+  std::string pattern = photo.path.stem().string();
+  std::ranges::replace_if(pattern, &IsDigit, '0');
+  const auto repeated =
+      std::ranges::unique(pattern, [](char a, char b) { return a == '0' && b == '0'; });
+  pattern.erase(repeated.begin(), repeated.end());
+  return pattern;
+}
+
+// The last number in the name; 0 if there is none.
+double NumberInName(const Photo& photo) {
+  const std::string stem = photo.path.stem().string();
+  const size_t last = stem.find_last_of(kDigits);
+  if (last == stem.npos) return 0.0;
+  return std::stod(stem.substr(stem.find_last_not_of(kDigits, last) + 1));
+}
+
+bool IsStepBack(const Photo* one, const Photo* next) {
+  return next->header.time_taken < one->header.time_taken;
+}
+
+// True if the numbers of these names, all of one length, have their widest gap at a step back in
+// time.
+bool CounterBeganAnew(const std::vector<const Photo*>& photos) {
+  double widest_back = 0.0, widest_on = 1.0;
+  for (size_t i = 1; i < photos.size(); ++i) {
+    const Photo &one = *photos[i - 1], &next = *photos[i];
+    if (one.path.stem().string().size() != next.path.stem().string().size()) return false;
+    double& widest = IsStepBack(&one, &next) ? widest_back : widest_on;
+    widest = std::max(widest, NumberInName(next) - NumberInName(one));
+  }
+  return widest_back > widest_on;
+}
+
 bool IsSameFocalLength(double one, double other) {
   return std::abs(one - other) <= kMaxFocalChange * other;
+}
+
+[[noreturn]] void RefuseUnreadable(const fs::path& folder, const std::vector<Photo>& photos) {
+  const auto raw = std::ranges::count_if(photos, &Photo::is_raw);
+  const bool are_heif =
+      std::ranges::any_of(photos, [](const Photo& photo) { return HasNameOfHeif(photo.path); });
+  throw InputError(fmt::format(
+      "{}: none of its {} images can be read, as {}; expected JPEG, PNG, WebP, BMP or TIFF{}{}{}",
+      folder.string(), photos.size(), photos.front().path.filename().string(),
+      raw > 0 ? fmt::format(": {} are RAW photos; {}", raw, kRawRemedy) : "",
+      are_heif ? ": convert HEIC with " : "", are_heif ? kConversion : ""));
 }
 
 // The focal length that most others are close to; of several the smallest.
@@ -94,6 +156,21 @@ std::optional<double> CommonFocalLength(std::vector<double> focal_lengths) {
 }
 
 }  // namespace
+
+std::pair<std::string, std::string> OrderOfName(const fs::path& path) {
+  constexpr size_t kMaxName = 255;  // bytes of a file's name
+  const std::string name = path.filename().string();
+  std::string order;
+  for (size_t begin = 0; begin < name.size();) {
+    const size_t number = std::min(name.find_first_of(kDigits, begin), name.size());
+    const size_t end = std::min(name.find_first_not_of(kDigits, number), name.size());
+    order.append(name, begin, number - begin);
+    if (number < end) order.append(kMaxName - (end - number), '0');
+    order.append(name, number, end - number);
+    begin = end;
+  }
+  return {order, name};
+}
 
 bool HasNameOfImage(const fs::path& path) {
   static const std::set<std::string> kExtensions = {".jpg",  ".jpeg", ".jpe", ".png",
@@ -119,8 +196,9 @@ std::vector<Photo> ListPhotos(const fs::path& folder) {
   }
   std::vector<Photo> photos;
   for (const fs::path& path : files.images) {
-    photos.push_back({path, ReadImageHeader(path).value_or(ImageHeader())});
+    photos.push_back({path, ReadImageHeader(path).value_or(ImageHeader()), IsRawPhoto(path)});
   }
+  FindDuplicates(&photos);
   return photos;
 }
 
@@ -128,23 +206,20 @@ CommonCamera FindCommonCamera(const fs::path& folder, const std::vector<Photo>& 
                               ImageOrientation read_as) {
   std::map<ImageSize, int> counts;
   for (const Photo& photo : photos) {
-    if (HasHeader(photo)) ++counts[photo.header.Size(read_as)];
+    if (HasHeader(photo) && !IsDuplicate(photo)) ++counts[photo.header.Size(read_as)];
   }
-  if (counts.empty()) {
-    const bool are_heif = std::ranges::any_of(
-        photos, [](const Photo& photo) { return HasNameOfOtherImage(photo.path); });
-    throw InputError(fmt::format(
-        "{}: none of its {} images can be read, as {}; expected JPEG, PNG, WebP, BMP or TIFF{}{}",
-        folder.string(), photos.size(), photos.front().path.filename().string(),
-        are_heif ? ": convert HEIC with " : "", are_heif ? kConversion : ""));
-  }
-  const auto most =
-      std::ranges::max_element(counts, {}, [](const auto& entry) { return entry.second; });
+  if (counts.empty()) RefuseUnreadable(folder, photos);
+  const auto most = std::ranges::max_element(counts, {}, [](const auto& entry) {
+    const auto& [size, count] = entry;
+    return std::pair(count, static_cast<double>(size.width) * static_cast<double>(size.height));
+  });
   CommonCamera common{read_as, most->first, std::nullopt};
   std::vector<double> focal_lengths;
   for (const Photo& photo : photos) {
     const auto& focal = photo.header.focal_over_diagonal;
-    if (focal && !FindOtherCamera(photo, common)) focal_lengths.push_back(*focal);
+    if (focal && !IsDuplicate(photo) && !FindOtherCamera(photo, common)) {
+      focal_lengths.push_back(*focal);
+    }
   }
   common.focal_over_diagonal = CommonFocalLength(std::move(focal_lengths));
   return common;
@@ -167,6 +242,31 @@ std::optional<OtherCamera> FindOtherCamera(const Photo& photo, const CommonCamer
   return OtherCamera{FrameRejection::kOtherFocalLength,
                      fmt::format("{:.0f} px, not {:.0f}", *focal * diagonal,
                                  *common.focal_over_diagonal * diagonal)};
+}
+
+PhotoOrder OrderByTime(const CommonCamera& common, std::vector<Photo>* photos) {
+  std::vector<const Photo*> usable;
+  for (const Photo& photo : *photos) {
+    if (HasHeader(photo) && !IsDuplicate(photo) && !FindOtherCamera(photo, common)) {
+      usable.push_back(&photo);
+    }
+  }
+  PhotoOrder order{false, static_cast<int>(usable.size()), 0};
+  const auto has_time = [](const Photo* photo) { return !photo->header.time_taken.empty(); };
+  if (usable.empty() || !std::ranges::all_of(usable, has_time)) return order;
+  bool are_counted = true;
+  for (size_t i = 1; i < usable.size(); ++i) {
+    order.steps_back += IsStepBack(usable[i - 1], usable[i]) ? 1 : 0;
+    are_counted = are_counted && PatternOfName(*usable[i]) == PatternOfName(*usable.front());
+  }
+  order.is_by_time =
+      are_counted ? order.steps_back == 1 && CounterBeganAnew(usable) : order.steps_back > 0;
+  if (!order.is_by_time) return order;
+  std::ranges::stable_sort(*photos, {}, [](const Photo& photo) {
+    const std::string& time = photo.header.time_taken;
+    return std::pair(time.empty(), time);
+  });
+  return order;
 }
 
 }  // namespace soslam

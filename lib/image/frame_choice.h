@@ -44,14 +44,16 @@ struct FrameOptions {
 // Reasons for leaving out an image.
 enum class FrameRejection {
   kUnreadable,        // cannot be decoded
+  kDuplicate,         // its file has the same bytes as that of another photo
   kOtherSize,         // not of the size that most images have
   kOtherFocalLength,  // EXIF states another focal length than that of most images
   kBlurred,
   kNoMotion,   // shows the same as a chosen one
   kOverLimit,  // others were chosen in its place
 };
-inline constexpr std::array kFrameRejectionNames = {
-    "unreadable", "other_size", "other_focal_length", "blurred", "no_motion", "over_limit"};
+inline constexpr std::array kFrameRejectionNames = {"unreadable",         "duplicate", "other_size",
+                                                    "other_focal_length", "blurred",   "no_motion",
+                                                    "over_limit"};
 
 // The size of an image whose longer side is scaled down to `longer_side`, if it is longer.
 cv::Size SizeWithin(const cv::Size& size, int longer_side);

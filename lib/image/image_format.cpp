@@ -3,16 +3,61 @@
 
 #include <fstream>
 #include <memory>
+#include <set>
 
 #include "base/paths.h"
+#include "base/text.h"
 
 namespace soslam {
+namespace {
+
+using namespace std::string_view_literals;
+
+// Begin of RAW photos that are no TIFF files: RAF, ORF (three), RW2, CRW, X3F, MRW.
+bool HasSignatureOfRawPhoto(std::string_view first_bytes) {
+  constexpr std::string_view kSignatures[] = {"FUJIFILMCCD"sv, "IIRO"sv,  "IIRS"sv,
+                                              "MMOR"sv,        "IIU\0"sv, "II\x1a\0\0\0HEAP"sv,
+                                              "FOVb"sv,        "\0MRM"sv};
+  return std::ranges::any_of(
+      kSignatures, [&](std::string_view signature) { return first_bytes.starts_with(signature); });
+}
+
+}  // namespace
+
+bool HasNameOfRawPhoto(const std::filesystem::path& path) {
+  static const std::set<std::string> kExtensions = {
+      ".3fr", ".arw", ".cr2", ".cr3", ".crw", ".dcr", ".dng", ".erf", ".gpr",
+      ".iiq", ".kdc", ".mef", ".mos", ".mrw", ".nef", ".nrw", ".orf", ".pef",
+      ".raf", ".rw2", ".rwl", ".sr2", ".srf", ".srw", ".x3f"};
+  return kExtensions.contains(LowerCase(path.extension().string()));
+}
+
+bool IsRawPhoto(const std::filesystem::path& path) {
+  return FindOtherContent(path, ImageBytes::OfFile(path)) == OtherContent::kRawPhoto;
+}
+
+std::optional<OtherContent> FindOtherContent(const std::filesystem::path& path,
+                                             const ImageBytes& file) {
+  const std::string first_bytes = file.UpTo(0, kSignatureSize);
+  // ISO base media file format (ISO/IEC 14496-12): CR3, HEIF and formats derived from it.
+  const bool is_base_media =
+      first_bytes.substr(std::min<size_t>(4, first_bytes.size()), 4) == "ftyp";
+  if (HasNameOfRawPhoto(path) || HasSignatureOfRawPhoto(first_bytes) ||
+      (is_base_media && first_bytes.ends_with("crx "))) {
+    return OtherContent::kRawPhoto;
+  }
+  if (is_base_media) return OtherContent::kHeif;
+  const ImageFormat* format = FindImageFormat(first_bytes);
+  const bool can_have_other = format != nullptr && format->other_content != nullptr;
+  return can_have_other ? format->other_content(file) : std::nullopt;
+}
 
 std::optional<ImageHeader> ReadImageHeader(const std::filesystem::path& path) {
   if (!IsFile(path)) return std::nullopt;
   const ImageBytes file = ImageBytes::OfFile(path);
   const ImageFormat* format = FindImageFormat(file.UpTo(0, kSignatureSize));
-  return format != nullptr ? format->header(file) : std::nullopt;
+  if (format == nullptr || FindOtherContent(path, file)) return std::nullopt;
+  return format->header(file);
 }
 
 std::uint64_t NumberFromBytes(std::string_view bytes, ByteOrder order) {

@@ -28,6 +28,8 @@ struct ImageHeader {
   int orientation = 1;  // EXIF's, 1 to 8: 1 upright, 3 upside down, 5 to 8 turned by a quarter
   // Focal length over the diagonal of the image, from the EXIF data of a JPEG file.
   std::optional<double> focal_over_diagonal = std::nullopt;
+  // When the photo was taken, by ExifTimeTaken; empty if unknown.
+  std::string time_taken = {};
 
   bool IsTurnedByAQuarter() const { return orientation >= 5; }
   // The size of the image when it is read with this setting.
@@ -38,7 +40,8 @@ struct ImageHeader {
 };
 
 // Reads only the necessary part of the file, usually a few hundred bytes. None for a file that
-// cannot be opened, is of no format that FindImageFormat knows, or ends before its size.
+// cannot be opened, is of no format that FindImageFormat knows, has other content than one image,
+// or ends before its size.
 std::optional<ImageHeader> ReadImageHeader(const std::filesystem::path& path);
 
 enum class ByteOrder { kLittleEndian, kBigEndian };
@@ -68,6 +71,19 @@ class ImageBytes {
   ReadAt read_;
 };
 
+// Content of files that resemble an image. What decoders show of a RAW photo is its thumbnail, and
+// of several images the first.
+enum class OtherContent { kRawPhoto, kHeif, kSeveralImages, kAnimation };
+
+// None for one image, and for files of unknown content. RAW photos are recognised by their content,
+// also under another name, and by the extensions of cameras.
+std::optional<OtherContent> FindOtherContent(const std::filesystem::path& path,
+                                             const ImageBytes& file);
+
+// True for a name with an extension of RAW photos.
+bool HasNameOfRawPhoto(const std::filesystem::path& path);
+bool IsRawPhoto(const std::filesystem::path& path);
+
 // A format of image files. OpenCV decodes more formats; some of them allocate as much memory as a
 // few bytes demand, or read other files.
 struct ImageFormat {
@@ -83,6 +99,8 @@ struct ImageFormat {
   const char* whole;  // how to distinguish a complete file from a truncated one, for error messages
   // Sets the file's orientation to 1, for formats whose decoders turn images unasked; else null.
   void (*clear_orientation)(std::span<char> file) = nullptr;
+  // What a file of this format has in place of one image; null if the format allows nothing else.
+  std::optional<OtherContent> (*other_content)(const ImageBytes& file) = nullptr;
 };
 inline constexpr size_t kSignatureSize = 12;
 

@@ -71,7 +71,8 @@ std::optional<ImageHeader> Header(const ImageBytes& file) {
     begin += 2 + length;
   }
   if (!size) return std::nullopt;
-  return ImageHeader{*size, orientation.value_or(1), ExifFocalOverDiagonal(exif, *size)};
+  return ImageHeader{*size, orientation.value_or(1), ExifFocalOverDiagonal(exif, *size),
+                     ExifTimeTaken(exif)};
 }
 
 // Length up to the marker EOI that is not within a segment, as those of thumbnails are.

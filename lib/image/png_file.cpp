@@ -16,20 +16,23 @@ constexpr int kMaxChunks = 1 << 16;
 
 bool IsPng(std::string_view first_bytes) { return first_bytes.starts_with(kSignature); }
 
-// The chunk with EXIF data may come before or after the pixels.
-std::optional<int> Orientation(const ImageBytes& file) {
-  constexpr size_t kMaxExif = 1 << 16;
+// The first data of a chunk with this name, at most `most` bytes; empty if there is none.
+std::string ChunkOf(const ImageBytes& file, std::string_view name, size_t most) {
   std::uint64_t begin = kSignature.size();
   for (int i = 0; i < kMaxChunks; ++i) {
     const auto head = file.At(begin, kHead);
     if (!head || head->ends_with("IEND"sv)) break;
     const std::uint64_t length = NumberFromBytes(std::string_view(*head).substr(0, 4), kOrder);
-    if (head->ends_with("eXIf"sv)) {
-      return ExifOrientation(file.UpTo(begin + kHead, std::min<size_t>(length, kMaxExif)));
-    }
+    if (head->ends_with(name)) return file.UpTo(begin + kHead, std::min<size_t>(length, most));
     begin += kHead + length + kChecksum;
   }
-  return std::nullopt;
+  return "";
+}
+
+// An animation (APNG) has the chunk acTL, which begins with the number of its images.
+std::optional<OtherContent> Other(const ImageBytes& file) {
+  const std::uint64_t images = NumberFromBytes(ChunkOf(file, "acTL"sv, 4), kOrder);
+  return images > 1 ? std::optional(OtherContent::kAnimation) : std::nullopt;
 }
 
 // Width and height from the chunk IHDR, which comes first. None if it does not, as decoders then
@@ -41,7 +44,10 @@ std::optional<ImageHeader> Header(const ImageBytes& file) {
     return static_cast<std::int64_t>(
         NumberFromBytes(std::string_view(*ihdr).substr(kHead + at, 4), kOrder));
   };
-  return ImageHeader{{side(0), side(4)}, Orientation(file).value_or(1)};
+  constexpr size_t kMaxExif = 1 << 16;
+  const std::string exif = ChunkOf(file, "eXIf"sv, kMaxExif);  // before or after the pixels
+  return ImageHeader{
+      {side(0), side(4)}, ExifOrientation(exif).value_or(1), std::nullopt, ExifTimeTaken(exif)};
 }
 
 std::optional<size_t> Length(std::string_view file) {
@@ -58,7 +64,7 @@ std::optional<size_t> Length(std::string_view file) {
 
 }  // namespace
 
-constexpr ImageFormat kPngFormat = {"PNG", &IsPng, &Header, &Length,
-                                    "that ends with the chunk IEND"};
+constexpr ImageFormat kPngFormat = {
+    "PNG", &IsPng, &Header, &Length, "that ends with the chunk IEND", nullptr, &Other};
 
 }  // namespace soslam

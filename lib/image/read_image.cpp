@@ -73,11 +73,29 @@ std::vector<char> ReadBytes(const std::filesystem::path& path) {
 
 constexpr const char* kFormats = "JPEG, PNG, WebP, BMP or TIFF";
 
+std::string InWords(OtherContent content) {
+  switch (content) {
+    case OtherContent::kRawPhoto:
+      return "is a RAW photo, which is not read; expected the JPEG that the camera wrote with it, "
+             "or one developed from it";
+    case OtherContent::kHeif:
+      return fmt::format("cannot be decoded; expected a {} image, not HEIF (HEIC, AVIF)", kFormats);
+    case OtherContent::kSeveralImages:
+      return "has several images; expected one: tiffsplit makes a file of each";
+    case OtherContent::kAnimation:
+      return "is an animation; expected one image";
+  }
+  return "";
+}
+
 // The format and header of an image that can be decoded. Checks a file before anything of its size
 // is allocated, and cuts `bytes` at the image's end.
 std::pair<const ImageFormat*, ImageHeader> Check(const std::filesystem::path& path,
                                                  std::vector<char>* bytes) {
   const std::string_view file(bytes->data(), bytes->size());
+  if (const auto other = FindOtherContent(path, ImageBytes(file))) {
+    throw InputError(fmt::format("{}: {}", path.string(), InWords(*other)));
+  }
   const ImageFormat* format = FindImageFormat(file.substr(0, kSignatureSize));
   if (format == nullptr) {
     const std::string kind = FileKind(file);

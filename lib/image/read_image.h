@@ -15,9 +15,9 @@
 namespace soslam {
 
 // Reads an image by the mode cv::IMREAD_GRAYSCALE as grey values, CV_8UC1, by cv::IMREAD_COLOR as
-// blue, green and red, CV_8UC3. JPEG, PNG, WebP, BMP or TIFF, of the latter the first page; bytes
-// after the image are ignored. Throws InputError when the file is missing, empty, truncated, not
-// such an image, larger than can be processed, or not of the given size.
+// blue, green and red, CV_8UC3. JPEG, PNG, WebP, BMP or TIFF; bytes after the image are ignored.
+// Throws InputError when the file is missing, empty, truncated, not such an image, a RAW photo,
+// several images, larger than can be processed, or not of the given size.
 cv::Mat ReadImage(const std::filesystem::path& path, int mode,
                   ImageOrientation orientation = ImageOrientation::kUpright,
                   const std::optional<cv::Size>& size = std::nullopt);

@@ -22,15 +22,16 @@ std::optional<ByteOrder> OrderOf(std::string_view head) {
 // A tag of a TIFF file and its numbers.
 struct TiffEntry {
   std::uint64_t tag;
-  size_t bytes_each;    // bytes per number; 0 if they are not unsigned integers
-  bool is_ratio;        // each value is a RATIONAL: two unsigned integers of 4 bytes
+  size_t bytes_each;  // bytes per number; 0 if they are not unsigned integers
+  bool is_ratio;      // each value is a RATIONAL: two unsigned integers of 4 bytes
+  bool is_text;
   std::uint64_t count;  // as the file claims
   std::uint64_t begin;  // offset in the file
 };
 
-// Bytes per number of type BYTE, SHORT or LONG; 0 for other types.
+// Bytes per number of type BYTE, SHORT, LONG or IFD (the place of a directory); 0 for other types.
 size_t BytesEach(std::uint64_t type) {
-  constexpr size_t kBytes[] = {0, 1, 0, 2, 4};
+  constexpr size_t kBytes[] = {0, 1, 0, 2, 4, 0, 0, 0, 0, 0, 0, 0, 0, 4};
   return type < std::size(kBytes) ? kBytes[type] : 0;
 }
 
@@ -38,18 +39,19 @@ TiffEntry ParseEntry(std::string_view bytes, std::uint64_t begin, ByteOrder orde
   const auto number = [&](size_t at, size_t count) {
     return NumberFromBytes(bytes.substr(at, count), order);
   };
-  constexpr std::uint64_t kRational = 5;
+  constexpr std::uint64_t kAscii = 2, kRational = 5;
   const std::uint64_t type = number(2, 2);
-  TiffEntry entry{number(0, 2), BytesEach(type), type == kRational, number(4, 4), begin + 8};
-  if (entry.is_ratio || entry.bytes_each * entry.count > 4) entry.begin = number(8, 4);
+  TiffEntry entry{number(0, 2),   BytesEach(type), type == kRational,
+                  type == kAscii, number(4, 4),    begin + 8};
+  const std::uint64_t length = entry.is_text ? entry.count : entry.bytes_each * entry.count;
+  if (entry.is_ratio || length > 4) entry.begin = number(8, 4);
   return entry;
 }
 
-// The first directory of a TIFF file (TIFF 6.0, section 2). EXIF data are a TIFF file within
-// another.
+// A directory of a TIFF file (TIFF 6.0, section 2). EXIF data are a TIFF file within another.
 class TiffDirectory {
  public:
-  // None if the file is no TIFF file, or ends before the directory does.
+  // The first directory. None if the file is no TIFF file, or ends before the directory does.
   static std::optional<TiffDirectory> Read(const ImageBytes& file) {
     const auto order = OrderOf(file.UpTo(0, 4));
     if (!order) return std::nullopt;
@@ -58,9 +60,15 @@ class TiffDirectory {
   }
 
   // The directory that an entry with this tag points to, as EXIF's own; none as for Read.
-  std::optional<TiffDirectory> SubDirectory(std::uint64_t tag) const {
-    const auto begin = Number(tag);
+  std::optional<TiffDirectory> SubDirectory(std::uint64_t tag, std::uint64_t index = 0) const {
+    const auto begin = Number(tag, index);
     return begin ? ReadAt(*begin, order_, file_) : std::nullopt;
+  }
+
+  // The directory of the next image; none also after the last one.
+  std::optional<TiffDirectory> Next() const {
+    const auto begin = file_.NumberAt(end_, 4, order_);
+    return begin && *begin > 0 ? ReadAt(*begin, order_, file_) : std::nullopt;
   }
 
   ByteOrder order() const { return order_; }
@@ -77,11 +85,18 @@ class TiffDirectory {
     return std::ranges::count(entries_, tag, &TiffEntry::tag);
   }
 
-  // The first number of the first entry with this tag; none if there is none, or it is not in the
-  // file.
-  std::optional<std::uint64_t> Number(std::uint64_t tag) const {
+  // A number of the first entry with this tag; none if there is none, or it is not in the file.
+  std::optional<std::uint64_t> Number(std::uint64_t tag, std::uint64_t index = 0) const {
     const auto entry = Find(tag);
-    return entry ? file_.NumberAt(entry->begin, entry->bytes_each, order_) : std::nullopt;
+    if (!entry || index >= entry->count) return std::nullopt;
+    return file_.NumberAt(entry->begin + index * entry->bytes_each, entry->bytes_each, order_);
+  }
+
+  // At most `most` characters of the first entry with this tag; empty if there is none.
+  std::string Text(std::uint64_t tag, size_t most) const {
+    const auto found = std::ranges::find(entries_, tag, &TiffEntry::tag);
+    if (found == entries_.end() || !found->is_text) return "";
+    return file_.UpTo(found->begin, std::min<size_t>(found->count, most));
   }
 
   // The first ratio of the first entry with this tag; none also if its denominator is zero.
@@ -104,6 +119,7 @@ class TiffDirectory {
     const auto bytes = count ? file.At(begin + 2, *count * kEntrySize) : std::nullopt;
     if (!bytes) return std::nullopt;
     TiffDirectory directory(file, order);
+    directory.end_ = begin + 2 + bytes->size();
     for (size_t at = 0; at < bytes->size(); at += kEntrySize) {
       directory.entries_.push_back(
           ParseEntry(std::string_view(*bytes).substr(at, kEntrySize), begin + 2 + at, order));
@@ -113,6 +129,7 @@ class TiffDirectory {
 
   ImageBytes file_;
   ByteOrder order_;
+  std::uint64_t end_ = 0;  // of the entries in the file
   std::vector<TiffEntry> entries_;
 };
 
@@ -127,6 +144,37 @@ std::optional<int> OrientationIn(const TiffDirectory& directory) {
 std::optional<int> ExifOrientation(std::string_view exif) {
   const auto directory = TiffDirectory::Read(ImageBytes(exif));
   return directory ? OrientationIn(*directory) : std::nullopt;
+}
+
+namespace {
+
+// EXIF 2.32, section 4.6.
+constexpr std::uint64_t kExifDirectory = 0x8769;
+constexpr std::uint64_t kDateTimeOriginal = 0x9003, kSubSecTimeOriginal = 0x9291;
+constexpr std::uint64_t kFocalLength = 0x920A, kFocalLengthIn35mmFilm = 0xA405;
+constexpr std::uint64_t kPixelXDimension = 0xA002, kPixelYDimension = 0xA003;
+constexpr std::uint64_t kFocalPlaneXResolution = 0xA20E, kFocalPlaneResolutionUnit = 0xA210;
+
+// Cameras without a clock write zeros or blanks.
+std::string TimeTakenIn(const TiffDirectory& first) {
+  const auto exif = first.SubDirectory(kExifDirectory);
+  if (!exif) return "";
+  const auto digits = [&](std::uint64_t tag, size_t most) {
+    std::string text = exif->Text(tag, most);
+    std::erase_if(text, [](char c) { return c < '0' || c > '9'; });
+    return text;
+  };
+  const std::string time =
+      digits(kDateTimeOriginal, std::string_view("2024:01:31 23:59:59").size());
+  if (time.size() != 14 || time.starts_with("0000")) return "";
+  return time + "." + digits(kSubSecTimeOriginal, 9);
+}
+
+}  // namespace
+
+std::string ExifTimeTaken(std::string_view exif) {
+  const auto directory = TiffDirectory::Read(ImageBytes(exif));
+  return directory ? TimeTakenIn(*directory) : "";
 }
 
 namespace {
@@ -178,7 +226,53 @@ std::optional<ImageHeader> Header(const ImageBytes& file) {
   const auto height = directory->Number(kHeight);
   if (!width || !height) return std::nullopt;
   return ImageHeader{{static_cast<std::int64_t>(*width), static_cast<std::int64_t>(*height)},
-                     OrientationIn(*directory).value_or(1)};
+                     OrientationIn(*directory).value_or(1),
+                     std::nullopt,
+                     TimeTakenIn(*directory)};
+}
+
+// TIFF 6.0, sections 8 and 22; TIFF/EP (ISO 12234-2) and DNG 1.6.
+constexpr std::uint64_t kNewSubfileType = 254, kThumbnailJpeg = 513, kSubImages = 330;
+constexpr std::uint64_t kPhotometric = 262, kDngVersion = 50706;
+
+// True for pixels that are still those of the sensor.
+bool IsOfSensor(const TiffDirectory& image) {
+  constexpr std::uint64_t kColourFilterArray = 32803, kLinearRaw = 34892;
+  return image.Count(kDngVersion) > 0 ||
+         IsOneOf(image.Number(kPhotometric).value_or(0), {kColourFilterArray, kLinearRaw});
+}
+
+// True for thumbnails, smaller copies and masks of another image in the file.
+bool IsSecondary(const TiffDirectory& image) {
+  constexpr std::uint64_t kIsReduced = 1, kIsMask = 4;
+  return (image.Number(kNewSubfileType).value_or(0) & (kIsReduced | kIsMask)) != 0 ||
+         image.Count(kThumbnailJpeg) > 0;
+}
+
+// True for Canon's CR2, whose name follows the header.
+bool IsCr2(const ImageBytes& file) { return file.UpTo(8, 4) == "CR\2\0"sv; }
+
+// The photo of a RAW file is in a directory below that of a thumbnail, or beside it; pages follow
+// each other. Thumbnails, smaller copies and masks after the first image do not matter.
+std::optional<OtherContent> Other(const ImageBytes& file) {
+  const auto first = TiffDirectory::Read(file);
+  if (!first) return std::nullopt;
+  const bool is_thumbnail = IsSecondary(*first);
+  const bool has_photo_below = is_thumbnail && first->Count(kSubImages) > 0;
+  if (IsOfSensor(*first) || IsCr2(file) || has_photo_below) return OtherContent::kRawPhoto;
+  int unseen = 64;  // images at most: they may form a circle
+  for (auto image = *first;;) {
+    for (std::uint64_t i = 0; unseen > 0; ++i, --unseen) {
+      const auto below = image.SubDirectory(kSubImages, i);
+      if (!below) break;
+      if (!IsSecondary(*below) || IsOfSensor(*below)) return OtherContent::kRawPhoto;
+    }
+    auto next = image.Next();
+    if (!next) return std::nullopt;
+    if (is_thumbnail || IsOfSensor(*next)) return OtherContent::kRawPhoto;
+    if (!IsSecondary(*next) || --unseen <= 0) return OtherContent::kSeveralImages;
+    image = std::move(*next);
+  }
 }
 
 // True if all numbers of both entries are in the file, and so are the blocks (offset and length)
@@ -217,12 +311,6 @@ void ClearOrientation(std::span<char> file) {
   (directory->order() == ByteOrder::kBigEndian ? number.back() : number.front()) = 1;
 }
 
-// EXIF 2.32, section 4.6.
-constexpr std::uint64_t kExifDirectory = 0x8769;
-constexpr std::uint64_t kFocalLength = 0x920A, kFocalLengthIn35mmFilm = 0xA405;
-constexpr std::uint64_t kPixelXDimension = 0xA002, kPixelYDimension = 0xA003;
-constexpr std::uint64_t kFocalPlaneXResolution = 0xA20E, kFocalPlaneResolutionUnit = 0xA210;
-
 constexpr double kFilmDiagonalMm = 43.267;
 
 // Size of the image that the camera wrote.
@@ -255,7 +343,8 @@ std::optional<double> FromSensor(const TiffDirectory& exif, const ImageSize& wri
 }  // namespace
 
 constexpr ImageFormat kTiffFormat = {
-    "TIFF", &IsTiff, &Header, &Length, "with all of its strips or tiles", &ClearOrientation};
+    "TIFF", &IsTiff, &Header, &Length, "with all of its strips or tiles", &ClearOrientation,
+    &Other};
 
 std::string FocalLengthSegment(double focal_over_diagonal) {
   const auto focal_mm =

@@ -18,6 +18,10 @@ std::optional<int> ExifOrientation(std::string_view exif);
 // since.
 std::optional<double> ExifFocalOverDiagonal(std::string_view exif, const ImageSize& stored);
 
+// DateTimeOriginal in EXIF data with the fraction of its second, as text that sorts by time,
+// "20240131235959.25"; empty if they have none.
+std::string ExifTimeTaken(std::string_view exif);
+
 // A segment of a JPEG file with EXIF data that have this focal length only, rounded to a millimetre
 // of 35 mm film.
 std::string FocalLengthSegment(double focal_over_diagonal);

@@ -38,7 +38,7 @@ std::optional<ImageSize> Size(const ImageBytes& file) {
   return std::nullopt;
 }
 
-std::optional<int> Orientation(const ImageBytes& file) {
+std::string Exif(const ImageBytes& file) {
   constexpr size_t kMaxExif = 1 << 16;
   std::uint64_t begin = kFirstChunk;
   for (int i = 0; i < kMaxChunks; ++i) {
@@ -49,17 +49,28 @@ std::optional<int> Orientation(const ImageBytes& file) {
       const std::string data = file.UpTo(begin + kHead, std::min<size_t>(length, kMaxExif));
       const bool has_name =
           data.starts_with("Exif\0\0"sv);  // prefix as in JPEG, which some writers keep
-      return ExifOrientation(std::string_view(data).substr(has_name ? 6 : 0));
+      return data.substr(has_name ? 6 : 0);
     }
     begin += kHead + length + length % 2;
   }
-  return std::nullopt;
+  return "";
+}
+
+// The flag of an animation in the chunk VP8X.
+std::optional<OtherContent> Other(const ImageBytes& file) {
+  constexpr std::uint64_t kIsAnimation = 2;
+  const std::string chunk = file.UpTo(kFirstChunk, kHead + 1);
+  const bool has_flags = chunk.starts_with("VP8X"sv) && chunk.size() == kHead + 1;
+  const bool is_animation =
+      has_flags && (NumberFromBytes(std::string_view(chunk).substr(kHead), kOrder) & kIsAnimation);
+  return is_animation ? std::optional(OtherContent::kAnimation) : std::nullopt;
 }
 
 std::optional<ImageHeader> Header(const ImageBytes& file) {
   const auto size = Size(file);
   if (!size) return std::nullopt;
-  return ImageHeader{*size, Orientation(file).value_or(1)};
+  const std::string exif = Exif(file);
+  return ImageHeader{*size, ExifOrientation(exif).value_or(1), std::nullopt, ExifTimeTaken(exif)};
 }
 
 std::optional<size_t> Length(std::string_view file) {
@@ -70,7 +81,7 @@ std::optional<size_t> Length(std::string_view file) {
 
 }  // namespace
 
-constexpr ImageFormat kWebpFormat = {"WebP", &IsWebp, &Header, &Length,
-                                     "as long as it says at its beginning"};
+constexpr ImageFormat kWebpFormat = {
+    "WebP", &IsWebp, &Header, &Length, "as long as it says at its beginning", nullptr, &Other};
 
 }  // namespace soslam

@@ -67,6 +67,7 @@ void NameImages(const std::vector<std::string>& extensions, std::vector<SourceFr
 void RejectOtherCameras(const std::vector<Photo>& photos, const CommonCamera& camera,
                         std::vector<SourceFrame>* frames) {
   for (size_t i = 0; i < photos.size(); ++i) {
+    if (IsLeftOut((*frames)[i])) continue;
     if (const auto other = FindOtherCamera(photos[i], camera)) {
       (*frames)[i].rejection = other->reason;
       (*frames)[i].detail = other->detail;
@@ -156,10 +157,16 @@ ChosenFrames ChoosePhotos(const FrameOptions& options, const fs::path& folder, i
   *photos = ListPhotos(folder);
   const CommonCamera camera = FindCommonCamera(folder, *photos, options.image_orientation);
   ChosenFrames chosen;
+  chosen.order = OrderByTime(camera, photos);
+  chosen.record.ordered_by = chosen.order.is_by_time ? "time" : "name";
   chosen.record.name = PlainPath(folder).filename().string();
   std::vector<SourceFrame>& frames = chosen.record.frames;
   for (const Photo& photo : *photos) {
     frames.push_back({photo.path.filename().string(), {}, {}, {}, {}});
+    if (!photo.original.empty()) {
+      frames.back().rejection = FrameRejection::kDuplicate;
+      frames.back().detail = "the same file as " + photo.original;
+    }
   }
   RejectOtherCameras(*photos, camera, &frames);
   std::vector<FrameView> views(photos->size());

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <opencv2/core/types.hpp>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "artefact/dataset_folder.h"
@@ -20,6 +19,7 @@ struct ChosenFrames {
   cv::Size source_size;  // of the images that were chosen from, in their orientation
   std::vector<std::filesystem::path> inputs;
   std::vector<Finding> findings;  // about the video
+  PhotoOrder order;               // of photos
 };
 
 // True if the frame is not among the chosen ones.
@@ -36,10 +36,6 @@ ChosenFrames ChoosePhotos(const FrameOptions& options, const std::filesystem::pa
 // Chooses among the frames of a video that are whole and of the size that most have. Throws
 // InputError as VideoReader, and when there are none.
 ChosenFrames ChooseFromVideo(const FrameOptions& options, const std::filesystem::path& path);
-
-// Begin of the first line of the detections.csv that soslam-frames writes, by which a later run
-// recognises it.
-inline constexpr std::string_view kFrameBoxesMark = "# Written by soslam-frames";
 
 // The text of detections.csv: the boxes of the chosen images among those of all images in the file
 // `path`, which are of the upright ones. `photos` are those of the frames, if these are kept as

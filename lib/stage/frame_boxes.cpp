@@ -11,6 +11,8 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "dataset/labelled_box.h"
+#include "dataset/photo_folder.h"
+#include "image/image_format.h"
 #include "image/read_image.h"
 #include "stage/choose_frames.h"
 
@@ -40,27 +42,37 @@ void RefuseBoxesOfOtherImages(const fs::path& path, size_t frames) {
 
 std::string FrameBoxesText(const fs::path& path, const ChosenFrames& chosen,
                            const std::vector<Photo>& photos) {
-  std::vector<std::optional<int>> rows;
+  struct NumberedFrame {
+    decltype(OrderOfName({})) name;
+    size_t index;            // in the record
+    std::optional<int> row;  // among the chosen ones
+  };
+  std::vector<NumberedFrame> frames;
   int row = 0;
-  for (const SourceFrame& frame : chosen.record.frames) {
-    rows.push_back(IsLeftOut(frame) ? std::nullopt : std::optional(row++));
+  for (size_t i = 0; i < chosen.record.frames.size(); ++i) {
+    const SourceFrame& frame = chosen.record.frames[i];
+    if (HasNameOfRawPhoto(frame.source)) continue;  // detectors read the JPEGs beside them
+    frames.push_back({OrderOfName(frame.source), i,
+                      IsLeftOut(frame) ? std::nullopt : std::optional(row++)});
   }
+  // All frames of a video have one name.
+  std::ranges::stable_sort(frames, {}, &NumberedFrame::name);
   const double scale_x = static_cast<double>(chosen.record.width) / chosen.source_size.width;
   const double scale_y = static_cast<double>(chosen.record.height) / chosen.source_size.height;
-  RefuseBoxesOfOtherImages(path, chosen.record.frames.size());
+  RefuseBoxesOfOtherImages(path, frames.size());
   const std::vector<LabelledBox> boxes = ReadDetectionsCsv(path);
   std::vector<LabelledBox> of_chosen;
   int left_out = 0, unknown = 0;
   for (LabelledBox box : boxes) {
     const int number = std::get<int>(box.frame);
-    const bool is_known = number >= 0 && number < std::ssize(rows);
-    const auto of_frame = is_known ? rows[number] : std::nullopt;
-    if (!of_frame) {
+    const bool is_known = number >= 0 && number < std::ssize(frames);
+    if (!is_known || !frames[number].row) {
       ++(is_known ? left_out : unknown);
       continue;
     }
-    box.frame = *of_frame;
-    if (!photos.empty()) box.box = BoxInStoredImage(box.box, photos[number].header);
+    const NumberedFrame& frame = frames[number];
+    box.frame = *frame.row;
+    if (!photos.empty()) box.box = BoxInStoredImage(box.box, photos[frame.index].header);
     box.box = {Scaled(box.box.x_min, scale_x), Scaled(box.box.y_min, scale_y),
                Scaled(box.box.x_max, scale_x), Scaled(box.box.y_max, scale_y)};
     of_chosen.push_back(std::move(box));
@@ -75,7 +87,7 @@ std::string FrameBoxesText(const fs::path& path, const ChosenFrames& chosen,
              path.filename().string(), of_chosen.size(), left_out, unknown);
   std::ranges::stable_sort(of_chosen, {},
                            [](const LabelledBox& box) { return std::get<int>(box.frame); });
-  return fmt::format("{} from {}\n{}", kFrameBoxesMark, OneLine(path.filename().string()),
+  return fmt::format("# Written by soslam-frames from {}\n{}", OneLine(path.filename().string()),
                      LabelledBoxesText(of_chosen));
 }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <opencv2/core/mat.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -59,9 +58,13 @@ std::map<std::string, int> CountLeftOut(const std::vector<SourceFrame>& frames) 
   return counts;
 }
 
-// The findings about the video, and more than a third of the images left out for one reason.
-std::vector<Finding> CheckFrames(const ChosenFrames& chosen) {
-  constexpr int kFewest = 6;
+constexpr int kFewestToJudge = 6;
+
+bool IsMoreThanAThird(int part, int all) { return all >= kFewestToJudge && 3 * part > all; }
+
+// The findings about the video, more than a third of the images left out for one reason, and times
+// that contradict the order of more than a third of the photos.
+std::vector<Finding> CheckFrames(const ChosenFrames& chosen, const std::vector<Photo>& photos) {
   const FramesRecord& record = chosen.record;
   std::vector<Finding> findings = chosen.findings;
   const int all = static_cast<int>(record.frames.size());
@@ -69,10 +72,27 @@ std::vector<Finding> CheckFrames(const ChosenFrames& chosen) {
   for (const FrameAdvice& advice : kAdvice) {
     const std::string name = kFrameRejectionNames[static_cast<size_t>(advice.reason)];
     const auto found = counts.find(name);
-    if (found == counts.end() || all < kFewest || 3 * found->second <= all) continue;
-    findings.push_back({"frames_" + name, Severity::kWarning,
-                        fmt::format("{} of {} images are left out as {}", found->second, all, name),
-                        "at most a third left out for one reason", advice.cause, advice.remedy});
+    if (found == counts.end() || !IsMoreThanAThird(found->second, all)) continue;
+    const bool are_raw = advice.reason == FrameRejection::kUnreadable &&
+                         2 * std::ranges::count_if(photos, &Photo::is_raw) > found->second;
+    findings.push_back(
+        {"frames_" + name, Severity::kWarning,
+         fmt::format("{} of {} images are left out as {}", found->second, all, name),
+         "at most a third left out for one reason",
+         are_raw ? "RAW photos, which are not read" : advice.cause,
+         are_raw ? fmt::format("{}; nothing if these are here", kRawRemedy) : advice.remedy});
+  }
+  const PhotoOrder& order = chosen.order;
+  if (!order.is_by_time && IsMoreThanAThird(order.steps_back, order.usable)) {
+    findings.push_back(
+        {"photo_order", Severity::kWarning,
+         fmt::format("in the order of their names, {} of {} photos were taken before the photo "
+                     "that precedes them, by their EXIF times",
+                     order.steps_back, order.usable),
+         "names that count in the order in which photos were taken",
+         "numbers in names that do not count, or clocks that were set",
+         "if the times are right, rename the photos: exiftool '-FileName<DateTimeOriginal' -d "
+         "%Y%m%d_%H%M%S%%-c.%%e FOLDER"});
   }
   return findings;
 }
@@ -87,32 +107,6 @@ std::string FrameListText(const std::vector<SourceFrame>& frames) {
     ++count;
   }
   return text;
-}
-
-// What is in the folder beside the images.
-constexpr std::array kFiles = {"README.md", "rgb.txt", "frames.json", "run.json", "timing.json"};
-
-bool IsOwnFile(const fs::path& path) {
-  const std::string name = path.filename().string();
-  std::string first_line;
-  if (name == "detections.csv") {
-    std::ifstream stream(path);
-    std::getline(stream, first_line);
-  }
-  return name == "rgb" || std::ranges::find(kFiles, name) != kFiles.end() ||
-         first_line.starts_with(kFrameBoxesMark);
-}
-
-// Files that others put into the folder would be lost with it.
-void RefuseFilesOfOthers(const fs::path& folder) {
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    if (IsOwnFile(entry.path())) continue;
-    throw SettingsError(fmt::format(
-        "{}: has {}, which would be lost; expected a new folder, or one with the files of "
-        "soslam-frames only",
-        folder.string(), entry.path().filename().string()));
-  }
 }
 
 // `focal_over_diagonal`, if known, becomes part of the file, where reconstructions look for it.
@@ -173,14 +167,13 @@ std::string ReadmeText(const DatasetFolder& output) {
 void RunFrames(const FrameOptions& options, const StageFiles& files, int threads) {
   const fs::path &images = files.at("images"), &folder = files.at("output");
   DatasetFolder output(folder, "soslam-frames");
-  RefuseFilesOfOthers(folder);
   std::vector<Photo> photos;
   const bool is_video = !IsFolder(images);
   ChosenFrames chosen =
       is_video ? ChooseFromVideo(options, images) : ChoosePhotos(options, images, threads, &photos);
   const FramesRecord& record = chosen.record;
   CheckEnough(record, images);
-  const std::vector<Finding> findings = CheckFrames(chosen);
+  const std::vector<Finding> findings = CheckFrames(chosen, photos);
   ReportFindings("frames", findings);
   fs::create_directory(output.Temporary() / "rgb");
   if (is_video) WriteVideoFrames(record, images, options.max_image_px, output);
@@ -201,9 +194,11 @@ void RunFrames(const FrameOptions& options, const StageFiles& files, int threads
                                          {OptionsToJson(options), chosen.inputs, findings}));
   output.Commit();
   const auto left_out = std::ranges::count_if(record.frames, IsLeftOut);
-  fmt::print("{}: {} of {} images chosen, {} x {} px; left out: {}\n", record.name,
-             std::ssize(record.frames) - left_out, record.frames.size(), record.width,
-             record.height, CountsInWords(CountLeftOut(record.frames)));
+  fmt::print(
+      "{}: {} of {} images chosen, {} x {} px; left out: {}{}\n", record.name,
+      std::ssize(record.frames) - left_out, record.frames.size(), record.width, record.height,
+      CountsInWords(CountLeftOut(record.frames)),
+      chosen.order.is_by_time ? "; in the order of their EXIF times, not of their names" : "");
 }
 
 }  // namespace soslam

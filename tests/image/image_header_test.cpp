@@ -102,6 +102,30 @@ std::string ExifWith(const std::vector<TiffField>& fields, const std::string& re
   return Tiff(kOrder, {{kDirectory, TiffRest(1), 4}}, Tiff(kOrder, fields).substr(8) + rest);
 }
 
+TEST(ExifTimeTest, SortsByTime) {
+  EXPECT_EQ(ExifTimeTaken(ExifOfTime("2024:01:31 23:59:59", "2500")), "20240131235959.2500");
+  const std::vector<TiffField> short_fraction = {{0x9003, TiffRest(1) + TiffRest(2) - 8, 2, 20},
+                                                 {0x9291, '2' | '5' << 8, 2, 3}};  // in its place
+  EXPECT_EQ(ExifTimeTaken(ExifWith(short_fraction, "2024:01:31 23:59:59")), "20240131235959.25");
+  EXPECT_LT(ExifTimeTaken(ExifOfTime("2024:01:31 23:59:59", "2500")),
+            ExifTimeTaken(ExifOfTime("2024:01:31 23:59:59", "3000")));
+  for (const char* unknown : {"0000:00:00 00:00:00", "    :  :     :  :  ", "", "2024:01:31"}) {
+    EXPECT_EQ(ExifTimeTaken(ExifOfTime(unknown)), "") << unknown;
+  }
+  EXPECT_EQ(ExifTimeTaken(ExifOf(1)), "");
+  EXPECT_EQ(ExifTimeTaken(ExifOfTime("2024:01:31 23:59:59").substr(0, 30)), "");
+}
+
+TEST_F(ImageHeaderTest, TimesAreReadInAllFormats) {
+  const std::string exif = ExifOfTime("2024:01:31 23:59:59");
+  for (const std::string& bytes :
+       {JpegWithExif(EncodedImage(".jpg", kImage), exif),
+        PngWithExif(EncodedImage(".png", kImage), exif, true),
+        WebpWithExif(EncodedImage(".webp", kImage), kImage.size(), exif)}) {
+    EXPECT_EQ(Read(bytes).value_or(ImageHeader()).time_taken, "20240131235959.0000");
+  }
+}
+
 TEST(ExifFocalLengthTest, IsThatOfTheFilm) {
   for (const ByteOrder order : {ByteOrder::kLittleEndian, ByteOrder::kBigEndian}) {
     const auto focal = ExifFocalOverDiagonal(ExifOfCamera(1, 26, order), kPhoto);

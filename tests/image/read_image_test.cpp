@@ -212,6 +212,63 @@ TEST_F(ReadImageTest, OtherFormatsAreRefused) {
   ExpectRefused(Write("a.tiff", EncodedImage(".tiff", cv::Mat(8, 8, CV_32FC1, 0.5))), {"TIFF"});
 }
 
+const cv::Mat kThumbnail(6, 8, CV_8UC1, cv::Scalar(50));
+
+// Photos of Adobe, Nikon, Sony and others, whatever their names are.
+TEST_F(ReadImageTest, RawPhotosAreRefused) {
+  const cv::Mat photo = TestImage();
+  const std::string header = Tiff(ByteOrder::kLittleEndian, {}).substr(0, 8);
+  const std::string thumbnail_first = TiffWithImageBelow(kThumbnail, photo);
+  for (const std::string& raw :
+       {thumbnail_first, TiffWithImageBelow(kThumbnail, photo, 0, 0),
+        thumbnail_first.substr(0, 180),                        // without the photo
+        header + TiffImage(photo, 8, {{50706, 0x401, 1, 4}}),  // DNGVersion
+        header + TiffImage(photo, 8, {{262, 32803}}),          // pixels of a colour filter
+        TiffOfTwo(kThumbnail, photo, {{254, 1, 4}, {262, 32803}}),
+        std::string("II*\0\x10\0\0\0CR\2\0\0\0\0\0", 16) + TiffImage(kThumbnail, 16),  // CR2
+        std::string("FUJIFILMCCD-RAW 0201"), std::string("IIRO\x08\0\0\0 of Olympus", 19),
+        std::string("\0\0\0\x18"
+                    "ftypcrx \0\0\0\1crx isom",
+                    24)}) {
+    const auto path = Write("a.tif", raw);
+    ExpectRefused(path, {"RAW", "JPEG"});
+    EXPECT_TRUE(IsRawPhoto(path));
+    EXPECT_FALSE(ReadImageHeader(path));
+  }
+  const auto named = Write("a.NEF", EncodedImage(".tiff", photo));
+  ExpectRefused(named, {"RAW"});
+  EXPECT_FALSE(ReadImageHeader(named));
+}
+
+TEST_F(ReadImageTest, SeveralImagesAreRefused) {
+  const cv::Mat photo = TestImage();
+  ExpectRefused(Write("a.tif", TiffOfTwo(photo, photo, {})), {"several images"});
+  ExpectRefused(Write("a.tif", TiffOfTwo(photo, kThumbnail, {{254, 2, 4}})), {"several images"});
+  const std::string header = Tiff(ByteOrder::kLittleEndian, {}).substr(0, 8);
+  const std::string circle = header + TiffImage(photo, 8, {{254, 0, 4}}, 8);
+  ExpectRefused(Write("a.tif", circle), {"several images"});
+  const auto animated = [&](char images) {
+    std::string png = EncodedImage(".png", photo);
+    return png.insert(33,
+                      PngChunk("acTL", std::string("\0\0\0", 3) + images + std::string(4, '\0')));
+  };
+  ExpectRefused(Write("a.png", animated(2)), {"animation"});
+  EXPECT_EQ(ReadImage(Write("a.png", animated(1)), kGrey).size(), photo.size());
+  std::string webp = WebpWithExif(EncodedImage(".webp", photo), photo.size(), "");
+  webp[20] = 2;  // the flags of VP8X
+  ExpectRefused(Write("a.webp", webp), {"animation"});
+}
+
+TEST_F(ReadImageTest, ThumbnailsAndMasksAfterThePhotoDoNotMatter) {
+  const cv::Mat photo = TestImage();
+  for (const std::string& tiff :
+       {TiffOfTwo(photo, kThumbnail, {{254, 1, 4}}), TiffOfTwo(photo, photo, {{254, 4, 4}}),
+        TiffOfTwo(photo, kThumbnail, {{513, 8, 4}}), TiffWithImageBelow(photo, kThumbnail, 0, 1)}) {
+    const cv::Mat read = ReadImage(Write("a.tif", tiff), kGrey);
+    EXPECT_EQ(cv::norm(read, photo, cv::NORM_INF), 0.0);
+  }
+}
+
 TEST_F(ReadImageTest, FilesThatCannotBeDecodedAtOnceAreRefusedUnread) {
   const auto path = Write("a.png", EncodedImage(".png", TestImage()));
   std::filesystem::resize_file(path, std::uintmax_t{1} << 31);  // takes no room on the disk

@@ -97,10 +97,11 @@ TEST_F(RunFramesTest, StoredPhotosAreCopiedAndBoxesTurned) {
 TEST_F(RunFramesTest, SaysWhatIsLeftOut) {
   AddViews(6);
   WritePhoto(photos_ / "view 2.jpg", Blurred(DrawnView(40)));
-  WritePhoto(photos_ / "view 6.jpg", DrawnView(100));
+  WritePhoto(photos_ / "view 6.jpg", DrawnView(100), ExifOf(1));
   WritePhoto(photos_ / "view 7.jpg", DrawnView(0, {100, 100}));
   WriteBytes(photos_ / "view 8.jpg", FileBytes(photos_ / "view 0.jpg").substr(0, 2000));
   WriteBytes(photos_ / "view 9.heic", "HEIC");
+  fs::copy_file(photos_ / "view 1.jpg", photos_ / "view 10 of 1.jpg");
   const json frames = Run(photos_);
   EXPECT_EQ(frames.at("frames").size(), 5u);
   std::map<std::string, std::string> reasons;
@@ -113,8 +114,63 @@ TEST_F(RunFramesTest, SaysWhatIsLeftOut) {
                                                          {"view 6.jpg", "no_motion"},
                                                          {"view 7.jpg", "other_size"},
                                                          {"view 8.jpg", "unreadable"},
-                                                         {"view 9.heic", "unreadable"}}));
+                                                         {"view 9.heic", "unreadable"},
+                                                         {"view 10 of 1.jpg", "duplicate"}}));
+  EXPECT_EQ(frames.at("left_out").back().at("detail"), "the same file as view 1.jpg");
+  EXPECT_EQ(frames.at("ordered_by"), "name");
   EXPECT_FALSE(frames.contains("findings"));
+}
+
+TEST_F(RunFramesTest, RawPhotosBesideTheirJpegsAreLeftOut) {
+  AddViews(4);
+  for (int i = 0; i < 4; ++i) {
+    WriteBytes(photos_ / ("view " + std::to_string(i) + ".DNG"),
+               TiffWithImageBelow(GreyOf(DrawnView(i, {32, 24})), GreyOf(DrawnView(20 * i))));
+  }
+  const json frames = Run(photos_);
+  EXPECT_EQ(frames.at("width"), 320);
+  EXPECT_EQ(frames.at("frames").size(), 4u);
+  for (const json& frame : frames.at("left_out")) {
+    EXPECT_EQ(frame.at("reason"), "unreadable");
+    EXPECT_THAT(frame.at("detail").get<std::string>(), testing::HasSubstr("RAW"));
+  }
+  const json finding = Only(frames.at("findings"));
+  EXPECT_EQ(finding.at("check"), "frames_unreadable");
+  EXPECT_THAT(finding.at("cause").get<std::string>(), testing::HasSubstr("RAW"));
+  EXPECT_THAT(finding.dump(), testing::Not(testing::HasSubstr("incompletely")));
+}
+
+// Boxes keep to the names.
+TEST_F(RunFramesTest, TimesOrderPhotosWithoutOrderInTheirNames) {
+  const std::vector<std::string> names = {"f00d.jpg", "1dea.jpg", "c0de.jpg"};
+  for (size_t i = 0; i < names.size(); ++i) {
+    WritePhoto(photos_ / names[i], DrawnView(static_cast<int>(20 * i)),
+               ExifOfTime("2024:05:01 12:00:00", "000" + std::to_string(i)));
+  }
+  WriteBytes(photos_ / "1dea.DNG", "RAW");  // not counted
+  const fs::path boxes = WriteBytes(
+      folder_ / "boxes.csv", "frame,label,score,x1,y1,x2,y2\n0,1dea,1,1,2,3,4\n2,f00d,1,1,2,3,4\n");
+  testing::internal::CaptureStdout();
+  RunFrames({}, {{"images", photos_}, {"output", output_}, {"detections", boxes}}, 2);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
+              testing::HasSubstr("order of their EXIF times"));
+  const json frames = ReadArtefact(output_ / "frames.json", "frames");
+  EXPECT_EQ(frames.at("ordered_by"), "time");
+  EXPECT_EQ(Fields(frames.at("frames"),
+                   [](const json& frame) { return frame.at("source").get<std::string>(); }),
+            names);
+  EXPECT_THAT(FileBytes(output_ / "detections.csv"),
+              testing::HasSubstr("\n0,f00d,1.0000,1.00,2.00,3.00,4.00\n1,1dea,"));
+}
+
+TEST_F(RunFramesTest, NumbersThatContradictTheTimesAreAFinding) {
+  for (int i = 0; i < 6; ++i) {
+    WritePhoto(photos_ / (std::to_string(i) + ".jpg"), DrawnView(20 * i),
+               ExifOfTime("2024:05:01 12:00:00", "000" + std::to_string(9 - i)));
+  }
+  const json frames = Run(photos_);
+  EXPECT_EQ(frames.at("ordered_by"), "name");
+  EXPECT_EQ(Only(frames.at("findings")).at("check"), "photo_order");
 }
 
 TEST_F(RunFramesTest, MuchThatIsLeftOutIsAFinding) {
@@ -188,9 +244,13 @@ TEST_F(RunFramesTest, ADatasetIsReplacedUnlessItHasFilesOfOthers) {
   fs::remove(photos_ / "view 0.jpg");
   EXPECT_EQ(Run(photos_).at("frames").size(), 2u);
   EXPECT_FALSE(fs::exists(output_ / "rgb/view_0.jpg"));
-  WriteBytes(output_ / "detections.csv", "by hand");
-  ExpectError<SettingsError>([&] { Run(photos_); }, {output_.string(), "detections.csv", "lost"});
-  EXPECT_EQ(FileBytes(output_ / "detections.csv"), "by hand");
+  for (const char* name : {"detections.csv", "rgb/mine.jpg"}) {
+    WriteBytes(output_ / name, "by hand");
+    ExpectError<SettingsError>([&] { Run(photos_); }, {output_.string(), name, "lost"});
+    EXPECT_EQ(FileBytes(output_ / name), "by hand");
+    fs::remove(output_ / name);
+  }
+  EXPECT_NO_THROW(Run(photos_));
 }
 
 TEST_F(RunFramesTest, ImagesHavePlainNamesOfTheirOwn) {
@@ -233,6 +293,9 @@ TEST_F(RunFramesTest, RefusesWhatMakesNoDataset) {
   WritePhoto(photos_ / "1.jpg", DrawnView(0));
   ExpectError<InputError>([&] { Run(photos_); }, {photos_.string(), "has 1 image(s)"});
   WritePhoto(photos_ / "2.jpg", DrawnView(0));
+  ExpectError<NothingUsableError>([&] { Run(photos_); },
+                                  {photos_.string(), "1 of 2 images", "1 duplicate"});
+  WritePhoto(photos_ / "2.jpg", DrawnView(0), ExifOf(1));
   ExpectError<NothingUsableError>([&] { Run(photos_); },
                                   {photos_.string(), "1 of 2 images", "1 no_motion"});
   ExpectError<InputError>([&] { Run(photos_ / "1.jpg"); },

@@ -55,4 +55,18 @@ inline std::string ExifOfCamera(int orientation, int focal_mm,
               directory);
 }
 
+// EXIF data with the time at which a photo was taken, "2024:01:31 23:59:59", and at least four
+// digits of the fraction of its second.
+inline std::string ExifOfTime(const std::string& time, const std::string& fraction = "0000") {
+  constexpr ByteOrder kOrder = ByteOrder::kLittleEndian;
+  constexpr std::uint64_t kExifDirectory = 0x8769, kTime = 0x9003, kFraction = 0x9291, kAscii = 2;
+  const size_t texts = TiffRest(1) + TiffRest(2) - 8;
+  const std::string directory =
+      Tiff(kOrder, {{kTime, texts, kAscii, time.size() + 1},
+                    {kFraction, texts + time.size() + 1, kAscii, fraction.size() + 1}})
+          .substr(8);
+  return Tiff(kOrder, {{kExifDirectory, TiffRest(1), 4}},
+              directory + time + std::string(1, '\0') + fraction + std::string(1, '\0'));
+}
+
 }  // namespace soslam

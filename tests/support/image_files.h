@@ -122,4 +122,49 @@ inline std::string GreyTiff(const cv::Mat& image, int orientation, ByteOrder ord
               pixels);
 }
 
+// An image of a TIFF file, little-endian, `begin` bytes after its beginning: a directory with
+// further fields, and grey values that are not packed. `next` is the place of the next image.
+inline std::string TiffImage(const cv::Mat& grey, size_t begin, std::vector<TiffField> fields = {},
+                             size_t next = 0) {
+  constexpr ByteOrder kOrder = ByteOrder::kLittleEndian;
+  constexpr std::uint64_t kPhotometric = 262;
+  const std::string pixels(grey.datastart, grey.dataend);
+  if (std::ranges::find(fields, kPhotometric, &TiffField::tag) == fields.end()) {
+    fields.push_back({kPhotometric, 1});  // 0 is black
+  }
+  const auto height = static_cast<std::uint64_t>(grey.rows);
+  const size_t pixels_begin = begin + TiffRest(fields.size() + 7) - 8;
+  fields.insert(fields.end(), {{256, static_cast<std::uint64_t>(grey.cols)},
+                               {257, height},
+                               {258, 8},
+                               {259, 1},
+                               {273, pixels_begin, 4},
+                               {278, height},
+                               {279, pixels.size(), 4}});
+  std::ranges::sort(fields, {}, &TiffField::tag);
+  const std::string directory = Tiff(kOrder, fields).substr(8);
+  return directory.substr(0, directory.size() - 4) + NumberBytes(next, 4, kOrder) + pixels;
+}
+
+// A TIFF file of two images, the second one with further fields.
+inline std::string TiffOfTwo(const cv::Mat& first, const cv::Mat& second,
+                             const std::vector<TiffField>& fields_of_second) {
+  const std::string header = Tiff(ByteOrder::kLittleEndian, {}).substr(0, 8);
+  const size_t next = 8 + TiffImage(first, 8).size();
+  return header + TiffImage(first, 8, {}, next) + TiffImage(second, next, fields_of_second);
+}
+
+// A TIFF file whose second image is in a directory below the first one (SubIFDs). By default, the
+// first is its thumbnail, as in RAW photos.
+inline std::string TiffWithImageBelow(const cv::Mat& first, const cv::Mat& below,
+                                      std::uint64_t subfile_of_first = 1,
+                                      std::uint64_t subfile_of_below = 0) {
+  const auto fields = [&](size_t place) {
+    return std::vector<TiffField>{{254, subfile_of_first, 4}, {330, place, 4}};
+  };
+  const size_t place = 8 + TiffImage(first, 8, fields(0)).size();
+  return Tiff(ByteOrder::kLittleEndian, {}).substr(0, 8) + TiffImage(first, 8, fields(place)) +
+         TiffImage(below, place, {{254, subfile_of_below, 4}});
+}
+
 }  // namespace soslam
