@@ -99,9 +99,8 @@ bool IsDigit(char c) { return kDigits.find(c) != kDigits.npos; }
 std::string PatternOfName(const Photo& photo) {
   std::string pattern = photo.path.stem().string();
   std::ranges::replace_if(pattern, &IsDigit, '0');
-  const auto repeated =
-      std::ranges::unique(pattern, [](char a, char b) { return a == '0' && b == '0'; });
-  pattern.erase(repeated.begin(), repeated.end());
+  const auto are_zeros = [](char one, char next) { return one == '0' && next == '0'; };
+  pattern.erase(std::unique(pattern.begin(), pattern.end(), are_zeros), pattern.end());
   return pattern;
 }
 

@@ -146,7 +146,8 @@ void RefuseExternalWeights(const NetworkFile& file) {
       "{}: its weights are in {}{}; expected one file with all of them: export it with "
       "external_data=False, or join them with python3 -c \"import onnx; onnx.save(onnx.load('{}'), "
       "'one_file.onnx')\"",
-      file.name, weights, IsFile(path.parent_path() / weights) ? "" : ", which is not beside it",
+      file.name, weights,
+      IsFile(path.parent_path() / weights) ? "" : ", which is not beside it (copy that, too)",
       path.filename().string()));
 }
 

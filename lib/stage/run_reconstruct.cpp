@@ -23,6 +23,7 @@
 #include "dataset/text_file.h"
 #include "geometry/image_size.h"
 #include "image/image_format.h"
+#include "image/read_image.h"
 #include "stage/colmap_programs.h"
 #include "stage/stages.h"
 #include "stage/track_points.h"
@@ -115,6 +116,7 @@ void CheckImages(const fs::path& dataset, const Given& given, ImageOrientation r
     const fs::path path = ImagePath(dataset, image.image, list);
     const auto header = ReadImageHeader(path);
     if (!header) {
+      ReadImage(path, cv::IMREAD_GRAYSCALE);  // its error has the reason
       throw InputError(path.string() + ": cannot be read; expected a JPEG, PNG, WebP, BMP or TIFF");
     }
     if (header->orientation != 1 && read_as == ImageOrientation::kUpright) {

@@ -359,6 +359,9 @@ TEST_F(RunReconstructTest, ImagesThatColmapWouldMistakeAreRefused) {
   fs::remove_all(folder_ / "out");
   Write("data/rgb/1.png", "no image");
   ExpectFailure<InputError>({"1.png", "expected a JPEG"});
+  const cv::Mat thumbnail(12, 16, CV_8UC1, cv::Scalar(9)), photo(48, 64, CV_8UC1, cv::Scalar(9));
+  Write("data/rgb/1.png", TiffWithImageBelow(thumbnail, photo));
+  ExpectFailure<InputError>({"1.png", "RAW"});
 }
 
 }  // namespace

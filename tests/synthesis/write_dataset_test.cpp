@@ -46,10 +46,11 @@ TEST_F(WriteDatasetTest, WritesEveryFileAndNothingElse) {
   WriteDataset(SmallScene(), true, folder_, 1);
   std::vector<std::string> names;
   for (const auto& [name, bytes] : Contents(folder_)) names.push_back(name);
-  EXPECT_THAT(names, testing::UnorderedElementsAre(
-                         "README.md", "rgb.txt", "groundtruth.txt", "odometry.txt", "camera.json",
-                         "planes.json", "objects.json", "detections.csv", "boxes_exact.csv",
-                         "rgb/000000.png", "rgb/000001.png", "rgb/000002.png", "rgb/000003.png"));
+  EXPECT_THAT(names,
+              testing::UnorderedElementsAre(
+                  "README.md", "SHA256SUMS", "rgb.txt", "groundtruth.txt", "odometry.txt",
+                  "camera.json", "planes.json", "objects.json", "detections.csv", "boxes_exact.csv",
+                  "rgb/000000.png", "rgb/000001.png", "rgb/000002.png", "rgb/000003.png"));
   EXPECT_EQ(std::distance(fs::directory_iterator(temporary_.path()), {}), 1)
       << "no temporary is left beside it";
   const cv::Mat image = cv::imread((folder_ / "rgb/000002.png").string(), cv::IMREAD_UNCHANGED);
