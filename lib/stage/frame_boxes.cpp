@@ -52,8 +52,8 @@ std::string FrameBoxesText(const fs::path& path, const ChosenFrames& chosen,
   for (size_t i = 0; i < chosen.record.frames.size(); ++i) {
     const SourceFrame& frame = chosen.record.frames[i];
     if (HasNameOfRawPhoto(frame.source)) continue;  // detectors read the JPEGs beside them
-    frames.push_back({OrderOfName(frame.source), i,
-                      IsLeftOut(frame) ? std::nullopt : std::optional(row++)});
+    frames.push_back(
+        {OrderOfName(frame.source), i, IsLeftOut(frame) ? std::nullopt : std::optional(row++)});
   }
   // All frames of a video have one name.
   std::ranges::stable_sort(frames, {}, &NumberedFrame::name);
