@@ -39,14 +39,10 @@ bool IsRawPhoto(const std::filesystem::path& path) {
 std::optional<OtherContent> FindOtherContent(const std::filesystem::path& path,
                                              const ImageBytes& file) {
   const std::string first_bytes = file.UpTo(0, kSignatureSize);
-  // ISO base media file format (ISO/IEC 14496-12): CR3, HEIF and formats derived from it.
-  const bool is_base_media =
-      first_bytes.substr(std::min<size_t>(4, first_bytes.size()), 4) == "ftyp";
-  if (HasNameOfRawPhoto(path) || HasSignatureOfRawPhoto(first_bytes) ||
-      (is_base_media && first_bytes.ends_with("crx "))) {
+  const bool is_cr3 = first_bytes.ends_with("ftypcrx ");
+  if (HasNameOfRawPhoto(path) || HasSignatureOfRawPhoto(first_bytes) || is_cr3) {
     return OtherContent::kRawPhoto;
   }
-  if (is_base_media) return OtherContent::kHeif;
   const ImageFormat* format = FindImageFormat(first_bytes);
   const bool can_have_other = format != nullptr && format->other_content != nullptr;
   return can_have_other ? format->other_content(file) : std::nullopt;

@@ -73,7 +73,7 @@ class ImageBytes {
 
 // Content of files that resemble an image. What decoders show of a RAW photo is its thumbnail, and
 // of several images the first.
-enum class OtherContent { kRawPhoto, kHeif, kSeveralImages, kAnimation };
+enum class OtherContent { kRawPhoto, kSeveralImages, kAnimation };
 
 // None for one image, and for files of unknown content. RAW photos are recognised by their content,
 // also under another name, and by the extensions of cameras.

@@ -73,13 +73,11 @@ std::vector<char> ReadBytes(const std::filesystem::path& path) {
 
 constexpr const char* kFormats = "JPEG, PNG, WebP, BMP or TIFF";
 
-std::string InWords(OtherContent content) {
+const char* InWords(OtherContent content) {
   switch (content) {
     case OtherContent::kRawPhoto:
       return "is a RAW photo, which is not read; expected the JPEG that the camera wrote with it, "
              "or one developed from it";
-    case OtherContent::kHeif:
-      return fmt::format("cannot be decoded; expected a {} image, not HEIF (HEIC, AVIF)", kFormats);
     case OtherContent::kSeveralImages:
       return "has several images; expected one: tiffsplit makes a file of each";
     case OtherContent::kAnimation:

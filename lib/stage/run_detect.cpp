@@ -89,25 +89,6 @@ std::vector<fs::path> ImagePaths(const fs::path& dataset) {
   return images;
 }
 
-double SumOfScores(const std::vector<YoloDetection>& detections) {
-  double sum = 0.0;
-  for (const YoloDetection& detection : detections) sum += detection.score;
-  return sum;
-}
-
-// Detections in the pixels that a file stores. Networks want upright images, but EXIF may be wrong,
-// as where the camera looked down: the orientation with the larger sum of scores counts.
-std::vector<YoloDetection> DetectInStored(const fs::path& path, YoloDetector* detector) {
-  auto stored = detector->Detect(ReadImage(path, cv::IMREAD_COLOR, ImageOrientation::kStored));
-  const ImageHeader header = ReadImageHeader(path).value();
-  if (header.orientation == 1) return stored;
-  auto upright = detector->Detect(ReadImage(path, cv::IMREAD_COLOR));
-  for (YoloDetection& detection : upright) {
-    detection.box = BoxInStoredImage(detection.box, header);
-  }
-  return SumOfScores(upright) >= SumOfScores(stored) ? upright : stored;
-}
-
 // The detections of each image, and the number of all boxes that were found. Each worker has its
 // own network, which OpenCV runs on one thread, so that the result does not depend on the number of
 // workers.
@@ -117,7 +98,7 @@ struct AllDetections {
 };
 AllDetections DetectAll(const std::vector<fs::path>& images, const NetworkFile& network,
                         const YoloFormat& format, const DetectorLabels& labels,
-                        const DetectorOptions& options, int threads) {
+                        const DetectorOptions& options, ImageOrientation orientation, int threads) {
   const int count = static_cast<int>(images.size());
   const int workers = std::min(threads, count);
   AllDetections all{std::vector<std::vector<YoloDetection>>(images.size()), {}};
@@ -127,15 +108,37 @@ AllDetections DetectAll(const std::vector<fs::path>& images, const NetworkFile& 
     YoloDetector detector(network, format, labels.groups, options);
     for (int i = worker; i < count; i += workers) {
       const auto frame = static_cast<size_t>(i);
-      all.of_image[frame] = options.image_orientation == ImageOrientation::kStored
-                                ? DetectInStored(images[frame], &detector)
-                                : detector.Detect(ReadImage(images[frame], cv::IMREAD_COLOR));
+      all.of_image[frame] =
+          detector.Detect(ReadImage(images[frame], cv::IMREAD_COLOR, orientation));
       progress.Step();
     }
     tallies[worker] = detector.tally();
   });
   for (const BoxTally& tally : tallies) all.tally += tally;
   return all;
+}
+
+double SumOfScores(const AllDetections& all) {
+  double sum = 0.0;
+  for (const auto& detections : all.of_image) {
+    for (const YoloDetection& detection : detections) sum += detection.score;
+  }
+  return sum;
+}
+
+// The detections in the pixels that the files store. Networks want upright images, but EXIF may be
+// wrong, as where the camera looked down: they see both, and the orientation in which they are
+// surer of all images together counts.
+AllDetections InStoredPixels(AllDetections upright, AllDetections stored,
+                             const std::vector<fs::path>& images) {
+  if (SumOfScores(stored) > SumOfScores(upright)) return stored;
+  for (size_t i = 0; i < images.size(); ++i) {
+    const ImageHeader header = ReadImageHeader(images[i]).value();
+    for (YoloDetection& detection : upright.of_image[i]) {
+      detection.box = BoxInStoredImage(detection.box, header);
+    }
+  }
+  return upright;
 }
 
 std::vector<LabelledBox> KeptBoxes(const std::vector<std::vector<YoloDetection>>& detections,
@@ -200,7 +203,17 @@ void RunDetect(const DetectorOptions& options, const StageFiles& files, int thre
   const std::vector<fs::path> images = ImagePaths(dataset);
   const YoloFormat format = FindFormat(network, static_cast<int>(labels.names.size()), options,
                                        ReadImage(images.front(), cv::IMREAD_COLOR).size());
-  const AllDetections all = DetectAll(images, network, format, labels, options, threads);
+  const auto detect = [&](ImageOrientation orientation) {
+    return DetectAll(images, network, format, labels, options, orientation, threads);
+  };
+  const bool is_any_turned = std::ranges::any_of(images, [](const fs::path& image) {
+    const auto header = ReadImageHeader(image);
+    return header && header->orientation != 1;
+  });
+  AllDetections all = detect(ImageOrientation::kUpright);
+  if (options.image_orientation == ImageOrientation::kStored && is_any_turned) {
+    all = InStoredPixels(std::move(all), detect(ImageOrientation::kStored), images);
+  }
   CheckBoxesArePossible(all.tally, format, network.name);
   const auto boxes = KeptBoxes(all.of_image, labels);
   if (boxes.empty()) {

@@ -153,10 +153,8 @@ TEST_F(SlowMapTest, TakesAFinishedModel) {
 // The model is of the photos as they are stored, the boxes of the upright ones.
 TEST_F(SlowMapTest, TakesAModelOfPhotosThatExifTurns) {
   for (int i = 0; i < kFrames; ++i) {
-    const fs::path png = photos_ / fmt::format("IMG {}.png", i);
-    WriteBytes(photos_ / fmt::format("IMG {}.jpg", i),
-               JpegWithExif(EncodedImage(".jpg", cv::imread(png.string())), ExifOf(6)));
-    fs::remove(png);
+    const fs::path photo = photos_ / fmt::format("IMG {}.png", i);
+    WriteBytes(photo, JpegWithExif(EncodedImage(".jpg", cv::imread(photo.string())), ExifOf(6)));
   }
   auto boxes = ReadDetectionsCsv(detections_);
   for (LabelledBox& box : boxes) {

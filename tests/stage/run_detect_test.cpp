@@ -179,7 +179,8 @@ TEST(LabelsForDetectorTest, BadOptionsAreRefused) {
                  {"interchangeable_labels"});
 }
 
-// The network sees the image as viewers show it; boxes are those of that, or of the stored one.
+// Boxes are those of the image as viewers show it, or as it is stored. For the latter the network
+// sees both, and is as sure as the image fills its input.
 TEST_F(RunDetectTest, ExifTurnsImages) {
   const cv::Mat image(32, 64, CV_8UC3, cv::Scalar(0, 0, 255));
   const std::string jpeg = EncodedImage(".jpg", image);
@@ -190,9 +191,15 @@ TEST_F(RunDetectTest, ExifTurnsImages) {
   // (22, 17) to (42, 47) of the input, whose columns 16 to 48 are the upright image of 32 x 64.
   ExpectBox(ReadDetectionsCsv(folder_ / "detections.csv").at(0).box, {5.5, 16.5, 25.5, 46.5});
   options_.image_orientation = ImageOrientation::kStored;
+  options_.input_width = 64;
+  options_.input_height = 32;
   Run();
-  // The first stored row, of 64 pixels, is the right column of the upright image.
-  ExpectBox(ReadDetectionsCsv(folder_ / "detections.csv").at(0).box, {16.5, 5.5, 46.5, 25.5});
+  ExpectBox(ReadDetectionsCsv(folder_ / "detections.csv").at(0).box, {21.5, 16.5, 41.5, 31.5});
+  options_.input_width = 32;
+  options_.input_height = 64;
+  Run();
+  // (22, 17) to (32, 47) of the upright image, whose right column is the first stored row.
+  ExpectBox(ReadDetectionsCsv(folder_ / "detections.csv").at(0).box, {16.5, -0.5, 46.5, 9.5});
 }
 
 TEST_F(RunDetectTest, NothingFoundIsNotAResult) {
