@@ -160,8 +160,10 @@ bool TangencyResidual::Evaluate(double const* const* blocks, double* residuals,
   const TangentDepth depth = {depth_ratio_ * (is_near ? min_centre_depth_m_ : centre_depth_m),
                               is_near ? 0.0 : depth_ratio_};
   LandmarkJacobian1 d_tangency;
+  BoxEdge edge = edge_;
+  edge.plane.head<2>() *= std::exp(*blocks[4]);
   const double outwards_px = *blocks[2] + edge_.extent_px * *blocks[3];
-  const double tangency = Tangency(edge_, landmark, depth, outwards_px, &d_tangency);
+  const double tangency = Tangency(edge, landmark, depth, outwards_px, &d_tangency);
   if (!std::isfinite(tangency)) return false;
   Eigen::Map<Eigen::Vector3d>(residuals) << tangency, 0.0, 0.0;
   if (jacobians == nullptr) return true;
@@ -170,7 +172,7 @@ bool TangencyResidual::Evaluate(double const* const* blocks, double* residuals,
   d_landmark.row(0) = d_tangency;
   if (*for_solver_) {
     d_landmark.bottomLeftCorner<2, 3>() =
-        TangencyCurvature(edge_, landmark, depth.depth_m, tangency);
+        TangencyCurvature(edge, landmark, depth.depth_m, tangency);
   }
   observation.WriteJacobians<3>(d_landmark, blocks, jacobians);
   const bool is_free = edge_.is_one_sided && !(tangency < 0.0);
@@ -178,6 +180,12 @@ bool TangencyResidual::Evaluate(double const* const* blocks, double* residuals,
   using Column = Eigen::Map<Eigen::Vector3d>;
   if (jacobians[2] != nullptr) Column{jacobians[2]} = d_outwards_px;
   if (jacobians[3] != nullptr) Column{jacobians[3]} = edge_.extent_px * d_outwards_px;
+  if (jacobians[4] != nullptr) {
+    const Eigen::Vector3d tangent_point = FindSupportPoint(landmark, edge.plane).point;
+    const double d_log_focal =
+        edge.plane.head<2>().dot(tangent_point.head<2>()) / (depth.depth_m * edge.sigma_px);
+    Column{jacobians[4]} = Eigen::Vector3d(is_free ? 0.0 : d_log_focal, 0.0, 0.0);
+  }
   return true;
 }
 

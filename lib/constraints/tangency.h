@@ -79,9 +79,11 @@ double OutlineExcess(const BoxEdge& edge, const Landmark& landmark_in_camera,
 //
 // Residuals: 1 + 2, the tangency, and curvature rows: two zeros whose Jacobian is
 // TangencyCurvature. Blocks: world_from_camera; landmark in the world; bias (px) of the detector at
-// this side of boxes; misfit of the object at this side.
+// this side of boxes; misfit of the object at this side; logarithm of the factor of the focal
+// lengths.
 class TangencyResidual final
-    : public ceres::SizedCostFunction<3, kPoseSize, kLandmarkSize, kBiasSize, kMisfitSize> {
+    : public ceres::SizedCostFunction<3, kPoseSize, kLandmarkSize, kBiasSize, kMisfitSize,
+                                      kLogFocalSize> {
  public:
   // The tangent point of the initial estimate must be in front of the camera. While
   // `*for_solver` is false, the Jacobian of the curvature rows is zero.

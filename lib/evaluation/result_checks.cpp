@@ -13,6 +13,7 @@
 #include "base/spelling.h"
 #include "base/text.h"
 #include "evaluation/statistics.h"
+#include "geometry/angles.h"
 #include "model/label_groups.h"
 
 namespace soslam {
@@ -122,6 +123,85 @@ std::vector<Finding> CheckHalfAxes(const LandmarkEstimates& estimates, const IsB
   return {finding};
 }
 
+// Boxes cost less than this multiple of what their noise gives by chance: with given ids, less than
+// 3 times; of raw detections, some of whose tracks are of several things, less than 9 times.
+constexpr double kFarAbove = 10.0;
+
+// How a plane differs from the given one where objects stand on it.
+struct PlaneChange {
+  double height_m;
+  double tilt_rad;
+
+  // In units of the least that matters: 2 cm, 1 degree.
+  double Size() const { return std::max(std::abs(height_m) / 0.02, tilt_rad / kRadPerDeg); }
+};
+
+PlaneChange ChangeOf(const Sequence& sequence, const MapEstimate& map, int plane_index,
+                     const Plane& found) {
+  const Plane& given = sequence.planes[static_cast<size_t>(plane_index)].plane_in_world;
+  std::vector<double> heights;
+  for (const ObjectEstimate& object : map.objects) {
+    const bool is_on_it =
+        sequence.objects[static_cast<size_t>(object.object_index)].plane_index == plane_index;
+    if (!object.landmark_in_world || !is_on_it) continue;
+    const Eigen::Vector3d centre = object.landmark_in_world->Centre();
+    heights.push_back(-found.SignedDistance(centre - given.SignedDistance(centre) * given.normal));
+  }
+  return {MeanOf(heights).value_or(0.0), AngleBetween(given.normal, found.normal)};
+}
+
+// The largest of an alternative's corrections, in units of the least that matters: 2 % of the focal
+// length, or that of a plane.
+double Correction(const Sequence& sequence, const MapEstimate& map, const InputAlternative& found) {
+  double largest = std::abs(std::log(found.focal_factor)) / 0.02;
+  for (const auto& [index, plane] : found.planes_in_world) {
+    largest = std::max(largest, ChangeOf(sequence, map, index, plane).Size());
+  }
+  return largest;
+}
+
+// The part of the gain that is left once what is given is corrected by the least that matters: the
+// cost is a parabola along the way to the minimum.
+double ShareOfGain(double correction) {
+  return correction > 1.0 ? std::pow(1.0 - 1.0 / correction, 2) : 0.0;
+}
+
+std::string FocalInWords(const Sequence& sequence, const InputAlternative& given,
+                         const InputAlternative& found, double expected) {
+  const double dispersion = std::max(1.0, found.box_cost / expected);
+  const double log_sigma = std::abs(std::log(found.focal_factor)) /
+                           std::sqrt(2.0 * (given.cost - found.cost) / dispersion);
+  const double fx = sequence.CameraOf(sequence.frames.front()).fx;
+  return fmt::format(
+      "{:.3f} times the focal length (fx = {:.4g} in place of {:.4g} px, standard "
+      "deviation {:.2g} px)",
+      found.focal_factor, found.focal_factor * fx, fx, found.focal_factor * fx * log_sigma);
+}
+
+std::string PlanesInWords(const Sequence& sequence, const MapEstimate& map,
+                          const InputAlternative& found) {
+  constexpr size_t kMostPlanes = 5;
+  std::vector<std::string> planes;
+  for (const auto& [index, plane] : found.planes_in_world) {
+    const SupportPlane& given = sequence.planes[static_cast<size_t>(index)];
+    const PlaneChange change = ChangeOf(sequence, map, index, plane);
+    if (change.Size() < 1.0) continue;
+    std::string words = fmt::format("plane {} {:.3f} m {}", given.id, std::abs(change.height_m),
+                                    change.height_m < 0.0 ? "lower" : "higher");
+    if (plane.normal != given.plane_in_world.normal) {
+      words += fmt::format(
+          " under its objects and turned by {:.1f} degrees to the normal ({:.3f}, "
+          "{:.3f}, {:.3f})",
+          change.tilt_rad / kRadPerDeg, plane.normal.x(), plane.normal.y(), plane.normal.z());
+    }
+    planes.push_back(words);
+  }
+  const size_t count = planes.size();
+  if (count > kMostPlanes) planes.resize(kMostPlanes);
+  return fmt::format("{}{}", fmt::join(planes, ", "),
+                     count > kMostPlanes ? fmt::format(", ... ({} planes)", count) : "");
+}
+
 }  // namespace
 
 std::vector<Finding> CheckFailures(const LandmarkEstimates& estimates) {
@@ -203,10 +283,43 @@ std::vector<Finding> CheckCollapsed(const LandmarkEstimates& estimates) {
        "look at the findings of the import and at the boxes of these objects: soslam-inspect"});
 }
 
+std::vector<Finding> CheckInputs(const Sequence& sequence, const MapEstimate& map) {
+  constexpr double kChance = 1e-3;
+  if (map.input_alternatives.empty()) return {};
+  const InputAlternative& given = map.input_alternatives.front();
+  const double expected = map.solver.expected_box_cost;
+  const auto tries = static_cast<double>(1 + 2 * (sequence.planes.size() + 1));
+  const InputAlternative* best = nullptr;
+  double best_probability = kChance / tries;
+  for (const InputAlternative& found : map.input_alternatives) {
+    const double dispersion = std::max(1.0, found.box_cost / expected);
+    if (&found == &given || dispersion > kFarAbove) continue;
+    const double gain = (given.cost - found.cost) * ShareOfGain(Correction(sequence, map, found));
+    const double ratio = 2.0 * gain / (found.degrees * dispersion);
+    const double probability = FisherTail(ratio, found.degrees, 2.0 * expected);
+    if (!(probability < best_probability)) continue;
+    best = &found;
+    best_probability = probability;
+  }
+  if (best == nullptr) return {};
+  const bool is_focal = best->planes_in_world.empty();
+  return {{is_focal ? "focal_length" : "support_planes", Severity::kWarning,
+           fmt::format("the boxes fit best with {}: they cost {:.3g} times what their noise gives "
+                       "by chance in place of {:.3g} times",
+                       is_focal ? FocalInWords(sequence, given, *best, expected)
+                                : PlanesInWords(sequence, map, *best),
+                       best->box_cost / expected, given.box_cost / expected),
+           fmt::format("no better fit than chance gives once in {:g} maps", 1.0 / kChance),
+           is_focal ? "intrinsics of another camera, of another image size or of cropped images"
+                    : "planes in another world or unit than the poses, of another recording, or "
+                      "badly measured; or objects that stand on something else",
+           is_focal
+               ? "calibrate the camera, or estimate it along with the poses (soslam-reconstruct)"
+               : "correct the planes in planes.json or the planes of these objects, or let them "
+                 "be estimated: settings {\"planes\": {\"planes\": \"estimated\"}}"}};
+}
+
 std::vector<Finding> CheckCost(const SolverSummary& solver) {
-  // Maps of boxes with given ids are below 3, those of raw detections, some of whose tracks are of
-  // several things, below 9.
-  constexpr double kFarAbove = 10.0;
   if (solver.box_cost <= kFarAbove * solver.expected_box_cost) return {};
   return {{"cost", Severity::kWarning,
            fmt::format("the boxes cost {:.4g}, {:.3g} times what their noise gives by chance",

@@ -36,6 +36,12 @@ std::vector<Finding> CheckDegenerate(const LandmarkEstimates& estimates);
 // Landmarks that shrank to a point.
 std::vector<Finding> CheckCollapsed(const LandmarkEstimates& estimates);
 
+// Another focal length or other planes that lower the cost more than chance does in one map of 1000
+// where what is given is right: the alternative that chance gives most rarely. Corrections that are
+// too small to matter count as none, and so do those that leave the cost far above what noise
+// gives.
+std::vector<Finding> CheckInputs(const Sequence& sequence, const MapEstimate& map);
+
 // Final cost of boxes whose edges have a standard deviation, against the cost expected by chance.
 std::vector<Finding> CheckCost(const SolverSummary& solver);
 

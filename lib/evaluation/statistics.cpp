@@ -24,4 +24,13 @@ double ChiSquareQuantile(int degrees, double normal_quantile) {
   return std::pow(1.0 - spread + normal_quantile * std::sqrt(spread), 3);
 }
 
+double FisherTail(double ratio, double degrees, double denominator_degrees) {
+  const double spread = 2.0 / (9.0 * degrees);
+  const double denominator_spread = 2.0 / (9.0 * denominator_degrees);
+  const double root = std::cbrt(ratio);
+  const double normal = ((1.0 - denominator_spread) * root - (1.0 - spread)) /
+                        std::sqrt(denominator_spread * root * root + spread);
+  return 0.5 * std::erfc(normal / std::sqrt(2.0));
+}
+
 }  // namespace soslam

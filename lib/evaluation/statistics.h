@@ -27,6 +27,10 @@ std::optional<double> MedianOf(std::vector<double> values);
 // one of the standard normal distribution (Wilson and Hilferty).
 double ChiSquareQuantile(int degrees, double normal_quantile);
 
+// The probability that the quotient of two independent chi-square values, each divided by its
+// degrees of freedom, exceeds `ratio`: the upper tail of the F distribution (Paulson).
+double FisherTail(double ratio, double degrees, double denominator_degrees);
+
 // Half the 95 % interval of the normal distribution, in standard deviations.
 inline constexpr double kHalfInterval95 = 1.96;
 

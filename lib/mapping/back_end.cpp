@@ -5,6 +5,7 @@
 
 #include "mapping/back_end_problem.h"
 #include "mapping/covariance.h"
+#include "mapping/input_alternatives.h"
 
 namespace soslam {
 namespace {
@@ -110,6 +111,7 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
   problem.Solve();
   bool has_converged = true;
   if (options.detection_model == DetectionModel::kTangency) {
+    map.input_alternatives = FindInputAlternatives(input.sequence, &problem);
     if (!input.symmetry_images.empty() || !input.edge_images.empty() || !input.points.empty()) {
       has_converged = SolveWithImages(&problem);
     }

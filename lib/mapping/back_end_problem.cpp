@@ -77,6 +77,9 @@ BackEndProblem::BackEndProblem(const BackEndInput& input, const OptimiseOptions&
   AddDetections();
   SetManifolds();
   FixPoses();
+  if (problem_.HasParameterBlock(variables_.LogFocal())) {
+    problem_.SetParameterBlockConstant(variables_.LogFocal());
+  }
 }
 
 Landmark BackEndProblem::LandmarkInCamera(const Detection& detection) const {
@@ -240,7 +243,8 @@ void BackEndProblem::AddDetection(size_t index, const Landmark& initial_in_camer
         problem_.AddResidualBlock(
             new TangencyResidual(edges[side], initial_in_camera, &for_solver_),
             &view_losses_.back(), Pose(detection), LandmarkOf(detection), variables_.Bias(side),
-            variables_.Misfit(static_cast<size_t>(detection.object_index), side)),
+            variables_.Misfit(static_cast<size_t>(detection.object_index), side),
+            variables_.LogFocal()),
         0.5 * view_weights_[index]);
   }
 }
@@ -308,7 +312,13 @@ std::shared_ptr<ceres::ParameterBlockOrdering> BackEndProblem::LandmarkOrdering(
 }
 
 void BackEndProblem::Solve(int max_iterations) {
-  ceres::Solver::Options options = SolverOptions(std::min(max_iterations, IterationsLeft()));
+  const ceres::Solver::Summary solution = Minimise(std::min(max_iterations, IterationsLeft()));
+  if (!solution.IsSolutionUsable()) throw NumericalError("back end: " + solution.message);
+  Record(solution);
+}
+
+ceres::Solver::Summary BackEndProblem::Minimise(int max_iterations) {
+  ceres::Solver::Options options = SolverOptions(max_iterations);
   if (IsTangency() && !image_blocks_.empty()) {
     // The costs of images have kinks at pixels: every step that crosses one may be refused.
     options.use_nonmonotonic_steps = true;
@@ -325,19 +335,34 @@ void BackEndProblem::Solve(int max_iterations) {
   options.callbacks.push_back(&progress);
   ceres::Solver::Summary solution;
   ceres::Solve(options, &problem_, &solution);
-  if (!solution.IsSolutionUsable()) throw NumericalError("back end: " + solution.message);
-  Record(solution);
+  return solution;
+}
+
+double BackEndProblem::Step() {
+  ceres::Solver::Summary solution;
+  for_solver_ = false;  // curvature rows shorten steps
+  ceres::Solve(SolverOptions(1), &problem_, &solution);
+  for_solver_ = true;
+  if (solution.iterations.size() < 2) return 0.0;
+  const ceres::IterationSummary& step = solution.iterations[1];
+  return step.relative_decrease == 0.0 ? 0.0 : step.cost_change / step.relative_decrease;
+}
+
+double BackEndProblem::BoxCost() {
+  double cost = 0.0;
+  ceres::Problem::EvaluateOptions boxes;
+  boxes.residual_blocks = box_blocks_;
+  if (!box_blocks_.empty()) {  // which would mean all
+    problem_.Evaluate(boxes, &cost, nullptr, nullptr, nullptr);
+  }
+  return cost;
 }
 
 void BackEndProblem::Record(const ceres::Solver::Summary& solution) {
   std::vector<double>& costs = summary_.cost_per_iteration;
   if (costs.empty()) summary_.initial_cost = solution.initial_cost;
   summary_.final_cost = solution.final_cost;
-  ceres::Problem::EvaluateOptions boxes;
-  boxes.residual_blocks = box_blocks_;
-  if (!box_blocks_.empty()) {  // which would mean all
-    problem_.Evaluate(boxes, &summary_.box_cost, nullptr, nullptr, nullptr);
-  }
+  summary_.box_cost = BoxCost();
   summary_.iterations += static_cast<int>(std::max<size_t>(1, solution.iterations.size())) - 1;
   summary_.converged = solution.termination_type == ceres::CONVERGENCE;
   summary_.detector_bias_px = variables_.BiasValues();

@@ -36,6 +36,16 @@ class BackEndProblem {
   // defined there.
   void Solve(int max_iterations = std::numeric_limits<int>::max());
 
+  // The same, without a record in the summary.
+  ceres::Solver::Summary Minimise(int max_iterations);
+
+  // Takes one Gauss-Newton step if it lowers the cost; returns the decrease that the linearised
+  // problem predicts.
+  double Step();
+
+  // The part of the boxes in the present cost.
+  double BoxCost();
+
   // Before max_iterations are reached.
   int IterationsLeft() const { return options_.max_iterations - summary_.iterations; }
 

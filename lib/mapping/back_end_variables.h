@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -11,9 +13,9 @@
 namespace soslam {
 
 // The parameter blocks of the back end (see parameters.h): a pose for each frame, a landmark for
-// each object, normal and offset of each plane, the detector's bias at each side of a box, and the
-// misfit of each object at each side. They begin at the input's values. Keeps a reference to the
-// input.
+// each object, normal and offset of each plane, the detector's bias at each side of a box, the
+// misfit of each object at each side, and the logarithm of the factor of all focal lengths. They
+// begin at the input's values. Keeps a reference to the input.
 //
 // All are in one array, as Ceres sorts blocks by their address: the order of blocks, on which last
 // digits depend, is then the same in every run.
@@ -38,6 +40,11 @@ class BackEndVariables {
   double* Misfit(size_t object_index, size_t side) {
     return &values_[first_misfit_ + kMisfitSize * (4 * object_index + side)];
   }
+  double* LogFocal() { return &values_.back(); }
+
+  // The values of all blocks.
+  const std::vector<double>& values() const { return values_; }
+  void SetValues(const std::vector<double>& values) { std::ranges::copy(values, values_.begin()); }
 
   // A frame's pose in the world.
   Rigid3d PoseValue(size_t frame_index) const {
@@ -48,6 +55,7 @@ class BackEndVariables {
   soslam::Landmark LandmarkValue(size_t object_index) const;  // needs an initial estimate
   Plane PlaneValue(size_t plane_index) const;
   std::array<double, 4> BiasValues() const;
+  double FocalFactor() const { return std::exp(values_.back()); }
 
  private:
   // Which normal a plane has: that of the first parallel plane, or its opposite.

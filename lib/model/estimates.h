@@ -81,6 +81,16 @@ struct SolverSummary {
   std::array<double, 4> detector_bias_px{};
 };
 
+// How well the back end explains the boxes, without images and points, if some of what is given to
+// it is free.
+struct InputAlternative {
+  int degrees = 0;                            // degrees of freedom of what is free
+  double cost = 0.0;                          // the whole cost at its minimum
+  double box_cost = 0.0;                      // part of the boxes in it
+  double focal_factor = 1.0;                  // of fx and fy of all cameras
+  std::map<int, Plane> planes_in_world = {};  // those that are free, by index in Sequence::planes
+};
+
 // The result of the back end.
 struct MapEstimate {
   std::vector<ObjectEstimate> objects;
@@ -89,6 +99,8 @@ struct MapEstimate {
   SolverSummary solver;
   // Covariances of estimated planes over (normal, offset), keyed by index in Sequence::planes.
   std::map<int, Eigen::Matrix4d> plane_covariances = {};
+  // With bodies of any shape. First that with all that is given, then those that may be better.
+  std::vector<InputAlternative> input_alternatives = {};
 };
 
 // Result of the symmetry search on one observation's texture for the yaw of its object (figures 7

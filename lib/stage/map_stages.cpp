@@ -127,13 +127,20 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
   if (options.points.point_evidence) info.inputs.push_back(files.at("points"));
   const MapEstimate map = OptimiseMap(input, options, threads);
   const LandmarkEstimates found = {{}, map.objects};
-  info.findings = options.support ? CheckSizes(found, sequence, table) : CheckDegenerate(found);
-  std::ranges::move(CheckCollapsed(found), std::back_inserter(info.findings));
-  if (options.detection_model == DetectionModel::kTangency) {
-    std::ranges::move(CheckCost(map.solver), std::back_inserter(info.findings));
+  info.findings = CheckInputs(sequence, map);
+  const bool is_explained = !info.findings.empty();
+  const auto add = [&](const std::vector<Finding>& findings) {
+    std::ranges::copy(findings, std::back_inserter(info.findings));
+  };
+  // Consequences of wrong inputs are not reported as causes of their own.
+  if (!is_explained) {
+    add(options.support ? CheckSizes(found, sequence, table) : CheckDegenerate(found));
   }
-  std::ranges::move(CheckPoseCorrections(sequence, map.world_from_camera, options.Odometry()),
-                    std::back_inserter(info.findings));
+  add(CheckCollapsed(found));
+  if (!is_explained) {
+    if (options.detection_model == DetectionModel::kTangency) add(CheckCost(map.solver));
+    add(CheckPoseCorrections(sequence, map.world_from_camera, options.Odometry()));
+  }
   ReportFindings("optimise", info.findings);
   WriteMap(files.at("output"), map, sequence, info);
   // Texture, edges and points are added once boxes and planes have converged.

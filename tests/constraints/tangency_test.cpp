@@ -219,13 +219,14 @@ struct View {
   Landmark initial_in_camera = RandomLandmarkInCamera();
   double bias_px = RandomUniform(-3, 3);
   double misfit = RandomUniform(-0.03, 0.03);
+  double log_focal = 0.0;
 
   LandmarkBlock InWorld(const Landmark& in_camera) const {
     return ToParameterBlock(Transform(UnpackPose(pose.data()), in_camera));
   }
   // The parameter blocks of a residual, with this landmark in the world.
   std::vector<const double*> Blocks(const LandmarkBlock& landmark) const {
-    return {pose.data(), landmark.data(), &bias_px, &misfit};
+    return {pose.data(), landmark.data(), &bias_px, &misfit, &log_focal};
   }
 };
 
@@ -237,6 +238,7 @@ TEST(TangencyResidual, HasCorrectJacobiansWithoutItsCurvatureRows) {
     view.initial_in_camera.shape_exponents = RandomUniform(1.4, 2.0);
     BoxEdge edge = RandomEdge();
     edge.is_one_sided = i % 2 == 0;
+    view.log_focal = 0.02 * (i - 15);
     ExpectCorrectJacobians(TangencyResidual(edge, view.initial_in_camera, &for_solver),
                            view.Blocks(view.InWorld(view.initial_in_camera)));
   }
@@ -255,8 +257,8 @@ TEST(TangencyResidual, CurvatureRowsAddToTheInformationAlone) {
     using Rows = Eigen::Matrix<double, 3, kLandmarkSize, Eigen::RowMajor>;
     Rows with_rows, without_rows;
     Eigen::Vector3d with_residuals, without_residuals;
-    double* with_jacobians[] = {nullptr, with_rows.data(), nullptr, nullptr};
-    double* without_jacobians[] = {nullptr, without_rows.data(), nullptr, nullptr};
+    double* with_jacobians[] = {nullptr, with_rows.data(), nullptr, nullptr, nullptr};
+    double* without_jacobians[] = {nullptr, without_rows.data(), nullptr, nullptr, nullptr};
     ASSERT_TRUE(TangencyResidual(edge, view.initial_in_camera, &with)
                     .Evaluate(blocks.data(), with_residuals.data(), with_jacobians));
     ASSERT_TRUE(TangencyResidual(edge, view.initial_in_camera, &without)

@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "geometry/angles.h"
 #include "support/lists.h"
 
 namespace soslam {
@@ -130,6 +133,75 @@ TEST(CheckCostTest, FarAboveWhatNoiseGives) {
   EXPECT_THAT(CheckCost(solver), IsEmpty());
   solver.box_cost = 210.0;
   EXPECT_THAT(Only(CheckCost(solver)).found, HasSubstr("210, 10.5 times"));
+}
+
+// 40 effective residuals that cost 4 times what their noise gives, with one landmark on a plane.
+class CheckInputsTest : public testing::Test {
+ protected:
+  CheckInputsTest() {
+    sequence.camera.fx = 700.0;
+    sequence.frames.resize(1);
+    sequence.planes.push_back({.id = 3, .plane_in_world = {}});
+    sequence.objects.push_back({});
+    map.objects.emplace_back().landmark_in_world = Landmark{};
+    map.solver.expected_box_cost = 20.0;
+    map.input_alternatives = {{.cost = 80.0, .box_cost = 80.0}};
+  }
+
+  Sequence sequence;
+  MapEstimate map;
+};
+
+TEST_F(CheckInputsTest, NothingWithoutAnotherExplanation) {
+  EXPECT_THAT(CheckInputs(sequence, map), IsEmpty());
+  EXPECT_THAT(CheckInputs(sequence, MapEstimate()), IsEmpty());
+}
+
+// log(0.7) is 18 times the least correction that matters.
+TEST_F(CheckInputsTest, AFocalLengthFarBetterThanChanceGives) {
+  map.input_alternatives.push_back(
+      {.degrees = 1, .cost = 66.0, .box_cost = 66.0, .focal_factor = 0.7});
+  EXPECT_THAT(CheckInputs(sequence, map), IsEmpty());
+  map.input_alternatives.back() = {
+      .degrees = 1, .cost = 30.0, .box_cost = 30.0, .focal_factor = 0.7};
+  const Finding finding = Only(CheckInputs(sequence, map));
+  EXPECT_EQ(finding.check, "focal_length");
+  EXPECT_THAT(finding.found,
+              AllOf(HasSubstr("0.700 times"), HasSubstr("fx = 490 in place of 700"),
+                    HasSubstr("deviation 21 px"), HasSubstr("1.5 times"), HasSubstr("of 4 times")));
+}
+
+TEST_F(CheckInputsTest, CorrectionsThatAreTooSmallToMatter) {
+  map.input_alternatives.push_back(
+      {.degrees = 1, .cost = 20.0, .box_cost = 20.0, .focal_factor = 1.015});
+  EXPECT_THAT(CheckInputs(sequence, map), IsEmpty());
+}
+
+TEST_F(CheckInputsTest, WhatStillFitsBadlyIsNoExplanation) {
+  map.input_alternatives = {{.cost = 8000.0, .box_cost = 8000.0},
+                            {.degrees = 1, .cost = 250.0, .box_cost = 250.0, .focal_factor = 0.7}};
+  EXPECT_THAT(CheckInputs(sequence, map), IsEmpty());
+}
+
+TEST_F(CheckInputsTest, TheExplanationThatChanceGivesMostRarely) {
+  const Plane lower{Eigen::Vector3d::UnitZ(), 0.3};
+  const double angle = 10.0 * kRadPerDeg;
+  const Plane turned{{0.0, std::sin(angle), std::cos(angle)}, 0.3};
+  map.input_alternatives.push_back(
+      {.degrees = 1, .cost = 35.0, .box_cost = 35.0, .focal_factor = 0.7});
+  map.input_alternatives.push_back(
+      {.degrees = 1, .cost = 26.0, .box_cost = 26.0, .planes_in_world = {{0, lower}}});
+  map.input_alternatives.push_back(
+      {.degrees = 3, .cost = 25.5, .box_cost = 25.5, .planes_in_world = {{0, turned}}});
+  Finding finding = Only(CheckInputs(sequence, map));
+  EXPECT_EQ(finding.check, "support_planes");
+  EXPECT_THAT(finding.found, HasSubstr("with plane 3 0.300 m lower:"));
+  map.input_alternatives.erase(map.input_alternatives.begin() + 1,
+                               map.input_alternatives.begin() + 3);
+  finding = Only(CheckInputs(sequence, map));
+  EXPECT_THAT(finding.found,
+              AllOf(HasSubstr("m lower under its objects and turned by 10.0 degrees"),
+                    HasSubstr("(0.000, 0.174, 0.985)")));
 }
 
 // Three frames of one segment and one of another: two steps, 12 degrees of freedom, of which the

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the boxes say of a focal length and of planes that are given wrongly.
+#include "mapping/input_alternatives.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "evaluation/result_checks.h"
+#include "geometry/angles.h"
+#include "support/cuboid_map.h"
+
+namespace soslam {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+// Cuboids on a floor and a shelf, boxes with the noise of an ordinary detector.
+Sequence NoisySequence(int seed) {
+  Scene scene = WithShelf(RandomScene(seed, 6, 20, {Shape::kBox}), 0.4);
+  scene.noise.box_edge_sigma = 0.02;
+  scene.noise.odometry_translation_sigma = 0.002;
+  scene.noise.odometry_rotation_sigma_deg = 0.05;
+  Sequence sequence = SyntheticSequence(scene, /*noise=*/true);
+  for (Object& object : sequence.objects) {
+    object.ground_truth->landmark_in_world.shape_exponents = kCuboidExponent;
+  }
+  return sequence;
+}
+
+void TurnPlane(double angle_deg, Plane* plane) {
+  plane->normal = ExpRotation(Eigen::Vector3d(angle_deg * kRadPerDeg, 0.0, 0.0)) * plane->normal;
+}
+
+std::vector<Finding> FindingsOf(const Sequence& sequence) {
+  return CheckInputs(sequence, OptimiseMap(TruthInput(sequence), TangencyOptions()));
+}
+
+TEST(InputAlternativesTest, RightInputsNeedNoOther) {
+  for (int seed = 1; seed <= 4; ++seed) EXPECT_THAT(FindingsOf(NoisySequence(seed)), IsEmpty());
+}
+
+TEST(InputAlternativesTest, AFocalLengthThatIsTooLongOrTooShort) {
+  for (const double factor : {0.8, 1.3}) {
+    Sequence sequence = NoisySequence(1);
+    sequence.camera.fx *= factor;
+    sequence.camera.fy *= factor;
+    const MapEstimate map = OptimiseMap(TruthInput(sequence), TangencyOptions());
+    ASSERT_GE(map.input_alternatives.size(), 2u);
+    EXPECT_NEAR(map.input_alternatives[1].focal_factor, 1.0 / factor, 0.02);
+    const auto findings = CheckInputs(sequence, map);
+    ASSERT_EQ(findings.size(), 1u) << factor;
+    EXPECT_EQ(findings[0].check, "focal_length");
+  }
+}
+
+TEST(InputAlternativesTest, PlanesThatAreAllTooHigh) {
+  Sequence sequence = NoisySequence(2);
+  for (SupportPlane& plane : sequence.planes) plane.plane_in_world.offset -= 0.2;
+  const MapEstimate map = OptimiseMap(TruthInput(sequence), TangencyOptions());
+  const auto findings = CheckInputs(sequence, map);
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings[0].check, "support_planes");
+  EXPECT_THAT(findings[0].found, HasSubstr("plane 0 0.2"));
+  EXPECT_THAT(findings[0].found, HasSubstr("plane 1 0."));
+  EXPECT_THAT(findings[0].found, HasSubstr("m lower"));
+}
+
+TEST(InputAlternativesTest, OnePlaneOfTwoThatIsTooLow) {
+  Sequence sequence = NoisySequence(3);
+  sequence.planes[1].plane_in_world.offset += 0.2;
+  const auto findings = FindingsOf(sequence);
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_THAT(findings[0].found, HasSubstr("fit best with plane 1 0."));
+  EXPECT_THAT(findings[0].found, HasSubstr("m higher:"));
+}
+
+TEST(InputAlternativesTest, PlanesThatAreTurned) {
+  Sequence sequence = NoisySequence(4);
+  for (SupportPlane& plane : sequence.planes) TurnPlane(8.0, &plane.plane_in_world);
+  const auto findings = FindingsOf(sequence);
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_THAT(findings[0].found, HasSubstr("turned by"));
+}
+
+TEST(InputAlternativesTest, TheProblemStaysAsItIs) {
+  Sequence sequence = NoisySequence(1);
+  sequence.camera.fx *= 1.3;
+  sequence.camera.fy *= 1.3;
+  sequence.planes[0].plane_in_world.offset -= 0.2;
+  const BackEndInput input = TruthInput(sequence);
+  const OptimiseOptions options = TangencyOptions();
+  BackEndProblem problem(input, options);
+  problem.Solve();
+  const std::vector<double> before = problem.variables().values();
+  const double box_cost = problem.summary().box_cost;
+  EXPECT_GT(FindInputAlternatives(sequence, &problem).size(), 2u);
+  EXPECT_EQ(problem.variables().values(), before);
+  EXPECT_EQ(problem.BoxCost(), box_cost);
+  EXPECT_TRUE(problem.problem().IsParameterBlockConstant(problem.variables().LogFocal()));
+}
+
+TEST(InputAlternativesTest, PlanesThatAreEstimatedNeedNone) {
+  const Sequence sequence = OnPlanesToEstimate(NoisySequence(5));
+  for (const InputAlternative& found :
+       OptimiseMap(TruthInput(sequence), TangencyOptions()).input_alternatives) {
+    EXPECT_THAT(found.planes_in_world, IsEmpty());
+  }
+}
+
+}  // namespace
+}  // namespace soslam
