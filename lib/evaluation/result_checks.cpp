@@ -127,7 +127,7 @@ std::vector<Finding> CheckHalfAxes(const LandmarkEstimates& estimates, const IsB
 // 3 times; of raw detections, some of whose tracks are of several things, less than 9 times.
 constexpr double kFarAbove = 10.0;
 
-// How a plane differs from the given one where objects stand on it.
+// How a plane differs from the given one where objects stand on it (median).
 struct PlaneChange {
   double height_m;
   double tilt_rad;
@@ -147,7 +147,7 @@ PlaneChange ChangeOf(const Sequence& sequence, const MapEstimate& map, int plane
     const Eigen::Vector3d centre = object.landmark_in_world->Centre();
     heights.push_back(-found.SignedDistance(centre - given.SignedDistance(centre) * given.normal));
   }
-  return {MeanOf(heights).value_or(0.0), AngleBetween(given.normal, found.normal)};
+  return {MedianOf(heights).value_or(0.0), AngleBetween(given.normal, found.normal)};
 }
 
 // The largest of an alternative's corrections, in units of the least that matters: 2 % of the focal
@@ -186,20 +186,20 @@ std::string PlanesInWords(const Sequence& sequence, const MapEstimate& map,
     const SupportPlane& given = sequence.planes[static_cast<size_t>(index)];
     const PlaneChange change = ChangeOf(sequence, map, index, plane);
     if (change.Size() < 1.0) continue;
-    std::string words = fmt::format("plane {} {:.3f} m {}", given.id, std::abs(change.height_m),
-                                    change.height_m < 0.0 ? "lower" : "higher");
-    if (plane.normal != given.plane_in_world.normal) {
-      words += fmt::format(
-          " under its objects and turned by {:.1f} degrees to the normal ({:.3f}, "
-          "{:.3f}, {:.3f})",
-          change.tilt_rad / kRadPerDeg, plane.normal.x(), plane.normal.y(), plane.normal.z());
-    }
-    planes.push_back(words);
+    const Eigen::Vector3d& normal = plane.normal;
+    planes.push_back(
+        normal == given.plane_in_world.normal
+            ? fmt::format("plane {} {:.3f} m {}, d = {:.3f}", given.id, std::abs(change.height_m),
+                          change.height_m < 0.0 ? "lower" : "higher", plane.offset)
+            : fmt::format("plane {} turned by {:.1f} degrees, to the normal ({:.3f}, {:.3f}, "
+                          "{:.3f}) and d = {:.3f}",
+                          given.id, change.tilt_rad * kDegPerRad, normal.x(), normal.y(),
+                          normal.z(), plane.offset));
   }
   const size_t count = planes.size();
   if (count > kMostPlanes) planes.resize(kMostPlanes);
-  return fmt::format("{}{}", fmt::join(planes, ", "),
-                     count > kMostPlanes ? fmt::format(", ... ({} planes)", count) : "");
+  return fmt::format("{}{}", fmt::join(planes, "; "),
+                     count > kMostPlanes ? fmt::format("; ... ({} planes)", count) : "");
 }
 
 }  // namespace
@@ -286,37 +286,41 @@ std::vector<Finding> CheckCollapsed(const LandmarkEstimates& estimates) {
 std::vector<Finding> CheckInputs(const Sequence& sequence, const MapEstimate& map) {
   constexpr double kChance = 1e-3;
   if (map.input_alternatives.empty()) return {};
-  const InputAlternative& given = map.input_alternatives.front();
+  std::vector<InputAlternative> alternatives = map.input_alternatives;
+  std::ranges::stable_sort(alternatives, {}, &InputAlternative::degrees);
+  const InputAlternative& given = alternatives.front();
   const double expected = map.solver.expected_box_cost;
   const auto tries = static_cast<double>(1 + 2 * (sequence.planes.size() + 1));
-  const InputAlternative* best = nullptr;
-  double best_probability = kChance / tries;
-  for (const InputAlternative& found : map.input_alternatives) {
+  const InputAlternative* best = &given;
+  for (const InputAlternative& found : alternatives) {
     const double dispersion = std::max(1.0, found.box_cost / expected);
-    if (&found == &given || dispersion > kFarAbove) continue;
-    const double gain = (given.cost - found.cost) * ShareOfGain(Correction(sequence, map, found));
-    const double ratio = 2.0 * gain / (found.degrees * dispersion);
-    const double probability = FisherTail(ratio, found.degrees, 2.0 * expected);
-    if (!(probability < best_probability)) continue;
+    const double gain = (best->cost - found.cost) * ShareOfGain(Correction(sequence, map, found));
+    if (!(gain > 0.0) || dispersion > kFarAbove) continue;
+    if (const int degrees = found.degrees - best->degrees; degrees > 0) {
+      const double ratio = 2.0 * gain / (degrees * dispersion);
+      if (!(FisherTail(ratio, degrees, 2.0 * expected) < kChance / tries)) continue;
+    }
     best = &found;
-    best_probability = probability;
   }
-  if (best == nullptr) return {};
+  if (best == &given) return {};
   const bool is_focal = best->planes_in_world.empty();
-  return {{is_focal ? "focal_length" : "support_planes", Severity::kWarning,
-           fmt::format("the boxes fit best with {}: they cost {:.3g} times what their noise gives "
-                       "by chance in place of {:.3g} times",
-                       is_focal ? FocalInWords(sequence, given, *best, expected)
-                                : PlanesInWords(sequence, map, *best),
-                       best->box_cost / expected, given.box_cost / expected),
-           fmt::format("no better fit than chance gives once in {:g} maps", 1.0 / kChance),
-           is_focal ? "intrinsics of another camera, of another image size or of cropped images"
-                    : "planes in another world or unit than the poses, of another recording, or "
-                      "badly measured; or objects that stand on something else",
-           is_focal
-               ? "calibrate the camera, or estimate it along with the poses (soslam-reconstruct)"
-               : "correct the planes in planes.json or the planes of these objects, or let them "
-                 "be estimated: settings {\"planes\": {\"planes\": \"estimated\"}}"}};
+  return {
+      {is_focal ? "focal_length" : "support_planes", Severity::kWarning,
+       fmt::format("the boxes fit best with {}: they cost {:.3g} times what their noise gives "
+                   "by chance in place of {:.3g} times",
+                   is_focal ? FocalInWords(sequence, given, *best, expected)
+                            : PlanesInWords(sequence, map, *best),
+                   best->box_cost / expected, given.box_cost / expected),
+       fmt::format("no better fit than chance gives once in {:g} maps", 1.0 / kChance),
+       is_focal ? "intrinsics of another camera, of another image size or of cropped images"
+                : "planes of another world, unit or recording, or badly measured; objects that "
+                  "stand on something else; or what looks alike: a trajectory of another scale, "
+                  "a principal point that is far off",
+       is_focal
+           ? "calibrate the camera, or estimate it along with the poses (soslam-reconstruct)"
+           : "compare planes.json and its unit with the trajectory, and the objects' planes with "
+             "the images; or let planes be estimated: settings {\"planes\": {\"planes\": "
+             "\"estimated\"}}"}};
 }
 
 std::vector<Finding> CheckCost(const SolverSummary& solver) {

@@ -339,9 +339,11 @@ ceres::Solver::Summary BackEndProblem::Minimise(int max_iterations) {
 }
 
 double BackEndProblem::Step() {
+  ceres::Solver::Options options = SolverOptions(1);
+  options.initial_trust_region_radius = 1e8;  // hardly any damping
   ceres::Solver::Summary solution;
   for_solver_ = false;  // curvature rows shorten steps
-  ceres::Solve(SolverOptions(1), &problem_, &solution);
+  ceres::Solve(options, &problem_, &solution);
   for_solver_ = true;
   if (solution.iterations.size() < 2) return 0.0;
   const ceres::IterationSummary& step = solution.iterations[1];

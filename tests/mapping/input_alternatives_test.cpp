@@ -74,7 +74,7 @@ TEST(InputAlternativesTest, OnePlaneOfTwoThatIsTooLow) {
   const auto findings = FindingsOf(sequence);
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_THAT(findings[0].found, HasSubstr("fit best with plane 1 0."));
-  EXPECT_THAT(findings[0].found, HasSubstr("m higher:"));
+  EXPECT_THAT(findings[0].found, HasSubstr("m higher, d = "));
 }
 
 TEST(InputAlternativesTest, PlanesThatAreTurned) {
