@@ -2,6 +2,7 @@
 #include "base/options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -53,9 +54,9 @@ class Reader : public OptionVisitor {
     for (const auto& item : values_.items()) {
       if (!known_.contains(item.key())) {
         const auto meant = LikelyMeant(item.key(), {known_.begin(), known_.end()});
-        throw SettingsError(fmt::format(
-            "{}: unknown setting '{}'; {}known are {}", where_, item.key(),
-            meant ? "did you mean '" + *meant + "'? " : "", fmt::join(known_, ", ")));
+        throw SettingsError(fmt::format("{}: unknown setting '{}'; {}known are {}", where_,
+                                        item.key(), meant ? "did you mean '" + *meant + "'? " : "",
+                                        fmt::join(known_, ", ")));
       }
     }
   }
@@ -115,6 +116,11 @@ class Lister : public OptionVisitor {
   std::vector<OptionRow> rows;
 
   void Group(const char* heading) override { group_ = heading; }
+  void OnlyWhere(const Conditions& conditions, const std::function<void()>& describe) override {
+    only_where_.push_back(conditions);
+    describe();
+    only_where_.pop_back();
+  }
   void Real(const char* name, double* value, Range range, const char* doc) override {
     Add(name, "number", *value, doc).range = range;
   }
@@ -137,10 +143,12 @@ class Lister : public OptionVisitor {
 
  private:
   OptionRow& Add(const char* name, const char* type, const nlohmann::json& value, const char* doc) {
-    return rows.emplace_back(OptionRow{name, type, value, {}, {}, UnitOf(name), group_, doc});
+    return rows.emplace_back(
+        OptionRow{name, type, value, {}, {}, UnitOf(name), group_, doc, only_where_});
   }
 
   std::string group_;
+  std::vector<Conditions> only_where_;
 };
 
 }  // namespace
@@ -181,6 +189,9 @@ nlohmann::ordered_json SettingsSchema(const std::vector<OptionRow>& rows,
     if (!row.choices.empty()) property["enum"] = row.choices;
     if (!row.unit.empty()) property["unit"] = row.unit;
     if (!row.group.empty()) property["group"] = row.group;
+    for (const OptionVisitor::Conditions& conditions : row.only_where) {
+      property["only_where"].push_back(InWords(conditions));
+    }
     property["description"] = row.doc;
   }
   return {{"$schema", "http://json-schema.org/draft-07/schema#"},
@@ -188,6 +199,46 @@ nlohmann::ordered_json SettingsSchema(const std::vector<OptionRow>& rows,
           {"type", "object"},
           {"properties", properties},
           {"additionalProperties", false}};
+}
+
+std::string InWords(const OptionVisitor::Conditions& conditions) {
+  std::vector<std::string> words;
+  for (const auto& [option, values] : conditions) {
+    words.push_back(fmt::format("{} = {}", option, fmt::join(values, " or ")));
+  }
+  return fmt::format("{}", fmt::join(words, " or "));
+}
+
+OptionVisitor::Conditions UnmetConditions(const std::vector<OptionRow>& rows,
+                                          const nlohmann::json& values, const std::string& name) {
+  const auto holds = [&](const OptionVisitor::Condition& condition) {
+    const nlohmann::json& value = values.at(condition.option);
+    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+    return std::ranges::find(condition.values, text) != condition.values.end() &&
+           UnmetConditions(rows, values, condition.option).empty();
+  };
+  const auto row = std::ranges::find(rows, name, &OptionRow::name);
+  if (row == rows.end()) return {};
+  const auto unmet = std::ranges::find_if_not(row->only_where, [&](const auto& conditions) {
+    return std::ranges::any_of(conditions, holds);
+  });
+  return unmet == row->only_where.end() ? OptionVisitor::Conditions() : *unmet;
+}
+
+std::vector<std::string> SettingChanges(const nlohmann::json& before, const nlohmann::json& now) {
+  const auto text = [](const nlohmann::json& settings, const std::string& name) {
+    return settings.contains(name) ? settings.at(name).dump() : std::string("absent");
+  };
+  nlohmann::json names = before;
+  names.update(now);
+  std::vector<std::string> changes;
+  for (const auto& [name, value] : names.items()) {
+    const std::string old_text = text(before, name);
+    const std::string new_text = text(now, name);
+    if (old_text != new_text)
+      changes.push_back(fmt::format("{}: {} -> {}", name, old_text, new_text));
+  }
+  return changes;
 }
 
 }  // namespace soslam

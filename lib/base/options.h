@@ -29,8 +29,21 @@ class OptionVisitor {
 
   virtual ~OptionVisitor() = default;
 
+  // An option of the same table with one of these values; flags have "true" and "false".
+  struct Condition {
+    const char* option;
+    std::vector<std::string> values;
+  };
+  // Conditions of which one has to hold.
+  using Conditions = std::vector<Condition>;
+
   // Options that follow are listed under this heading, up to the next one; a heading may come back.
   virtual void Group(const char* /*heading*/) {}
+
+  // Options that `describe` visits have an effect only under these conditions. Calls may be nested.
+  virtual void OnlyWhere(const Conditions& /*conditions*/, const std::function<void()>& describe) {
+    describe();
+  }
 
   virtual void Real(const char* name, double* value, Range range, const char* doc) = 0;
   virtual void Integer(const char* name, int* value, Range range, const char* doc) = 0;
@@ -61,11 +74,23 @@ struct OptionRow {
   std::string unit;                           // "px"; empty for none
   std::string group;                          // heading; empty before the first one
   std::string doc;
+  std::vector<OptionVisitor::Conditions> only_where;  // all have to hold for it to have an effect
 };
 
+// "method = yaw_sweep or multi_view"
+std::string InWords(const OptionVisitor::Conditions& conditions);
+
+// The first conditions under which an option would have an effect that do not hold for these values
+// of all options; empty if it has one, or is not in the table.
+OptionVisitor::Conditions UnmetConditions(const std::vector<OptionRow>& rows,
+                                          const nlohmann::json& values, const std::string& name);
+
 // The JSON schema (draft 7) of a settings file with these options: it takes what OptionsFromJson
-// accepts. Units and groups are stored as keywords "unit" and "group".
+// accepts. Units, groups and conditions are stored as keywords "unit", "group" and "only_where".
 nlohmann::ordered_json SettingsSchema(const std::vector<OptionRow>& rows, const std::string& title);
+
+// Differences between two sets of settings: "yaw_step_deg: 2.0 -> 5.0".
+std::vector<std::string> SettingChanges(const nlohmann::json& before, const nlohmann::json& now);
 
 namespace internal {
 

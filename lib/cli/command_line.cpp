@@ -25,6 +25,16 @@
 
 namespace soslam {
 
+Finding SettingWithoutEffect(const std::string& file, const std::string& name,
+                             const nlohmann::json& value, const OptionVisitor::Conditions& unmet) {
+  return {"setting_without_effect",
+          Severity::kWarning,
+          fmt::format("{}: {} = {} has no effect", file, name, value.dump()),
+          InWords(unmet),
+          "a setting of another method",
+          fmt::format("remove {}, or set {}", name, unmet.front().option)};
+}
+
 void ReportFindings(const std::string& stage, const std::vector<Finding>& findings) {
   for (const Finding& finding : findings) {
     fmt::print(stderr, "soslam-{}: {}: {}\n", stage,
@@ -91,12 +101,17 @@ class HelpFormatter : public CLI::Formatter {
   }
 };
 
-// Help text of an option: its doc, default, and range or choices, with units.
+// Help text of an option: its doc, default, range or choices with units, and what it is used for.
 std::string OptionHelp(const OptionRow& row) {
   const std::string domain = Domain(row);
   const std::string value =
       row.choices.empty() ? row.default_value.dump() : row.default_value.get<std::string>();
-  return fmt::format("{}\n[default {}{}{}]", row.doc, value, domain.empty() ? "" : "; ", domain);
+  std::string only_where;
+  for (const OptionVisitor::Conditions& conditions : row.only_where) {
+    only_where += (only_where.empty() ? "; only where " : ", ") + InWords(conditions);
+  }
+  return fmt::format("{}\n[default {}{}{}{}]", row.doc, value, domain.empty() ? "" : "; ", domain,
+                     only_where);
 }
 
 // A command wrapped over several lines such that a shell reads it as one.
@@ -260,12 +275,31 @@ void Parse(int argc, const char* const* argv, CLI::App* app) {
   }
 }
 
-int RunRecorded(const ParsedArguments& parsed, const StageInfo& info, const StageBody& body) {
+// Warns of settings that have no effect. A file with all options, as the pipeline's, chooses none.
+void WarnOfSettingsWithoutEffect(const std::vector<SettingsLayer>& layers,
+                                 const std::vector<OptionRow>& options,
+                                 const nlohmann::json& resolved, const StageInfo& info) {
+  std::vector<Finding> findings;
+  for (const SettingsLayer& layer : layers) {
+    if (layer.values.size() == options.size()) continue;
+    for (const auto& [name, value] : layer.values.items()) {
+      const auto unmet = UnmetConditions(options, resolved, name);
+      if (unmet.empty()) continue;
+      findings.push_back(SettingWithoutEffect(layer.where, name, value, unmet));
+    }
+  }
+  ReportFindings(info.name.substr(std::string("soslam-").size()), findings);
+}
+
+int RunRecorded(const ParsedArguments& parsed, const StageInfo& info,
+                const std::vector<OptionRow>& options, const StageBody& body) {
   const int threads = parsed.threads > 0 ? parsed.threads : ThisMachine().cores;
   RunRecorder recorder(info, parsed.files, parsed.settings_file, threads);
   try {
     const std::vector<SettingsLayer> layers = LayersOf(parsed);
-    recorder.SetSettings(body.resolve(layers), layers);
+    const nlohmann::json resolved = body.resolve(layers);
+    recorder.SetSettings(resolved, layers);
+    WarnOfSettingsWithoutEffect(layers, options, resolved, info);
     const int exit_code = body.run(parsed.files, threads);
     recorder.RecordSuccess();
     return exit_code;
@@ -288,7 +322,7 @@ int ParseAndRun(int argc, const char* const* argv, const StageInfo& info, CLI::A
   Parse(argc, argv, app);
   std::optional<ProgressOnStderr> progress;
   if (!parsed.quiet) progress.emplace(info.name);
-  return RunRecorded(parsed, info, body);
+  return RunRecorded(parsed, info, options, body);
 }
 
 }  // namespace

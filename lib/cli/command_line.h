@@ -45,6 +45,11 @@ inline std::vector<std::filesystem::path> FilesOf(const StageFiles& files,
   return paths;
 }
 
+// The warning that a setting has no effect: `file` names where it is set, `only_where` are the
+// unmet conditions; none if its stage does not run.
+Finding SettingWithoutEffect(const std::string& file, const std::string& name,
+                             const nlohmann::json& value, const OptionVisitor::Conditions& unmet);
+
 // Prints findings on stderr, one per line.
 void ReportFindings(const std::string& stage, const std::vector<Finding>& findings);
 

@@ -12,6 +12,8 @@
 #include <set>
 #include <span>
 
+#include "base/spelling.h"
+#include "base/text.h"
 #include "dataset/gate.h"
 
 namespace soslam {
@@ -46,7 +48,7 @@ std::vector<Finding> CheckDataset(const ImportView& view) {
     add({&CheckObjectAxes});
   }
   add({&CheckRepeatedPoses, &CheckTruth, &CheckScores, &CheckClassNumbers, &CheckBlankLines,
-       &CheckRejections});
+       &CheckLabels, &CheckRejections});
   findings.insert(findings.begin(), view.content.findings.begin(), view.content.findings.end());
   return WorstFirst(std::move(findings));
 }
@@ -183,6 +185,25 @@ const std::map<std::string, Advice> kGatesOfData = {
      {"a tracker that finds few tracks", "no object_id and estimated association"}}};
 
 }  // namespace
+
+std::vector<Finding> CheckLabels(const ImportView& view) {
+  std::set<std::string> known;
+  for (const DetectionRow& row : view.content.rows) known.insert(row.label);
+  for (const auto& [row, reason] : view.content.rejected.rows) known.insert(row.label);
+  for (const TrueObject& object : view.sequence.true_objects) known.insert(object.label);
+  const std::vector<std::string> labels(known.begin(), known.end());
+  std::vector<std::string> missing;
+  for (const std::string_view label : SplitFields(view.options.labels)) {
+    if (label.empty() || known.contains(std::string(label))) continue;
+    const auto likely = LikelyMeant(LowerCase(std::string(label)), labels);
+    missing.push_back(std::string(label) + (likely ? " (" + *likely + "?)" : ""));
+  }
+  if (missing.empty() || known.empty()) return {};
+  return {{"labels", Severity::kWarning,
+           fmt::format("no box has the label {} of `labels`", NamesInWords(missing, 10)),
+           "labels of boxes: " + NamesInWords(labels, 10),
+           "a misspelt label, or one that is not seen", "write labels as the boxes have them"}};
+}
 
 std::vector<Finding> CheckRejections(const ImportView& view) {
   constexpr int kFewest = 10;

@@ -41,6 +41,8 @@ std::vector<Finding> CheckScores(const ImportView& view);
 // Class numbers that count from 1 where the list of names counts from 0, or the reverse.
 std::vector<Finding> CheckClassNumbers(const ImportView& view);
 
+// Labels of the setting `labels` that nothing in the dataset has.
+std::vector<Finding> CheckLabels(const ImportView& view);
 // Blank lines between names, which count as classes for programs that identify names by line.
 std::vector<Finding> CheckBlankLines(const ImportView& view);
 // Gates that reject more than a third of the detections.

@@ -57,47 +57,55 @@ struct FolderOptions {
   std::string class_names;
 
   void Describe(OptionVisitor& visit) {
-    visit.Group("Files of a folder of images (format = soslam, tum_rgbd, icl_nuim)");
-    visit.Text(
-        "images", &images,
-        "the list of images, lines \"timestamp filename\" (or EuRoC's, with a comma); of "
-        "the latter two also pairs of colour and depth images; a *.json: nerfstudio's frames; "
-        "empty: the images are those that the detections name by their timestamps");
-    visit.Text("odometry", &odometry, "the file with the pose estimates");
-    visit.Text("groundtruth", &groundtruth, "the file with the true poses");
-    visit.Choice("trajectory_format", &trajectory_format,
-                 std::span(kTrajectoryFormatNames).first(5),  // not "same"
-                 "format of the poses of the odometry: timestamp tx ty tz qx qy qz qw (tum, "
-                 "ORB-SLAM); 12 numbers, one line for each listed image (kitti); EuRoC's CSV, "
-                 "nanoseconds, qw first (euroc); by the names of the images COLMAP's images.txt "
-                 "or images.bin (colmap) or nerfstudio's transforms.json (nerfstudio)");
-    visit.Choice("groundtruth_format", &groundtruth_format, kTrajectoryFormatNames,
-                 "format of the poses of the ground truth; same: as trajectory_format says");
+    visit.Group("Files of a folder of images");
+    visit.OnlyWhere({{"format", {"soslam", "tum_rgbd", "icl_nuim"}}}, [&] {
+      visit.Text(
+          "images", &images,
+          "the list of images, lines \"timestamp filename\" (or EuRoC's, with a comma); of "
+          "tum_rgbd and "
+          "icl_nuim also pairs of colour and depth images; a *.json: nerfstudio's frames; empty: "
+          "the images are those that the detections name by their timestamps");
+      visit.Text("odometry", &odometry, "the file with the pose estimates");
+      visit.Text("groundtruth", &groundtruth, "the file with the true poses");
+      visit.Choice("trajectory_format", &trajectory_format,
+                   std::span(kTrajectoryFormatNames).first(5),  // not "same"
+                   "format of the poses of the odometry: timestamp tx ty tz qx qy qz qw (tum, "
+                   "ORB-SLAM); 12 numbers, one line for each listed image (kitti); EuRoC's CSV, "
+                   "nanoseconds, qw first (euroc); by the names of the images COLMAP's images.txt "
+                   "or images.bin (colmap) or nerfstudio's transforms.json (nerfstudio)");
+      visit.Choice("groundtruth_format", &groundtruth_format, kTrajectoryFormatNames,
+                   "format of the poses of the ground truth; same: as trajectory_format says");
+    });
     visit.Flag("align_odometry", &align_odometry,
                "the odometry has a world of its own: it is moved as a "
                "whole so that its first pose that has a true one is that");
     visit.Flag("odometry_has_own_scale", &odometry_has_own_scale,
                "the unit of the odometry is not the metre, as that of a single camera: maps are "
                "compared with the truth at the scale that fits best");
-    visit.Text("camera", &camera,
-               "\"width height fx fy cx cy\" in pixels; empty: the camera file says it");
-    visit.Text(
-        "camera_file", &camera_file,
-        "the file with the camera: camera.json, ROS', OpenCV's or Kalibr's calibration "
-        "(.yaml, .xml), COLMAP's cameras.txt or cameras.bin, nerfstudio's transforms.json; empty: "
-        "camera.json");
-    visit.Text("distortion", &distortion,
-               "soslam, tum_rgbd: distortion of images and boxes by the lens: \"k1 k2 p1 p2 k3\" "
-               "as OpenCV has them, or 4, 8, 12 or 14 of its coefficients; empty: the camera file "
-               "says it, or nothing");
-    visit.Choice("detections_format", &detections_format, kDetectionsFormatNames,
-                 "format of `detections`: detections.csv with or without object ids (csv); a "
-                 "folder or archive of text files with fractions of the image (yolo) or pixels "
-                 "from the upper left corner (yolo_pixels); COCO's results (coco); OA-SLAM's JSON "
-                 "(oa_slam); <class>/<name>.txt, or a folder of such class folders (kitti)");
-    visit.Text("class_names", &class_names,
-               "yolo, yolo_pixels, oa_slam: the file with the names of the classes, one a line; "
-               "coco: the JSON file of the dataset; empty: COCO's");
+    visit.OnlyWhere({{"format", {"soslam", "tum_rgbd", "icl_nuim"}}}, [&] {
+      visit.Text("camera", &camera,
+                 "\"width height fx fy cx cy\" in pixels; empty: the camera file says it");
+      visit.Text(
+          "camera_file", &camera_file,
+          "the file with the camera: camera.json, ROS', OpenCV's or Kalibr's calibration "
+          "(.yaml, .xml), COLMAP's cameras.txt or cameras.bin, nerfstudio's transforms.json; "
+          "empty: camera.json");
+      visit.Text("distortion", &distortion,
+                 "distortion of images and boxes by the lens: \"k1 k2 p1 p2 k3\" as OpenCV has "
+                 "them, or 4, 8, 12 "
+                 "or 14 of its coefficients; empty: the camera file says it, or nothing");
+      visit.Choice(
+          "detections_format", &detections_format, kDetectionsFormatNames,
+          "format of `detections`: detections.csv with or without object ids (csv); a "
+          "folder or archive of text files with fractions of the image (yolo) or pixels "
+          "from the upper left corner (yolo_pixels); COCO's results (coco); OA-SLAM's JSON "
+          "(oa_slam); <class>/<name>.txt, or a folder of such class folders (kitti)");
+      visit.OnlyWhere({{"detections_format", {"yolo", "yolo_pixels", "oa_slam", "coco"}}}, [&] {
+        visit.Text("class_names", &class_names,
+                   "the file with the names of the classes, one a line; coco: the JSON file of the "
+                   "dataset; empty: COCO's");
+      });
+    });
   }
 };
 
@@ -113,28 +121,36 @@ struct KittiOptions {
   int static_min_views = 10;
 
   void Describe(OptionVisitor& visit) {
-    visit.Group("Recordings (format = kitti_tracking, slam_synthetic)");
-    visit.Text("sequences", &sequences,
-               "kitti_tracking: the recordings to read, as in \"0001 0003-0005\"; slam_synthetic: "
-               "the names of the problems; empty: all");
-    visit.Real("match_min_iou", &match_min_iou, {1e-6, 1},
-               "kitti_tracking: a detector's box matches a labelled one with at least this overlap "
-               "(intersection over union, 2D)");
-    visit.Text("poses", &poses, "kitti_tracking: the folder with the camera poses");
-    visit.Text("translation_scale", &translation_scale,
-               "kitti_tracking: what the poses' translations are multiplied by; by recording as in "
-               "\"0000-0013:0.969 0020:0.988\", or one number for all");
-    visit.Text(
-        "image_size", &image_size,
-        "kitti: width and height of recordings without any image in pixels, by recording as in "
-        "\"0000-0013:1242x375\", or one for all");
-    visit.Real("static_radius_m", &static_radius_m, {0, 1e6},
-               "kitti_tracking: an object is static when, seen often enough, most of its labelled "
-               "positions in the world are at most this far from their median");
-    visit.Real("static_share", &static_share, {0, 1},
-               "kitti_tracking: how many of a static object's positions have to be that near");
-    visit.Integer("static_min_views", &static_min_views, {1, 1000000},
-                  "kitti_tracking: objects with fewer labels are not known to be static");
+    visit.Group("Recordings of KITTI and other problems");
+    visit.OnlyWhere({{"format", {"kitti_tracking", "slam_synthetic"}}}, [&] {
+      visit.Text(
+          "sequences", &sequences,
+          "kitti_tracking: the recordings to read, as in \"0001 0003-0005\"; slam_synthetic: "
+          "the names of the problems; empty: all");
+    });
+    visit.OnlyWhere({{"format", {"kitti_tracking"}}}, [&] {
+      visit.Real("match_min_iou", &match_min_iou, {1e-6, 1},
+                 "a detector's box matches a labelled one with at least this overlap "
+                 "(intersection over union, 2D)");
+      visit.Text("poses", &poses, "the folder with the camera poses");
+      visit.Text("translation_scale", &translation_scale,
+                 "what the poses' translations are multiplied by; by recording as in "
+                 "\"0000-0013:0.969 0020:0.988\", or one number for all");
+    });
+    visit.OnlyWhere({{"format", {"kitti_tracking", "kitti_object"}}}, [&] {
+      visit.Text("image_size", &image_size,
+                 "width and height of recordings without any image in pixels, by recording as in "
+                 "\"0000-0013:1242x375\", or one for all");
+    });
+    visit.OnlyWhere({{"format", {"kitti_tracking"}}}, [&] {
+      visit.Real("static_radius_m", &static_radius_m, {0, 1e6},
+                 "an object is static when, seen often enough, most of its labelled "
+                 "positions in the world are at most this far from their median");
+      visit.Real("static_share", &static_share, {0, 1},
+                 "how many of a static object's positions have to be that near");
+      visit.Integer("static_min_views", &static_min_views, {1, 1000000},
+                    "objects with fewer labels are not known to be static");
+    });
   }
 };
 
@@ -165,9 +181,10 @@ struct ImportOptions {
   void Describe(OptionVisitor& visit) {
     visit.Group("Dataset");
     visit.Choice("format", &format, kDatasetFormatNames, "what the dataset folder holds");
-    visit.Choice("trajectory", &trajectory, kTrajectorySourceNames,
-                 "soslam, tum_rgbd, icl_nuim, slam_synthetic: which poses are the estimates; the "
-                 "others when a folder does not have them");
+    visit.OnlyWhere({{"format", {"soslam", "tum_rgbd", "icl_nuim", "slam_synthetic"}}}, [&] {
+      visit.Choice("trajectory", &trajectory, kTrajectorySourceNames,
+                   "which poses are the estimates; the others when a folder does not have them");
+    });
     visit.Text("odometry_source", &odometry_source,
                "source of the pose estimates, as tables of maps name it: ORB-SLAM2, COLMAP, "
                "simulated; empty: not said");

@@ -73,11 +73,13 @@ struct GroundOptions {
                "standard deviation of the tilt of the cameras' optical axes; large: unknown");
     visit.Flag("verticals", &verticals,
                "look for vertical edges in the images, where there are any");
-    visit.Real("vertical_sigma_deg", &vertical_sigma_deg, {1e-3, 90.0},
-               "standard deviation of the direction of a vertical edge; those off by more than "
-               "three are of other edges");
-    visit.Real("vertical_min_length_px", &vertical_min_length_px, {1.0, 1e5},
-               "shorter edges are not used");
+    visit.OnlyWhere({{"verticals", {"true"}}}, [&] {
+      visit.Real("vertical_sigma_deg", &vertical_sigma_deg, {1e-3, 90.0},
+                 "standard deviation of the direction of a vertical edge; those off by more than "
+                 "three are of other edges");
+      visit.Real("vertical_min_length_px", &vertical_min_length_px, {1.0, 1e5},
+                 "shorter edges are not used");
+    });
   }
 };
 

@@ -22,7 +22,7 @@ struct CuboidOptions {
   double shape_threshold = 1.0;
 
   void Describe(OptionVisitor& visit) {
-    visit.Group("CubeSLAM's cuboids (method = cuboid_proposals)");
+    visit.Group("CubeSLAM's cuboids");
     visit.Integer("yaw_samples", &yaw_samples, {1, 1000},
                   "yaws of proposals, over a quarter turn around the one that faces the camera");
     visit.Integer("corner_samples", &corner_samples, {1, 1000},

@@ -55,29 +55,39 @@ struct InitialiseOptions {
         "label's shape by a sweep over yaw (yaw_sweep), or a cuboid that fits the edges in the "
         "image as in CubeSLAM (cuboid_proposals); or one per object from all of its "
         "observations: such a body (multi_view), or an ellipsoid by SVD (svd)");
-    visit.Choice("ratio_prior", &ratio_prior, kRatioPriorNames,
-                 "where the size ratio of eq. (11) comes from");
-    visit.Group("Ellipsoids (method = single_frame)");
-    visit.Integer("yaw_starts", &yaw_starts, {1, 360},
-                  "starting yaws over half a turn of the solve, eq. (12)");
-    visit.Integer("max_iterations", &max_iterations, {1, 10000},
-                  "Levenberg-Marquardt iterations per start");
-    visit.Real("tie_edge_px", &tie_edge_px, {0.0, 1000.0},
-               "solutions whose outline fits the box as well as that of the best one, to this rms "
-               "edge distance, count as equal; tie_break chooses among them");
-    visit.Choice("tie_break", &tie_break, kTieBreakNames,
-                 "which yaw is chosen among equal solutions: nearest to the scene's axes (modulo "
-                 "quarter turns), or with the front facing the camera most");
-    variances.Describe(visit);
-    upright.Describe(visit);  // the next two options belong to its group
-    visit.Choice("shape", &shape, kShapeSourceNames, "where the shape exponents come from");
-    visit.Real("view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
-               "multi_view, and yaw_prior = motion: boxes from viewpoints closer than this angle "
-               "at the object share the error of the label's shape, and together have the weight "
-               "of one; 0: all boxes are independent");
-    yaw_prior.Describe(visit);
+    visit.OnlyWhere({{"method", {"single_frame", "yaw_sweep", "multi_view"}}}, [&] {
+      visit.Choice("ratio_prior", &ratio_prior, kRatioPriorNames,
+                   "where the size ratio of eq. (11) comes from");
+    });
+    visit.OnlyWhere({{"method", {"single_frame"}}}, [&] {
+      visit.Group("Ellipsoids of single frames");
+      visit.Integer("yaw_starts", &yaw_starts, {1, 360},
+                    "starting yaws over half a turn of the solve, eq. (12)");
+      visit.Integer("max_iterations", &max_iterations, {1, 10000},
+                    "Levenberg-Marquardt iterations per start");
+      visit.Real(
+          "tie_edge_px", &tie_edge_px, {0.0, 1000.0},
+          "solutions whose outline fits the box as well as that of the best one, to this rms "
+          "edge distance, count as equal; tie_break chooses among them");
+      visit.Choice("tie_break", &tie_break, kTieBreakNames,
+                   "which yaw is chosen among equal solutions: nearest to the scene's axes (modulo "
+                   "quarter turns), or with the front facing the camera most");
+      variances.Describe(visit);
+    });
+    visit.OnlyWhere({{"method", {"yaw_sweep", "multi_view"}}}, [&] {
+      upright.Describe(visit);  // the options up to yaw_prior belong to its group
+      visit.Choice("shape", &shape, kShapeSourceNames, "where the shape exponents come from");
+    });
+    visit.OnlyWhere({{"method", {"multi_view"}}, {"yaw_prior", {"motion"}}}, [&] {
+      visit.Real(
+          "view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
+          "boxes from viewpoints closer than this angle at the object share the error of the "
+          "label's shape, and together have the weight of one; 0: all boxes are "
+          "independent");
+    });
+    visit.OnlyWhere({{"method", {"yaw_sweep"}}}, [&] { yaw_prior.Describe(visit); });
     points.Describe(visit);
-    cuboids.Describe(visit);
+    visit.OnlyWhere({{"method", {"cuboid_proposals"}}}, [&] { cuboids.Describe(visit); });
   }
 };
 

@@ -27,20 +27,23 @@ struct YawPriorOptions {
   double standing_sigma_deg = 5.0;
 
   void Describe(OptionVisitor& visit) {
-    visit.Group("Prior of the yaw (method = yaw_sweep)");
+    visit.Group("Prior of the yaw");
     visit.Choice("yaw_prior", &source, kYawPriorSourceNames,
                  "prior of the yaw beside the box: none; from the object's boxes in the frames "
                  "before and after, along its motion or, if it stands, the yaw that fits all of "
                  "them (motion); or, for ablations, the truth");
-    visit.Integer("motion_frames", &motion_frames, {1, 100000},
-                  "motion: how many frames before and as many after");
-    visit.Real("motion_min_m", &motion_min_m, {0.0, 1e6},
-               "motion: objects that move less over these frames count as standing");
-    visit.Real("motion_foot_sigma_m", &motion_foot_sigma_m, {1e-6, 1e6},
-               "motion: standard deviation, across the motion, of how far the middle of "
-               "a box's lower edge seems to move on the support plane");
-    visit.Real("standing_sigma_deg", &standing_sigma_deg, {1e-3, 180.0},
-               "motion: standard deviation of the yaw of what stands");
+    visit.OnlyWhere({{"yaw_prior", {"motion"}}}, [&] {
+      visit.Integer("motion_frames", &motion_frames, {1, 100000},
+                    "how many frames before and as many after");
+      visit.Real("motion_min_m", &motion_min_m, {0.0, 1e6},
+                 "objects that move less over these frames count as standing");
+      visit.Real(
+          "motion_foot_sigma_m", &motion_foot_sigma_m, {1e-6, 1e6},
+          "standard deviation, across the motion, of how far the middle of a box's lower edge "
+          "seems to move on the support plane");
+      visit.Real("standing_sigma_deg", &standing_sigma_deg, {1e-3, 180.0},
+                 "standard deviation of the yaw of what stands");
+    });
   }
 };
 

@@ -72,9 +72,10 @@ struct OptimiseOptions {
                "use the texture symmetry of some of each object's observations, eq. (16)");
     visit.Flag("edge_alignment", &edge_alignment,
                "use the alignment of the bodies' edges with the images'");
-    visit.Integer(
-        "symmetry_views", &symmetry_views, {1, 100000},
-        "for symmetry: how many observations of each object, evenly over all from the first on");
+    visit.OnlyWhere({{"symmetry", {"true"}}}, [&] {
+      visit.Integer("symmetry_views", &symmetry_views, {1, 100000},
+                    "how many observations of each object, evenly over all from the first on");
+    });
     visit.Real("huber_delta", &huber_delta, {1e-9, 1e9},
                "weighted residuals beyond this count linearly (Huber loss H of eq. (1)); with "
                "tangency, those of odometry and boxes");
@@ -82,47 +83,58 @@ struct OptimiseOptions {
     visit.Flag("hold_poses", &hold_poses,
                "the poses of the trajectory are constant, as those of motion capture or structure "
                "from motion should be; otherwise they are odometry, which drifts");
-    visit.Real("odometry_rotation_sigma_deg", &odometry_rotation_sigma_deg, {1e-9, 1e9},
-               "standard deviation of the odometry between two frames");
-    visit.Real("odometry_rotation_fraction", &odometry_rotation_fraction, {0.0, 1.0},
-               "the same, but at most this fraction of the rotation, and at least a fortieth of "
-               "odometry_rotation_sigma_deg: odometry of a camera that turns little errs little; "
-               "0: the same for every rotation");
-    visit.Real("odometry_translation_sigma_m", &odometry_translation_sigma_m, {1e-9, 1e9},
-               "standard deviation of the odometry between two frames, per axis");
-    visit.Group("Bodies of any shape (detection_model = tangency)");
-    visit.Choice("shape", &shape, kShapeSourceNames, "where the shape exponents come from");
-    visit.Real("detection_sigma_fraction", &detection_sigma_fraction, {1e-4, 1.0},
-               "standard deviation of a detector's box edge, as a fraction of the box's "
-               "width or height; at least 1 px");
-    visit.Real("detector_bias_sigma_px", &detector_bias_sigma_px, {0.0, 1e4},
-               "standard deviation of a bias that each of the four edges has in all boxes "
-               "of the sequence, estimated along; 0: no bias");
-    visit.Real("misfit_sigma_fraction", &misfit_sigma_fraction, {0.0, 1.0},
-               "standard deviation of a misfit between landmark and boxes that all boxes of an "
-               "object share at each of the four sides, as a fraction of the box's width or "
-               "height, estimated along, so that it does not move the cameras; 0: no misfit");
-    visit.Real("view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
-               "boxes from viewpoints closer than this angle at the object share the error of the "
-               "label's shape, and together have the weight of one; 0: all boxes are independent");
-    visit.Real(
-        "axes_weight", &axes_weight, {0.0, 1e6},
-        "cost (negative logarithm of a likelihood) of a yaw half-way between the axes of the "
-        "scene, along which its straight edges lie; 0 if objects are not aligned with them");
-    visit.Real("standing_angle_sigma_deg", &standing_angle_sigma_deg, {1e-6, 90.0},
-               "standard deviation of the tilt of a body on its support plane; not of those that "
-               "may lean");
-    visit.Real("standing_height_sigma_m", &standing_height_sigma_m, {1e-6, 1e3},
-               "standard deviation of the height of a body's foot over its support plane");
-    visit.Flag("refine_planes", &refine_planes,
-               "estimated support planes are variables; given ones never are");
-    variances.Describe(visit);
-    symmetry_options.Describe(visit);  // the next one comes under its heading
-    visit.Real(
-        "symmetry_sigma", &symmetry_sigma, {1e-9, 1e9},
-        "quadric: standard deviation of a pair's descriptor difference, in the descriptor's unit");
-    edges.Describe(visit);
-    texture.Describe(visit);
+    visit.OnlyWhere({{"hold_poses", {"false"}}}, [&] {
+      visit.Real("odometry_rotation_sigma_deg", &odometry_rotation_sigma_deg, {1e-9, 1e9},
+                 "standard deviation of the odometry between two frames");
+      visit.Real("odometry_rotation_fraction", &odometry_rotation_fraction, {0.0, 1.0},
+                 "the same, but at most this fraction of the rotation, and at least a fortieth of "
+                 "odometry_rotation_sigma_deg: odometry of a camera that turns little errs little; "
+                 "0: the same for every rotation");
+      visit.Real("odometry_translation_sigma_m", &odometry_translation_sigma_m, {1e-9, 1e9},
+                 "standard deviation of the odometry between two frames, per axis");
+    });
+    visit.OnlyWhere({{"detection_model", {"tangency"}}}, [&] {
+      visit.Group("Bodies of any shape");
+      visit.Choice("shape", &shape, kShapeSourceNames, "where the shape exponents come from");
+      visit.Real("detection_sigma_fraction", &detection_sigma_fraction, {1e-4, 1.0},
+                 "standard deviation of a detector's box edge, as a fraction of the box's "
+                 "width or height; at least 1 px");
+      visit.Real("detector_bias_sigma_px", &detector_bias_sigma_px, {0.0, 1e4},
+                 "standard deviation of a bias that each of the four edges has in all boxes "
+                 "of the sequence, estimated along; 0: no bias");
+      visit.Real("misfit_sigma_fraction", &misfit_sigma_fraction, {0.0, 1.0},
+                 "standard deviation of a misfit between landmark and boxes that all boxes of an "
+                 "object share at each of the four sides, as a fraction of the box's width or "
+                 "height, estimated along, so that it does not move the cameras; 0: no misfit");
+      visit.Real(
+          "view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
+          "boxes from viewpoints closer than this angle at the object share the error of the "
+          "label's shape, and together have the weight of one; 0: all boxes are independent");
+      visit.Real(
+          "axes_weight", &axes_weight, {0.0, 1e6},
+          "cost (negative logarithm of a likelihood) of a yaw half-way between the axes of the "
+          "scene, along which its straight edges lie; 0 if objects are not aligned with them");
+      visit.Real("standing_angle_sigma_deg", &standing_angle_sigma_deg, {1e-6, 90.0},
+                 "standard deviation of the tilt of a body on its support plane; not of those that "
+                 "may lean");
+      visit.Real("standing_height_sigma_m", &standing_height_sigma_m, {1e-6, 1e3},
+                 "standard deviation of the height of a body's foot over its support plane");
+      visit.Flag("refine_planes", &refine_planes,
+                 "estimated support planes are variables; given ones never are");
+    });
+    visit.OnlyWhere({{"detection_model", {"quadric"}}}, [&] { variances.Describe(visit); });
+    visit.OnlyWhere({{"symmetry", {"true"}}}, [&] {
+      symmetry_options.Describe(visit);  // the next one comes under its heading
+      visit.OnlyWhere({{"detection_model", {"quadric"}}}, [&] {
+        visit.Real(
+            "symmetry_sigma", &symmetry_sigma, {1e-9, 1e9},
+            "standard deviation of a pair's descriptor difference, in the descriptor's unit");
+      });
+    });
+    visit.OnlyWhere({{"edge_alignment", {"true"}}}, [&] { edges.Describe(visit); });
+    visit.OnlyWhere({{"symmetry", {"true"}}}, [&] {
+      visit.OnlyWhere({{"detection_model", {"tangency"}}}, [&] { texture.Describe(visit); });
+    });
     points.Describe(visit);
     visit.Group("Solver");
     visit.Integer("max_iterations", &max_iterations, {1, 10000},

@@ -72,19 +72,21 @@ struct RefineOptions {
     visit.Group("Landmarks");
     visit.Choice("ratio_prior", &ratio_prior, kRatioPriorNames,
                  "where the size ratio of eq. (11) comes from");
-    visit.Group("Turned landmarks (method = turn)");
-    visit.Real("yaw_step_deg", &yaw_step_deg, {0.1, 45.0},
-               "grid of the cost over yaw, over half a turn");
-    visit.Real("yaw_range_deg", &yaw_range_deg, {0.0, 90.0},
-               "how far from a yaw that explains the box the refinement looks; 90: all around");
-    visit.Real(
-        "tie_edge_px", &tie_edge_px, {0.0, 1000.0},
-        "all hypotheses whose outline fits the box as well as the first one's, to this rms edge "
-        "distance, are tried; the texture decides");
-    visit.Real("yaw_resolution_deg", &yaw_resolution_deg, {0.001, 45.0},
-               "grid of the search around the best yaw of the coarse grid");
+    visit.OnlyWhere({{"method", {"turn"}}}, [&] {
+      visit.Group("Turned landmarks");
+      visit.Real("yaw_step_deg", &yaw_step_deg, {0.1, 45.0},
+                 "grid of the cost over yaw, over half a turn");
+      visit.Real("yaw_range_deg", &yaw_range_deg, {0.0, 90.0},
+                 "how far from a yaw that explains the box the refinement looks; 90: all around");
+      visit.Real(
+          "tie_edge_px", &tie_edge_px, {0.0, 1000.0},
+          "all hypotheses whose outline fits the box as well as the first one's, to this rms edge "
+          "distance, are tried; the texture decides");
+      visit.Real("yaw_resolution_deg", &yaw_resolution_deg, {0.001, 45.0},
+                 "grid of the search around the best yaw of the coarse grid");
+    });
     symmetry.Describe(visit);
-    variances.Describe(visit);
+    visit.OnlyWhere({{"method", {"turn"}}}, [&] { variances.Describe(visit); });
   }
 };
 
@@ -146,14 +148,14 @@ struct ProfileOptions {
   PointOptions points;
 
   void Describe(OptionVisitor& visit) {
-    visit.Group("Orientation profile (method = profile)");
+    visit.Group("Orientation profile");
     visit.Flag("edge_alignment", &edge_alignment,
                "use the alignment of the body's edges with the image's");
     visit.Flag("texture_symmetry", &texture_symmetry, "use the symmetry of the texture");
     visit.Choice("shape", &shape, kShapeSourceNames, "where the shape exponents come from");
     upright.Describe(visit);
-    edges.Describe(visit);
-    texture.Describe(visit);
+    visit.OnlyWhere({{"edge_alignment", {"true"}}}, [&] { edges.Describe(visit); });
+    visit.OnlyWhere({{"texture_symmetry", {"true"}}}, [&] { texture.Describe(visit); });
     points.Describe(visit);
   }
 };
@@ -175,7 +177,7 @@ struct OrientationOptions {
                  "turn the initial landmark by the symmetry of its texture (section V), or find it "
                  "anew from its orientation profile");
     turn.Describe(visit);
-    profile.Describe(visit);
+    visit.OnlyWhere({{"method", {"profile"}}}, [&] { profile.Describe(visit); });
   }
 };
 

@@ -44,52 +44,59 @@ struct PlanesOptions {
         "where the sequence has no planes (where_missing); a level camera at a known height above "
         "the ground (camera_height). What the table has on "
         "walls is left out");
-    visit.Group("Ground below the camera (planes = camera_height)");
-    visit.Real("camera_height_m", &camera_height_m, {1e-3, 1e3},
-               "height of the camera above the ground");
-    visit.Group("Estimated planes (planes = estimated or where_missing)");
-    visit.Flag("parallel", &parallel, "all planes have the same normal, as horizontal ones do");
-    visit.Real("detection_sigma_fraction", &detection_sigma_fraction, {1e-4, 1.0},
-               "standard deviation of a detector's box edge, as a fraction of the box's "
-               "width or height; at least 1 px");
-    visit.Real("view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
-               "boxes from viewpoints closer than this angle at the object share what "
-               "the label's shape cannot explain, so that they count as one; so do the tilts "
-               "of cameras that look less than this apart; 0: all are independent");
-    visit.Real("huber_delta", &huber_delta, {1e-9, 1e9},
-               "edges farther off than this many standard deviations count linearly");
-    visit.Real("camera_roll_sigma_deg", &camera_roll_sigma_deg, {1e-3, 1e3},
-               "standard deviation of the tilt of the cameras' x axes; large: unknown");
-    visit.Real("camera_pitch_sigma_deg", &camera_pitch_sigma_deg, {1e-3, 1e3},
-               "standard deviation of the tilt of the cameras' optical axes; large: unknown");
-    visit.Real("height_sigma_fraction", &height_sigma_fraction, {0.0, 10.0},
-               "standard deviation of the height of an object's lowest point over its "
-               "plane, as a fraction of the object's height, for bodies that are not of their "
-               "label's shape; decides which objects share a plane");
-    visit.Real("new_plane_cost", &new_plane_cost, {0.0, 1e6},
-               "cost (negative logarithm of a likelihood) of one more plane");
-    visit.Flag("size_prior", &size_prior,
-               "heights have the prior of the semantic table (height_m); without it all "
-               "metres come from the trajectory; not with refine_poses");
-    visit.Flag("refine_poses", &refine_poses,
-               "finally the back end optimises planes, poses and bodies together, and its "
-               "poses carry the planes into the frames");
-    visit.Real(
-        "odometry_translation_sigma_m", &odometry_translation_sigma_m, {1e-9, 1e3},
-        "refine_poses: standard deviation of the odometry between two frames, per axis; where "
-        "planes are not given, it alone holds the scale");
-    visit.Group("Verticals (planes = estimated: vertical edges in the images)");
-    visit.Flag("verticals", &verticals,
-               "look for vertical edges in the images, where there are any");
-    visit.Real("vertical_sigma_deg", &vertical_sigma_deg, {1e-3, 90.0},
-               "standard deviation of the direction of an edge; those off by more than "
-               "three are of other edges");
-    visit.Real("vertical_min_length_px", &vertical_min_length_px, {1.0, 1e5},
-               "shorter edges are not used");
-    visit.Real("odometry_rotation_sigma_deg", &odometry_rotation_sigma_deg, {0.0, 90.0},
-               "standard deviation of the odometry between two frames about each "
-               "horizontal axis; its drift is taken out before planes are estimated; 0: it has "
-               "none");
+    visit.OnlyWhere({{"planes", {"camera_height"}}}, [&] {
+      visit.Group("Ground below the camera");
+      visit.Real("camera_height_m", &camera_height_m, {1e-3, 1e3},
+                 "height of the camera above the ground");
+    });
+    visit.OnlyWhere({{"planes", {"estimated", "where_missing"}}}, [&] {
+      visit.Group("Estimated planes");
+      visit.Flag("parallel", &parallel, "all planes have the same normal, as horizontal ones do");
+      visit.Real("detection_sigma_fraction", &detection_sigma_fraction, {1e-4, 1.0},
+                 "standard deviation of a detector's box edge, as a fraction of the box's "
+                 "width or height; at least 1 px");
+      visit.Real("view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
+                 "boxes from viewpoints closer than this angle at the object share what "
+                 "the label's shape cannot explain, so that they count as one; so do the attitudes "
+                 "of cameras that look less than this apart; 0: all are independent");
+      visit.Real("huber_delta", &huber_delta, {1e-9, 1e9},
+                 "edges farther off than this many standard deviations count linearly");
+      visit.Real("camera_roll_sigma_deg", &camera_roll_sigma_deg, {1e-3, 1e3},
+                 "standard deviation of the tilt of the cameras' x axes; large: unknown");
+      visit.Real("camera_pitch_sigma_deg", &camera_pitch_sigma_deg, {1e-3, 1e3},
+                 "standard deviation of the tilt of the cameras' optical axes; large: unknown");
+      visit.Real("height_sigma_fraction", &height_sigma_fraction, {0.0, 10.0},
+                 "standard deviation of the height of an object's lowest point over its "
+                 "plane, as a fraction of the object's height, for bodies that are not of their "
+                 "label's shape; decides which objects share a plane");
+      visit.Real("new_plane_cost", &new_plane_cost, {0.0, 1e6},
+                 "cost (negative logarithm of a likelihood) of one more plane");
+      visit.Flag("size_prior", &size_prior,
+                 "heights have the prior of the semantic table (height_m); without it all "
+                 "metres come from the trajectory; not with refine_poses");
+      visit.Flag("refine_poses", &refine_poses,
+                 "finally the back end optimises planes, poses and bodies together, and its "
+                 "poses carry the planes into the frames");
+      visit.OnlyWhere({{"refine_poses", {"true"}}}, [&] {
+        visit.Real("odometry_translation_sigma_m", &odometry_translation_sigma_m, {1e-9, 1e3},
+                   "standard deviation of the odometry between two frames, per axis; where "
+                   "planes are not given, it alone holds the scale");
+      });
+      visit.Group("Verticals (vertical edges in the images)");
+      visit.Flag("verticals", &verticals,
+                 "look for vertical edges in the images, where there are any");
+      visit.OnlyWhere({{"verticals", {"true"}}}, [&] {
+        visit.Real("vertical_sigma_deg", &vertical_sigma_deg, {1e-3, 90.0},
+                   "standard deviation of the direction of an edge; those off by more than "
+                   "three are of other edges");
+        visit.Real("vertical_min_length_px", &vertical_min_length_px, {1.0, 1e5},
+                   "shorter edges are not used");
+      });
+      visit.Real("odometry_rotation_sigma_deg", &odometry_rotation_sigma_deg, {0.0, 90.0},
+                 "standard deviation of the odometry between two frames about each "
+                 "horizontal axis; its drift is taken out before planes are estimated; 0: it has "
+                 "none");
+    });
   }
 };
 

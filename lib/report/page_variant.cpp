@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "artefact/files.h"
+#include "artefact/made_of.h"
 #include "base/error.h"
 #include "geometry/angles.h"
 #include "model/map_points.h"
@@ -202,6 +203,7 @@ void AddEstimates(const VariantResult& result, const Sequence& sequence,
                   const PageSelection& selection, json* variant) {
   const fs::path& folder = result.folder;
   if (ShowsStage(result, "optimise", "map.json")) {
+    CheckWasMadeOf(folder / "map.json", "map", folder / "sequence.json");
     const MapEstimate map = ReadMap(folder / "map.json", sequence);
     AddMap(map, sequence, selection, variant);
     const bool has_points = std::ranges::any_of(
@@ -212,6 +214,7 @@ void AddEstimates(const VariantResult& result, const Sequence& sequence,
     return;
   }
   const char* file = ShowsStage(result, "refine", "refined.json") ? "refined.json" : "initial.json";
+  CheckWasMadeOf(folder / file, "landmarks", folder / "sequence.json");
   const LandmarkEstimates estimates = ReadLandmarks(folder / file, sequence);
   if (estimates.observations.empty()) {
     AddViews(estimates, sequence, selection, variant);

@@ -13,6 +13,7 @@
 
 #include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
+#include "artefact/made_of.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/text.h"
@@ -200,6 +201,7 @@ void RunRefine(const OrientationOptions& options, const StageFiles& files, int t
   const PointOptions& point_options = options.profile.points;
   CheckPointEvidence(point_options, kRefinementMethodNames[static_cast<size_t>(options.method)],
                      "profile", files);
+  CheckWasMadeOf(files.at("initial"), "landmarks", files.at("sequence"));
   const Sequence sequence = ReadSequence(files.at("sequence"));
   const auto priors = ObjectPriors(sequence, ReadSemanticTable(files.at("table")),
                                    options.turn.ratio_prior, options.profile.shape);

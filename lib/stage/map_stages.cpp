@@ -9,6 +9,7 @@
 
 #include "artefact/files.h"
 #include "artefact/json_file.h"
+#include "artefact/made_of.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "cli/command_line.h"
@@ -105,6 +106,7 @@ void ReadImages(const OptimiseOptions& options, const StageFiles& files, int thr
 
 void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int threads) {
   CheckEvidence(options, files);
+  CheckWasMadeOf(files.at("landmarks"), "landmarks", files.at("sequence"));
   const Sequence sequence = ReadSequence(files.at("sequence"));
   const SemanticTable table = ReadSemanticTable(files.at("table"));
   const auto priors = ObjectPriors(sequence, table, options.ratio_prior, options.shape);
@@ -175,10 +177,11 @@ void PrintQuality(const MapQuality& quality) {
 void RunEvaluate(const EvaluateOptions& options, const StageFiles& files, int /*threads*/) {
   const Sequence sequence = ReadSequence(files.at("sequence"));
   const std::filesystem::path& landmarks = files.at("landmarks");
+  const bool is_map = IsMap(landmarks);
+  CheckWasMadeOf(landmarks, is_map ? "map" : "landmarks", files.at("sequence"));
   const Metrics metrics =
-      IsMap(landmarks)
-          ? EvaluateMap(sequence, ReadMap(landmarks, sequence), options.alignment)
-          : EvaluateLandmarks(sequence, ReadLandmarks(landmarks, sequence), options.alignment);
+      is_map ? EvaluateMap(sequence, ReadMap(landmarks, sequence), options.alignment)
+             : EvaluateLandmarks(sequence, ReadLandmarks(landmarks, sequence), options.alignment);
   WriteMetrics(files.at("output"), metrics, sequence,
                {OptionsToJson(options), {files.at("sequence"), landmarks}});
   if (const auto& held_out = metrics.held_out) {

@@ -8,8 +8,8 @@
 #include "artefact/atomic_file.h"
 #include "artefact/files.h"
 #include "artefact/json_file.h"
+#include "artefact/made_of.h"
 #include "base/error.h"
-#include "base/hash.h"
 #include "exchange/exports.h"
 #include "exchange/world.h"
 #include "stage/stages.h"
@@ -60,15 +60,8 @@ void CheckFiles(const ExportOptions& options, const StageFiles& files) {
 
 // Map quality from the evaluation of the map; null where the dataset has no ground truth.
 nlohmann::json ReadQuality(const fs::path& metrics, const fs::path& map) {
-  const nlohmann::json document = ReadArtefact(metrics, "metrics");
-  const nlohmann::json& inputs = document.at("artefact").at("inputs");
-  if (std::ranges::none_of(inputs, [hash = Sha256OfFile(map)](const nlohmann::json& input) {
-        return input.at("sha256") == hash;
-      })) {
-    throw InputError(fmt::format("{}: was not made of {}; expected metrics of this map",
-                                 metrics.string(), map.string()));
-  }
-  return document.value("map_quality", nlohmann::json());
+  CheckWasMadeOf(metrics, "metrics", map);
+  return ReadArtefact(metrics, "metrics").value("map_quality", nlohmann::json());
 }
 
 void ApplyEvaluation(const ExportOptions& options, const StageFiles& files,
@@ -90,6 +83,7 @@ std::vector<World> ReadWorlds(const ExportOptions& options, const StageFiles& fi
   const Sequence sequence = ReadSequence(files.at("sequence"), need);
   if (options.truth) return WorldsOfTruth(sequence);
   if (!files.contains("map")) return WorldsOfOdometry(sequence);
+  CheckWasMadeOf(files.at("map"), "map", files.at("sequence"));
   std::vector<World> worlds = WorldsOfMap(sequence, ReadMap(files.at("map"), sequence));
   ApplyEvaluation(options, files, &worlds);
   return worlds;

@@ -8,8 +8,8 @@
 #include "artefact/atomic_file.h"
 #include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
+#include "artefact/made_of.h"
 #include "base/error.h"
-#include "base/hash.h"
 #include "base/paths.h"
 #include "base/text.h"
 #include "dataset/image_path.h"
@@ -137,15 +137,12 @@ void WritePng(const fs::path& path, const cv::Mat& picture) {
   WriteTextFile(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-// True if the artefact was made from another sequence than the given one.
-bool IsOfAnotherSequence(const InspectRequest& request) {
-  if (!request.sequence || *request.sequence == request.file) return false;
-  const std::string sha256 = Sha256OfFile(*request.sequence);
-  const nlohmann::json header = ReadArtefactHeader(request.file);
-  const nlohmann::json inputs = header.value("inputs", nlohmann::json::array());
-  return std::ranges::none_of(inputs, [&](const nlohmann::json& input) {
-    return input.is_object() && input.value("sha256", "") == sha256;
-  });
+// Refuses a sequence from which estimates were not made.
+void CheckSequence(const InspectRequest& request) {
+  const std::string kind = ReadArtefactHeader(request.file).at("kind");
+  if (kind == "landmarks" || kind == "map" || kind == "symmetry" || kind == "metrics") {
+    CheckWasMadeOf(request.file, kind, *request.sequence);
+  }
 }
 
 std::string InBrackets(const std::string& doubts) {
@@ -191,13 +188,8 @@ std::string Headline(const InspectRequest& request) {
     throw SettingsError(fmt::format("{}: there is no headline of kind '{}'; expected a map",
                                     request.file.string(), kind));
   }
-  if (IsOfAnotherSequence(request)) {
-    throw InputError(
-        fmt::format("{}: was not made from --sequence {}; expected its sequence.json, "
-                    "which is beside it in a results folder",
-                    request.file.string(), request.sequence->string()));
-  }
   const fs::path sequence = request.sequence.value_or(request.file.parent_path() / "sequence.json");
+  CheckWasMadeOf(request.file, "map", sequence);
   return HeadlineOfMap(request.file, ReadSequence(sequence, PlaneNeed::kNotNeeded)) + "\n";
 }
 
@@ -205,17 +197,13 @@ std::string Headline(const InspectRequest& request) {
 
 std::string RunInspect(const InspectRequest& request, bool is_coloured) {
   if (request.headline) return Headline(request);
+  if (request.sequence) CheckSequence(request);
   if (request.image) WritePng(*request.image, PictureOf(request));
   if (request.image && !request.csv) return "";
   std::optional<Sequence> sequence;
   if (request.sequence) sequence = ReadSequence(*request.sequence, PlaneNeed::kNotNeeded);
-  Inspection inspection = Inspect(request.file, sequence);
-  if (!request.csv) {
-    if (IsOfAnotherSequence(request)) {
-      inspection.facts.push_back({"note", "--sequence is not the file that this was made from"});
-    }
-    return FormatInspection(inspection, is_coloured);
-  }
+  const Inspection inspection = Inspect(request.file, sequence);
+  if (!request.csv) return FormatInspection(inspection, is_coloured);
   std::string csv = FormatCsv(inspection.table);
   if (*request.csv == "-") return csv;
   WriteTextFile(*request.csv, csv);

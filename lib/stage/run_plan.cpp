@@ -164,6 +164,7 @@ void RunPlan(const PlanOptions& options, const StageFiles& files, int /*threads*
   for (const std::string& variant : variants) RefuseIfNotAFolderName(variant, "variant");
 
   const Plan plan = MakePlan(folders.pipelines, name, variants);
+  ReportFindings("plan", plan.findings);
   for (const StageInstance& instance : plan.instances) {
     if (!instance.semantic_table.empty()) {
       RefuseIfUnfitForMake(instance.semantic_table, "setting 'semantic_table'");

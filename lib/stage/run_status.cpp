@@ -173,7 +173,7 @@ void RunStatus(const StatusOptions& options, const StageFiles& files, int /*thre
 
 namespace {
 
-// A finding of a stage's run and the variants that it concerns.
+// A finding of a stage's run and the variants that it concerns; of the settings: no variants.
 struct Diagnosis {
   Finding finding;
   std::string stage;
@@ -207,6 +207,7 @@ std::vector<Finding> FindingsOfRun(const StageInstance& instance, const fs::path
 // All diagnoses, worst first. A finding that later stages pass on is attributed to the first one.
 std::vector<Diagnosis> DiagnosesOf(const Plan& plan, const fs::path& results) {
   std::vector<Diagnosis> diagnoses;
+  for (const Finding& finding : plan.findings) diagnoses.push_back({finding, "settings", {}});
   for (const StageInstance& instance : plan.instances) {
     for (const Finding& finding : FindingsOfRun(instance, results)) {
       auto known = std::ranges::find(diagnoses, finding, &Diagnosis::finding);
@@ -223,8 +224,10 @@ std::vector<Diagnosis> DiagnosesOf(const Plan& plan, const fs::path& results) {
 
 void Print(const Diagnosis& diagnosis) {
   const Finding& finding = diagnosis.finding;
-  fmt::print("{}: {} ({}): {}\n", kSeverityNames[static_cast<size_t>(finding.severity)],
-             diagnosis.stage, fmt::join(diagnosis.variants, " "), OneLine(finding.found));
+  const std::string variants = fmt::format("{}", fmt::join(diagnosis.variants, " "));
+  fmt::print("{}: {}{}: {}\n", kSeverityNames[static_cast<size_t>(finding.severity)],
+             diagnosis.stage, variants.empty() ? "" : " (" + variants + ")",
+             OneLine(finding.found));
   if (finding.expected.empty()) return;
   fmt::print("  expected      {}\n  likely cause  {}\n  remedy        {}\n",
              OneLine(finding.expected), OneLine(finding.cause), OneLine(finding.remedy));

@@ -238,9 +238,9 @@ std::vector<std::string> PlannedVariants(const std::filesystem::path& pipelines,
 // soslam-plan: resolves the variants that folder "pipelines" defines for the dataset in folder
 // "dataset". Writes under <results>/<name>, each only when its content changes: plan.mk, see
 // PlanMakefile; shared/<stage>-<key>/settings.json; shared/dataset.txt and shared/images.txt, which
-// list the dataset's files with size and time; and <variant>/stages.txt. Throws InputError when
-// there is no such dataset; SettingsError as MakePlan, and for a path with characters that make
-// cannot handle.
+// list the dataset's files with size and time; and <variant>/stages.txt. Prints the findings of the
+// plan. Throws InputError when there is no such dataset; as MakePlan; SettingsError for a path with
+// characters that make cannot handle.
 void RunPlan(const PlanOptions& options, const StageFiles& files, int threads);
 
 struct StatusOptions {

@@ -7,13 +7,19 @@
 #include <string>
 #include <vector>
 
+#include "model/finding.h"
+
 namespace soslam {
 
 // Stages and settings of a variant on a dataset.
 struct VariantSettings {
   // Every option, resolved, keyed by stage; also of stages that a setting asks for.
   std::map<std::string, nlohmann::json> options;
-  std::string semantic_table;  // path relative to the pipelines folder
+  std::string semantic_table;       // path relative to the pipelines folder
+  std::string semantic_table_file;  // the settings file that names it
+  std::vector<Finding> findings;    // settings without effect
+  // The same for settings of the dataset for stages that this variant does not run, but others may.
+  std::vector<Finding> for_others;
 };
 
 // All stages that a variant may run, in order of execution.
@@ -43,6 +49,11 @@ std::vector<std::string> VariantNames(const std::filesystem::path& pipelines);
 // is for tables and has no effect on results.
 VariantSettings ReadVariant(const std::filesystem::path& pipelines, const std::string& dataset,
                             const std::string& variant);
+
+// Files in pipelines/datasets that are not read because of the case or the ending of their names,
+// where the dataset has no settings: Room.json, room.json.txt.
+std::vector<Finding> CheckNamesOfSettings(const std::filesystem::path& pipelines,
+                                          const std::string& dataset);
 
 // True if a stage with these (resolved) settings reads the edge maps of images.
 bool UsesImages(const std::string& stage, const nlohmann::json& settings);

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "workflow/plan.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 
+#include "base/error.h"
 #include "base/hash.h"
+#include "base/paths.h"
 #include "workflow/pipeline_settings.h"
 
 namespace soslam {
@@ -61,6 +66,28 @@ StageInstance InstanceOf(const std::string& stage, const VariantSettings& settin
   return instance;
 }
 
+void CheckSemanticTable(const std::filesystem::path& pipelines, const VariantSettings& settings) {
+  const std::filesystem::path table = pipelines / settings.semantic_table;
+  if (Exists(table)) return;
+  throw InputError(fmt::format(
+      "{}: 'semantic_table' is \"{}\", but {} does not exist; expected the path of a table from {}",
+      settings.semantic_table_file, settings.semantic_table, table.string(), pipelines.string()));
+}
+
+// True if some variant of the pipelines runs the stage of a setting of the dataset, or cannot be
+// read.
+bool IsForAVariant(const Finding& setting, const std::filesystem::path& pipelines,
+                   const std::string& dataset) {
+  return std::ranges::any_of(VariantNames(pipelines), [&](const std::string& variant) {
+    try {
+      const std::vector<Finding> unused = ReadVariant(pipelines, dataset, variant).for_others;
+      return std::ranges::find(unused, setting) == unused.end();
+    } catch (const SettingsError&) {
+      return true;
+    }
+  });
+}
+
 }  // namespace
 
 const StageInstance& Plan::Instance(const std::string& id) const {
@@ -92,8 +119,13 @@ std::string InstancePath(const std::string& instance, const std::string& file) {
 Plan MakePlan(const std::filesystem::path& pipelines, const std::string& dataset,
               const std::vector<std::string>& variants) {
   Plan plan;
+  plan.findings = CheckNamesOfSettings(pipelines, dataset);
+  std::vector<Finding> for_others;
   for (const std::string& variant : variants) {
     const VariantSettings settings = ReadVariant(pipelines, dataset, variant);
+    CheckSemanticTable(pipelines, settings);
+    std::ranges::copy(settings.findings, std::back_inserter(plan.findings));
+    std::ranges::copy(settings.for_others, std::back_inserter(for_others));
     VariantChain chain{variant, {}};
     InstanceIds ids;
     for (const std::string& stage : PipelineStages()) {
@@ -109,6 +141,10 @@ Plan MakePlan(const std::filesystem::path& pipelines, const std::string& dataset
     }
     plan.variants.push_back(std::move(chain));
   }
+  for (const Finding& setting : WorstFirst(std::move(for_others))) {
+    if (!IsForAVariant(setting, pipelines, dataset)) plan.findings.push_back(setting);
+  }
+  plan.findings = WorstFirst(std::move(plan.findings));
   return plan;
 }
 

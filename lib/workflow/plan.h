@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "model/finding.h"
+
 namespace soslam {
 
 // An artefact of a stage instance.
@@ -38,6 +40,7 @@ struct VariantChain {
 struct Plan {
   std::vector<StageInstance> instances;  // each after the instances that it reads from
   std::vector<VariantChain> variants;
+  std::vector<Finding> findings;  // of the settings
 
   const StageInstance& Instance(const std::string& id) const;
 };
@@ -63,7 +66,8 @@ std::string InstancePath(const std::string& instance, const std::string& file);
 inline constexpr const char* kDatasetListing = "shared/dataset.txt";
 inline constexpr const char* kImagesListing = "shared/images.txt";
 
-// The stage runs needed by these variants of a dataset. Throws SettingsError as ReadVariant.
+// The stage runs needed by these variants of a dataset. Throws SettingsError as ReadVariant;
+// InputError if the semantic table that the settings name does not exist.
 Plan MakePlan(const std::filesystem::path& pipelines, const std::string& dataset,
               const std::vector<std::string>& variants);
 

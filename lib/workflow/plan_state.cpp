@@ -123,23 +123,6 @@ class StateFinder {
   std::map<std::string, InstanceState> states_;
 };
 
-// Differences between two sets of settings.
-std::vector<std::string> SettingChanges(const json& before, const json& now) {
-  const auto text = [](const json& settings, const std::string& name) {
-    return settings.contains(name) ? settings.at(name).dump() : std::string("absent");
-  };
-  json names = before;
-  names.update(now);
-  std::vector<std::string> changes;
-  for (const auto& [name, value] : names.items()) {
-    const std::string old_text = text(before, name);
-    const std::string new_text = text(now, name);
-    if (old_text != new_text)
-      changes.push_back(fmt::format("{}: {} -> {}", name, old_text, new_text));
-  }
-  return changes;
-}
-
 }  // namespace
 
 std::map<std::string, StagesUnderWay> ReadStagesUnderWay(const fs::path& file) {

@@ -71,5 +71,48 @@ TEST(Options, TheSchemaTakesWhatTheyTake) {
   EXPECT_EQ(schema["properties"]["on"].value("group", ""), "Others");
 }
 
+// Options of two methods; `range` is used only with `search`, which is used only with method b.
+struct MethodOptions {
+  std::string method = "a";
+  bool search = false;
+  int range = 1;
+  int steps = 2;
+
+  void Describe(OptionVisitor& visit) {
+    visit.Text("method", &method, "the method");
+    visit.OnlyWhere({{"method", {"b", "c"}}}, [&] { visit.Flag("search", &search, "a flag"); });
+    visit.OnlyWhere({{"search", {"true"}}}, [&] {
+      visit.Integer("range", &range, {0, 9}, "a number");
+      visit.OnlyWhere({{"method", {"a"}}, {"range", {"1"}}}, [&] {
+        visit.Integer("steps", &steps, {0, 9}, "a number");
+      });
+    });
+  }
+};
+
+TEST(Options, HaveAnEffectUnderTheirConditionsOnly) {
+  const std::vector<OptionRow> rows = OptionRows<MethodOptions>();
+  const auto unmet = [&](const MethodOptions& options, const char* name) {
+    return InWords(UnmetConditions(rows, OptionsToJson(options), name));
+  };
+  EXPECT_EQ(unmet({}, "method"), "");
+  EXPECT_EQ(unmet({}, "unheard_of"), "");
+  EXPECT_EQ(unmet({}, "search"), "method = b or c");
+  EXPECT_EQ(unmet({"c"}, "search"), "");
+  EXPECT_EQ(unmet({"a", true}, "range"), "search = true");  // as search has no effect itself
+  EXPECT_EQ(unmet({"c", true}, "range"), "");
+  EXPECT_EQ(unmet({"c", true, 1}, "steps"), "");
+  EXPECT_EQ(unmet({"c", true, 2}, "steps"), "method = a or range = 1");
+  const nlohmann::json schema = SettingsSchema(rows, "Settings");
+  EXPECT_EQ(schema["properties"]["steps"]["only_where"],
+            nlohmann::json({"search = true", "method = a or range = 1"}));
+  EXPECT_FALSE(schema["properties"]["method"].contains("only_where"));
+}
+
+TEST(Options, ChangesOfSettingsAreNamed) {
+  EXPECT_EQ(SettingChanges({{"a", 1}, {"b", "x"}, {"c", 3}}, {{"a", 2}, {"b", "x"}, {"d", true}}),
+            (std::vector<std::string>{"a: 1 -> 2", "c: 3 -> absent", "d: absent -> true"}));
+}
+
 }  // namespace
 }  // namespace soslam

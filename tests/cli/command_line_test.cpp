@@ -32,6 +32,7 @@ struct TestOptions {
   bool support = true;
   std::string note = "none";
   Flavour flavour = Flavour::kPlain;
+  bool salt = false;
 
   void Describe(OptionVisitor& visit) {
     visit.Real("offset_m", &offset_m, {-10, 10}, "An offset");
@@ -40,6 +41,7 @@ struct TestOptions {
     visit.Group("Taste (what it is like)");
     visit.Text("note", &note, "A note");
     visit.Choice("flavour", &flavour, kFlavourNames, "A flavour");
+    visit.OnlyWhere({{"flavour", {"spiced"}}}, [&] { visit.Flag("salt", &salt, "Use salt"); });
   }
 };
 
@@ -110,6 +112,23 @@ TEST_F(CommandLineTest, DefaultsFilesAndThreads) {
   EXPECT_EQ(Run({"--extra", "more.json", "--threads", "7"}), 0);
   EXPECT_EQ(recorded.files.at("extra"), "more.json");
   EXPECT_EQ(recorded.threads, 7);
+}
+
+TEST_F(CommandLineTest, SettingsWithoutEffectAreWarnedOf) {
+  EXPECT_EQ(Run({"--salt", "true"}), 0);
+  EXPECT_THAT(printed_.errors,
+              testing::AllOf(StartsWith("soslam-test: warning: command line: salt = true has no "
+                                        "effect; expected flavour = spiced; "),
+                             testing::EndsWith("\n")));
+  EXPECT_EQ(Run({"--salt", "true", "--flavour", "spiced"}), 0);
+  EXPECT_EQ(printed_.errors, "");
+  EXPECT_EQ(Run({"--settings", WriteSettings(R"({"salt": true})")}), 0);
+  EXPECT_THAT(printed_.errors, HasSubstr("settings.json: salt = true has no effect"));
+  // The pipeline writes all options, which nobody chose.
+  EXPECT_EQ(Run({"--settings", WriteSettings(OptionsToJson(TestOptions()).dump())}), 0);
+  EXPECT_EQ(printed_.errors, "");
+  EXPECT_EQ(Run({"--help"}), 0);
+  EXPECT_THAT(printed_.output, HasSubstr("[default false; true | false; only where flavour ="));
 }
 
 TEST_F(CommandLineTest, RepeatableFilesKeepTheirOrder) {

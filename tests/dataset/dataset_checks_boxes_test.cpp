@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The usual mistakes in boxes, tracks, labels and true objects.
 #include "support/dataset_checks_fixture.h"
+#include "support/expect_error.h"
 
 namespace soslam {
 namespace {
@@ -105,6 +106,16 @@ TEST_F(DatasetChecksTest, LabelsThatFlicker) {
   dataset.label = flicker(3);
   ExpectWarning(
       {"labels_of_objects: detections.csv: 51 of 115 boxes", "ids that are of several things"});
+}
+
+TEST_F(DatasetChecksTest, LabelsThatNoBoxHasAreNamed) {
+  options_.labels = "ball, cup";
+  EXPECT_THAT(Warnings(), IsEmpty());
+  options_.labels = "ball, Botle, sofa";
+  ExpectWarning({"no box has the label Botle (bottle?), sofa of `labels`",
+                 "expected labels of boxes: ball, bottle, bowl"});
+  options_.labels = "Botle";
+  ExpectError<NothingUsableError>([&] { Import(); }, {"115 other_label", "Botle", "bottle"});
 }
 
 class ClassNamesTest : public DatasetChecksTest {

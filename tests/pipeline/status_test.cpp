@@ -125,6 +125,26 @@ TEST_F(DoctorTest, AStageThatFailedIsAnError) {
                     HasSubstr("1 error(s)")));
 }
 
+TEST_F(DoctorTest, SettingsWithoutEffectAreWarnings) {
+  pipeline_.WriteSettings({{"planes", {{"planes", "given"}, {"refine_poses", true}}}});
+  EXPECT_THAT(ExpectSuccess(Doctor()),
+              AllOf(HasSubstr("warning: settings: "),
+                    HasSubstr("small.json: planes: refine_poses = true has no effect\n"),
+                    HasSubstr("expected      planes = estimated or where_missing"),
+                    HasSubstr("0 error(s), 1 warning(s)")));
+  fs::rename(pipeline_.Pipelines() / "datasets/small.json",
+             pipeline_.Pipelines() / "datasets/Small.json.txt");
+  EXPECT_THAT(ExpectSuccess(Doctor()), HasSubstr("datasets/Small.json.txt is not read"));
+}
+
+TEST_F(DoctorTest, AMissingSemanticTableIsNamedBeforeAnythingRuns) {
+  pipeline_.WriteSettings({{"semantic_table", "priors/mine.json"}});
+  const auto is_named = AllOf(HasSubstr("datasets/small.json: 'semantic_table' is"),
+                              HasSubstr("priors/mine.json does not exist"));
+  EXPECT_THAT(ExpectExit(3, Doctor()).errors, is_named);
+  EXPECT_THAT(ExpectExit(3, pipeline_.Run("InitP")).errors, is_named);
+}
+
 TEST_F(DoctorTest, WithoutAPlanThereIsNothingToSay) {
   std::filesystem::remove(pipeline_.Results() / "plan.mk");
   EXPECT_THAT(ExpectExit(3, Doctor()).errors, HasSubstr("nothing was planned yet"));

@@ -36,7 +36,7 @@ class RunExportTest : public FolderTest {
 
   void Write() const {
     WriteSequence(folder_ / "sequence.json", sequence_, {});
-    WriteMap(folder_ / "map.json", map_, sequence_, {});
+    WriteMap(folder_ / "map.json", map_, sequence_, {{}, {folder_ / "sequence.json"}});
   }
   fs::path File(const std::string& name) const { return folder_ / name; }
 
@@ -123,9 +123,17 @@ TEST_F(RunExportTest, MetricsBringAMapIntoTheWorldOfTheTruth) {
   ExpectRefused<SettingsError>({"map"}, {{"csv", "l.csv"}}, {"aligned", "--metrics"});
   map_.world_from_camera[0].translation.x() += 1.0;
   Write();
-  ExpectRefused<InputError>({"map", "metrics"}, {{"csv", "l.csv"}}, {"metrics.json", "map.json"});
+  ExpectRefused<InputError>({"map", "metrics"}, {{"csv", "l.csv"}},
+                            {"metrics.json: was not made of", "map.json"});
   options_.truth = true;
   ExpectRefused<SettingsError>({"metrics"}, {{"csv", "l.csv"}}, {"--metrics", "--map"});
+}
+
+TEST_F(RunExportTest, AMapOfAnotherSequenceIsRefused) {
+  sequence_.objects.front().label = "another";
+  WriteSequence(folder_ / "sequence.json", sequence_, {});
+  ExpectRefused<InputError>({"map"}, kAll, {"map.json: was not made of", "sequence.json"});
+  EXPECT_EQ(FilesInFolder(), 2u);
 }
 
 TEST_F(RunExportTest, NoTruthIsNothingUsable) {

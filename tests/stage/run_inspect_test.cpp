@@ -73,13 +73,20 @@ TEST_F(RunInspectTest, CsvIsReturnedOrWritten) {
   EXPECT_EQ(FileBytes(File("table.csv")), csv);
 }
 
-TEST_F(RunInspectTest, AnotherSequenceThanTheArtefactsIsNoted) {
-  InspectRequest request = RequestOf("initial.json");
-  request.sequence = File("sequence.json");
-  EXPECT_THAT(RunInspect(request, false), testing::Not(HasSubstr("note")));
+TEST_F(RunInspectTest, AnotherSequenceThanTheArtefactsIsRefused) {
+  InspectRequest request = RequestOf("initial.json"), picture = PictureOf("initial.json");
+  request.sequence = picture.sequence = File("sequence.json");
+  EXPECT_THAT(RunInspect(request, false), HasSubstr("initial.json: landmarks"));
   sequence_.name = "another";
   WriteSequence(File("sequence.json"), sequence_, {});
-  EXPECT_THAT(RunInspect(request, false), HasSubstr("not the file that this was made from"));
+  for (const InspectRequest& refused : {request, picture}) {
+    ExpectError<InputError>([&] { RunInspect(refused, false); },
+                            {"initial.json: was not made of", "sequence.json"});
+  }
+  // Edges do not depend on what else is in a sequence.
+  EdgesWriter(File("edges.h5"), {}).Commit();
+  request.file = File("edges.h5");
+  EXPECT_THAT(RunInspect(request, false), HasSubstr("edges.h5: edges"));
 }
 
 TEST_F(RunInspectTest, TheHeadlineOfAMapIsALine) {
@@ -87,7 +94,7 @@ TEST_F(RunInspectTest, TheHeadlineOfAMapIsALine) {
   // Its place is known to a kilometre.
   map.objects[1].covariance = Covariance9(1e6 * Covariance9::Identity());
   map.objects[1].covariance->block<3, 3>(6, 6) *= 1e-9;
-  WriteMap(File("map.json"), map, sequence_, {});
+  WriteMap(File("map.json"), map, sequence_, {{}, {File("sequence.json")}});
   InspectRequest request = RequestOf("map.json");
   request.headline = true;
   EXPECT_EQ(RunInspect(request, true), "3 objects, 1 object uncertain\n");
@@ -109,7 +116,7 @@ TEST_F(RunInspectTest, TheHeadlineOfAMapIsALine) {
   WriteSequence(File("other.json"), other, {});
   request.sequence = File("other.json");
   ExpectError<InputError>([&] { RunInspect(request, false); },
-                          {"map.json: was not made from", "other.json"});
+                          {"map.json: was not made of", "other.json"});
   request.file = File("metrics.json");
   ExpectRefused(request, {"metrics", "expected a map"});
 }
@@ -162,7 +169,7 @@ TEST_F(RunInspectTest, PicturesOfSymmetryNeedFrameAndObject) {
   SymmetryRecord record;
   record.frame_id = sequence_.frames.front().id;
   record.object_id = 7;
-  WriteSymmetry(File("symmetry.h5"), {record}, {});
+  WriteSymmetry(File("symmetry.h5"), {record}, {{}, {File("sequence.json")}});
   InspectRequest request = PictureOf("symmetry.h5");
   request.sequence = File("sequence.json");
   ExpectRefused(request, {"needs --object"});

@@ -5,8 +5,10 @@
 
 #include "artefact/files.h"
 #include "base/error.h"
+#include "evaluation/alignment.h"
 #include "evaluation/metrics.h"
 #include "mapping/options.h"
+#include "orientation/options.h"
 #include "stage/stages.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
@@ -36,9 +38,10 @@ class RunOptimiseTest : public FolderTest {
       truth.objects.push_back({i, 1, TrueLandmark(i), {}, "", false});
     }
     WriteSequence(File("sequence"), sequence_, {});
-    WriteLandmarks(File("landmarks"), truth, sequence_, {});
+    WriteLandmarks(File("landmarks"), truth, sequence_, {{}, {File("sequence")}});
   }
 
+  std::filesystem::path File(const std::string& name) const { return folder_ / (name + ".json"); }
   const Landmark& TrueLandmark(int object_index) const {
     return sequence_.objects[object_index].ground_truth->landmark_in_world;
   }
@@ -76,9 +79,6 @@ class RunOptimiseTest : public FolderTest {
 
   OptimiseOptions options_;
   Sequence sequence_ = CuboidSequence(kObjects, 12);
-
- private:
-  std::filesystem::path File(const std::string& name) const { return folder_ / (name + ".json"); }
 };
 
 TEST_F(RunOptimiseTest, ShapeIsTheTablesOrTheOptions) {
@@ -111,6 +111,24 @@ TEST_F(RunOptimiseTest, SymmetryNeedsADescriptorWithADerivative) {
     ExpectError<SettingsError>([&] { RunOptimise(options_, files, 1); },
                                {"derivative", kDescriptorNames[static_cast<size_t>(descriptor)]});
   }
+}
+
+TEST_F(RunOptimiseTest, LandmarksOfAnotherSequenceAreRefused) {
+  WriteTable(kCuboidExponent, /*factor_of_a=*/1.0);
+  sequence_.detections.front().score = 0.25;
+  WriteSequence(File("sequence"), sequence_, {});
+  const std::vector<std::string> words = {"landmarks.json: was not made of", "sequence.json"};
+  ExpectError<InputError>([&] { Run(); }, words);
+  const StageFiles files = {{"sequence", File("sequence")},
+                            {"landmarks", File("landmarks")},
+                            {"output", File("metrics")}};
+  ExpectError<InputError>([&] { RunEvaluate({}, files, 1); }, words);
+  EXPECT_FALSE(std::filesystem::exists(File("metrics")));
+  const StageFiles refined = {{"sequence", File("sequence")},
+                              {"initial", File("landmarks")},
+                              {"table", File("table")},
+                              {"edges", File("edges")}};
+  ExpectError<InputError>([&] { RunRefine({}, refined, 1); }, words);
 }
 
 TEST_F(RunOptimiseTest, PointsOfOtherFramesAreRefused) {

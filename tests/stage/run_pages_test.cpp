@@ -73,15 +73,18 @@ class RunPagesTest : public FolderTest {
     results_.WriteStages("room", name, runs);
     for (const std::string& run : runs) WriteBytes(Folder("shared/" + run) / "done", "");
   }
+  ArtefactInfo MadeOf(const std::string& name) const {
+    return {{}, {Folder(name) / "sequence.json"}};
+  }
   void WriteMultiView(const std::string& name) const {
     WriteVariant(name, {"import-1", "initialise-2", "evaluate-3"});
-    WriteLandmarks(Folder(name) / "initial.json", {{}, Estimates()}, sequence_, {});
+    WriteLandmarks(Folder(name) / "initial.json", {{}, Estimates()}, sequence_, MadeOf(name));
   }
   void WriteOurs(const std::string& name) const { WriteOurs(name, Map()); }
   void WriteOurs(const std::string& name, const MapEstimate& map) const {
     WriteMultiView(name);
     WriteVariant(name, {"import-1", "initialise-2", "refine-4", "optimise-5", "evaluate-6"});
-    WriteMap(Folder(name) / "map.json", map, sequence_, {});
+    WriteMap(Folder(name) / "map.json", map, sequence_, MadeOf(name));
     WriteSymmetry(Folder(name) / "symmetry.h5", {Record()}, {});
   }
   MapEstimate Map() const {
@@ -215,6 +218,7 @@ TEST_F(RunPagesTest, WithoutTrueObjectsNothingIsSaidOfThem) {
   const Sequence without = std::exchange(sequence_, CuboidSequence(4, 6));
   WriteOurs("OursS");
   WriteSequence(Folder("OursS") / "sequence.json", without, {});
+  WriteMap(Folder("OursS") / "map.json", Map(), without, MadeOf("OursS"));
   results_.WriteMetrics("room", "OursS", {});
   const std::string html = Markup();
   for (const char* words :
@@ -232,6 +236,16 @@ TEST_F(RunPagesTest, ADamagedWorldIsNamedAndTheRestIsShown) {
   EXPECT_THAT(Run().errors,
               AllOf(HasSubstr("the map from above cannot be shown: "), HasSubstr("world.json")));
   EXPECT_THAT(MarkupOf(Page()), testing::Not(HasSubstr("<h2>Map</h2>")));
+  EXPECT_EQ(PageDataIn(Page())["variants"].size(), 1u);
+}
+
+TEST_F(RunPagesTest, AMapOfAnotherSequenceIsNotShown) {
+  WriteMultiView("MultiView");
+  WriteOurs("OursS");
+  sequence_.objects[0].label = "another";
+  WriteSequence(Folder("OursS") / "sequence.json", sequence_, {});
+  EXPECT_THAT(Run().errors,
+              AllOf(HasSubstr("OursS failed: "), HasSubstr("map.json: was not made of")));
   EXPECT_EQ(PageDataIn(Page())["variants"].size(), 1u);
 }
 

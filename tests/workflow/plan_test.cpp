@@ -4,12 +4,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <map>
 
 #include "base/error.h"
 #include "dataset/import_options.h"
+#include "ground/options.h"
+#include "initialisation/options.h"
+#include "mapping/options.h"
+#include "orientation/options.h"
+#include "planes/options.h"
 #include "stage/stages.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
@@ -21,8 +27,10 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::AllOf;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::Not;
 
 constexpr const char* kBase = R"({
@@ -33,6 +41,7 @@ class PlanTest : public FolderTest {
  protected:
   void SetUp() override {
     Write("pipelines/base.json", kBase);
+    Write("pipelines/priors/semantic_table.json", "{}");
     Write("pipelines/variants/Plain.json", "{}");
     Write("pipelines/variants/Mapped.json",
           R"({"stages": ["import", "initialise", "optimise", "evaluate"]})");
@@ -170,6 +179,7 @@ TEST_F(PlanTest, AKeyDependsOnTheSemanticTableButNotOnWhereFilesLie) {
             initialise);
   fs::rename(folder_ / "elsewhere" / "pipelines", folder_ / "pipelines");
   Write("pipelines/datasets/room.json", R"({"semantic_table": "priors/other.json"})");
+  Write("pipelines/priors/other.json", "{}");
   EXPECT_EQ(Id("Mapped", "import"), import);
   EXPECT_NE(Id("Mapped", "initialise"), initialise);
 }
@@ -260,16 +270,139 @@ TEST_F(PlanTest, RefusalsNameTheFile) {
   ExpectRefused("Plain", {"datasets/room.json: associate", "min_observations"});
 }
 
-TEST_F(PlanTest, EveryShippedVariantIsValid) {
-  const fs::path pipelines = fs::path(SOSLAM_SOURCE_DIR) / "pipelines";
-  const std::vector<std::string> names = VariantNames(pipelines);
-  EXPECT_GE(names.size(), 7u);
-  for (const char* dataset : {"room_a", "kitti_tracking", "kitti_object"}) {
-    for (const StageInstance& instance : MakePlan(pipelines, dataset, names).instances) {
-      if (!instance.semantic_table.empty()) {
-        EXPECT_TRUE(fs::exists(pipelines / instance.semantic_table)) << instance.Id();
+TEST_F(PlanTest, ASemanticTableThatIsMissingIsRefused) {
+  Write("pipelines/datasets/room.json", R"({"semantic_table": "priors/mine.json"})");
+  ExpectError<InputError>([&] { Make({"Plain"}); },
+                          {"datasets/room.json: 'semantic_table' is \"priors/mine.json\"",
+                           "pipelines/priors/mine.json does not exist"});
+  Write("pipelines/variants/Mine.json", R"({"semantic_table": "my.json"})");
+  Write("pipelines/variants/More.json", R"({"extends": "Mine"})");
+  ExpectError<InputError>([&] { Make({"More"}); }, {"variants/Mine.json: 'semantic_table'"});
+  Write("pipelines/priors/mine.json", "{}");
+  EXPECT_EQ(Make({"Plain"}).instances[1].semantic_table, "priors/mine.json");
+}
+
+class SettingsTest : public PlanTest {
+ protected:
+  // What the findings of a plan found.
+  std::vector<std::string> Found(const std::vector<std::string>& variants) const {
+    std::vector<std::string> found;
+    for (const Finding& finding : Make(variants).findings) found.push_back(finding.found);
+    return found;
+  }
+  std::string Path(const std::string& name) const {
+    return (folder_ / "pipelines" / name).string();
+  }
+};
+
+TEST_F(SettingsTest, WhatAVariantGivesAndDoesNotUseIsAWarning) {
+  Write("pipelines/variants/Own.json",
+        R"({"initialise": {"method": "multi_view", "yaw_prior": "motion", "shape": "cuboid"},
+            "associate": {"association": "given", "interchangeable_labels": "cup, bowl"},
+            "planes": {"planes": "given", "refine_poses": true}})");
+  EXPECT_THAT(
+      Found({"Own"}),
+      ElementsAre(HasSubstr("Own.json: associate: interchangeable_labels = \"cup, bowl\" has"),
+                  HasSubstr("Own.json: initialise: yaw_prior = \"motion\" has no effect"),
+                  HasSubstr("Own.json: planes: refine_poses = true has no effect")));
+  const std::vector<Finding> findings = Make({"Own", "Plain"}).findings;
+  EXPECT_EQ(findings[0].expected, "association = estimated");
+  EXPECT_EQ(findings[1].expected, "method = yaw_sweep");
+  EXPECT_EQ(findings[2].expected, "planes = estimated or where_missing");
+  // What it inherits is the other one's.
+  Write("pipelines/variants/Heir.json", R"({"extends": "Own"})");
+  EXPECT_THAT(Found({"Heir"}), IsEmpty());
+}
+
+TEST_F(SettingsTest, SettingsOfADatasetAreForAllVariants) {
+  Write("pipelines/datasets/room.json",
+        R"({"optimise": {"axes_weight": 0}, "refine": {"yaw_step_deg": 5},
+            "associate": {"interchangeable_labels": "cup, bowl"}})");
+  Write("pipelines/variants/Associated.json", R"({"associate": {"association": "estimated"}})");
+  EXPECT_THAT(Found({"Plain", "Mapped"}), IsEmpty());
+  fs::remove(folder_ / "pipelines/variants/Associated.json");
+  EXPECT_THAT(
+      Found({"Plain", "Mapped"}),
+      ElementsAre(HasSubstr("datasets/room.json: associate: interchangeable_labels = \"cup")));
+  // A variant that cannot be read may use it.
+  Write("pipelines/variants/Broken.json", "{");
+  EXPECT_THAT(Found({"Plain"}), IsEmpty());
+}
+
+TEST_F(SettingsTest, ADatasetMustNotContradictItself) {
+  Write("pipelines/variants/Sweep.json", R"({"initialise": {"method": "yaw_sweep"}})");
+  Write("pipelines/datasets/room.json",
+        R"({"initialise": {"method": "multi_view", "yaw_prior": "motion"}})");
+  EXPECT_THAT(Found({"Sweep"}), IsEmpty());
+  EXPECT_THAT(Found({"Sweep", "Plain"}), ElementsAre(HasSubstr("yaw_prior = \"motion\"")));
+  // A variant may choose otherwise.
+  Write("pipelines/variants/Plain.json", R"({"initialise": {"method": "multi_view"}})");
+  Write("pipelines/datasets/room.json",
+        R"({"initialise": {"method": "yaw_sweep", "yaw_prior": "motion"}})");
+  EXPECT_THAT(Found({"Sweep", "Plain"}), IsEmpty());
+}
+
+TEST_F(SettingsTest, AVariantIsForAllDatasets) {
+  Write("pipelines/variants/Mapped.json",
+        R"({"stages": ["import", "initialise", "optimise", "evaluate"],
+            "optimise": {"odometry_rotation_sigma_deg": 1}})");
+  Write("pipelines/datasets/room.json", R"({"optimise": {"hold_poses": true}})");
+  EXPECT_THAT(Found({"Mapped"}), IsEmpty());
+  Write("pipelines/base.json",
+        R"({"stages": ["import", "initialise", "evaluate"], "optimise": {"hold_poses": true}})");
+  EXPECT_THAT(Found({"Mapped"}), ElementsAre(HasSubstr("odometry_rotation_sigma_deg = 1")));
+}
+
+TEST_F(SettingsTest, FilesOfSimilarNamesAreNotRead) {
+  for (const char* name : {"Room.json", "room.json.txt", "room.JSON", "room", "ROOM.txt"}) {
+    const fs::path file = Write(std::string("pipelines/datasets/") + name, "{}");
+    EXPECT_THAT(Found({"Plain"}), ElementsAre(file.string() + " is not read")) << name;
+    fs::remove(file);
+  }
+  for (const char* name : {"room2.json", "room.v2.json", "bedroom.json", "room.json.bak"}) {
+    Write(std::string("pipelines/datasets/") + name, "{}");
+  }
+  EXPECT_THAT(Found({"Plain"}), IsEmpty());
+  Write("pipelines/datasets/Room.json", "{}");
+  Write("pipelines/datasets/room.json", "{}");
+  EXPECT_THAT(Found({"Plain"}), IsEmpty());
+}
+
+TEST_F(SettingsTest, ConditionsAreOnOptionsOfTheSameStage) {
+  const std::vector<std::vector<OptionRow>> stages = {
+      OptionRows<ImportOptions>(),      OptionRows<GroundOptions>(),
+      OptionRows<PlanesOptions>(),      OptionRows<InitialiseOptions>(),
+      OptionRows<OrientationOptions>(), OptionRows<OptimiseOptions>()};
+  for (const std::vector<OptionRow>& rows : stages) {
+    size_t conditions = 0;
+    for (const OptionRow& row : rows) {
+      for (const OptionVisitor::Conditions& any_of : row.only_where) {
+        for (const auto& [option, values] : any_of) {
+          const auto found = std::ranges::find(rows, option, &OptionRow::name);
+          ASSERT_NE(found, rows.end()) << row.name << ": " << option;
+          const std::vector<std::string> known =
+              found->type == "boolean" ? std::vector<std::string>{"true", "false"} : found->choices;
+          for (const std::string& value : values) EXPECT_THAT(known, Contains(value)) << option;
+          ++conditions;
+        }
       }
     }
+    EXPECT_GT(conditions, 0u);
+  }
+}
+
+TEST_F(PlanTest, EveryShippedVariantIsValidAndUsesItsSettings) {
+  const fs::path project = fs::path(SOSLAM_SOURCE_DIR) / "pipelines";
+  EXPECT_GE(VariantNames(project).size(), 7u);
+  std::vector<std::pair<const char*, std::string>> runs = {
+      {"kitti", "kitti_tracking"}, {"laid", "laid"},          {"ablation", "room_a"},
+      {"raw_boxes", "room_a"},     {"unannotated", "desk_a"}, {"unannotated", "kitti_tracking"}};
+  for (const auto& file : fs::directory_iterator(project / "datasets")) {
+    runs.emplace_back("", file.path().stem().string());
+  }
+  for (const auto& [folder, dataset] : runs) {
+    const Plan plan = MakePlan(project / folder, dataset, VariantNames(project / folder));
+    for (const Finding& finding : plan.findings) ADD_FAILURE() << InWords(finding);
   }
 }
 

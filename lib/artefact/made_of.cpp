@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "artefact/made_of.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "artefact/hdf5_artefact.h"
+#include "artefact/json_file.h"
+#include "base/error.h"
+#include "base/options.h"
+#include "base/paths.h"
+#include "base/run_log.h"
+#include "base/text.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+// SHA-256 of what an artefact was made of; `file`: of files of this name only.
+std::set<std::string> HashesOfInputs(const json& header, const std::string& file = "") {
+  std::set<std::string> hashes;
+  for (const json& input : header.at("inputs")) {
+    if (file.empty() || input.at("file") == file) hashes.insert(input.at("sha256"));
+  }
+  return hashes;
+}
+
+std::string Shortened(const std::string& sha256) { return sha256.substr(0, 10); }
+
+// What distinguishes an artefact from another one of its kind, in words.
+std::string Differences(const fs::path& before, const fs::path& now) {
+  const std::string old_name = ParseJsonFile(before).value("name", "");
+  const std::string name = ParseJsonFile(now).value("name", "");
+  if (name != old_name) return fmt::format("is of {}, not of {}", name, old_name);
+  const json old_header = ReadArtefactHeader(before), header = ReadArtefactHeader(now);
+  const json& old_settings = old_header.at("settings");
+  const json& settings = header.at("settings");
+  json all = old_settings;
+  all.update(settings);
+  if (all.size() > std::min(old_settings.size(), settings.size())) return "is of another stage";
+  const std::vector<std::string> changes = SettingChanges(old_settings, settings);
+  if (!changes.empty()) return "has other settings: " + NamesInWords(changes, 5);
+  const std::set<std::string> old_hashes = HashesOfInputs(old_header);
+  std::vector<std::string> files;
+  for (const json& input : header.at("inputs")) {
+    if (!old_hashes.contains(input.at("sha256"))) files.push_back(input.at("file"));
+  }
+  return files.empty() ? "was made anew" : "was made of another " + NamesInWords(files);
+}
+
+// The message of the refusal.
+std::string WasNotMadeOf(const fs::path& artefact, const json& header, const fs::path& input) {
+  const std::string name = input.filename().string();
+  const std::set<std::string> expected = HashesOfInputs(header, name);
+  const fs::path beside = artefact.parent_path() / name;
+  const bool is_beside = Exists(beside) && expected.contains(DigestOfInput(beside));
+  return fmt::format(
+      "{}: was not made of {} (SHA-256 {}{}), which {}; expected {}", artefact.string(),
+      input.string(), Shortened(DigestOfInput(input)),
+      expected.empty() ? "" : fmt::format(", expected {}", Shortened(*expected.begin())),
+      is_beside ? Differences(beside, input) : "is of another dataset, or was made anew since",
+      is_beside ? beside.string() + ", or the later stages run again"
+                : "the file that it was made of, or the later stages run again");
+}
+
+}  // namespace
+
+void CheckWasMadeOf(const fs::path& artefact, const std::string& kind, const fs::path& input) {
+  const json header = ReadArtefactHeader(artefact);
+  CheckArtefactHeader(header, kind, artefact.string());
+  try {
+    if (HashesOfInputs(header).contains(DigestOfInput(input))) return;
+    throw InputError(WasNotMadeOf(artefact, header, input));
+  } catch (const json::exception& error) {
+    throw InputError(fmt::format("{}: was not made of {}; a header is not as expected: {}",
+                                 artefact.string(), input.string(), error.what()));
+  }
+}
+
+}  // namespace soslam
