@@ -114,10 +114,11 @@ TEST_F(RunInitialiseCuboidsTest, RefusesToRunWithoutEdges) {
 // edges.h5 of images of another size, as after a camera.json was replaced.
 TEST_F(RunInitialiseCuboidsTest, AllStagesRefuseEdgesOfImagesOfAnotherSize) {
   WriteEdges();
-  Run();
+  const LandmarkEstimates estimates = Run();
   sequence_.camera.width = 1280;
   const std::vector<std::string> words = {files_.at("edges").string(), "640", "1280"};
   ExpectError<InputError>([&] { Run(); }, words);
+  WriteLandmarks(files_.at("output"), estimates, sequence_, {{}, {files_.at("sequence")}});
   StageFiles files = files_;
   files["initial"] = files["landmarks"] = files_.at("output");
   files["output"] = folder_ / "later.json";
