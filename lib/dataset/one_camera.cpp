@@ -62,19 +62,17 @@ LensCamera MeanCamera(const std::vector<PlacedCamera>& cameras) {
 
 }  // namespace
 
-double LargestDisplacementPx(const LensCamera& one, const LensCamera& other) {
+double DisplacementPx(const LensCamera& one, const LensCamera& other) {
   if (one.camera.width != other.camera.width || one.camera.height != other.camera.height) {
     return kInfinity;
   }
   const std::vector<Eigen::Vector3d> rays = RaysOverImage(one);
   const std::vector<Eigen::Vector2d> pixels = ImagePoints(one, rays);
   const std::vector<Eigen::Vector2d> other_pixels = ImagePoints(other, rays);
-  double largest_px = rays.empty() ? kInfinity : 0.0;
-  for (size_t i = 0; i < rays.size(); ++i) {
-    const double displacement_px = (pixels[i] - other_pixels[i]).norm();
-    largest_px = std::max(largest_px, std::isfinite(displacement_px) ? displacement_px : kInfinity);
-  }
-  return largest_px;
+  double squares = 0.0;
+  for (size_t i = 0; i < rays.size(); ++i) squares += (pixels[i] - other_pixels[i]).squaredNorm();
+  const double displacement_px = std::sqrt(squares / static_cast<double>(rays.size()));
+  return std::isfinite(displacement_px) ? displacement_px : kInfinity;
 }
 
 LensCamera OneCamera(const std::vector<PlacedCamera>& cameras, const std::string& remedy,
@@ -87,7 +85,7 @@ LensCamera OneCamera(const std::vector<PlacedCamera>& cameras, const std::string
   double largest_px = 0.0;
   const PlacedCamera* farthest = &first;
   for (const PlacedCamera& placed : cameras) {
-    const double displacement_px = LargestDisplacementPx(mean, placed.camera);
+    const double displacement_px = DisplacementPx(mean, placed.camera);
     if (displacement_px > largest_px) farthest = &placed;
     largest_px = std::max(largest_px, displacement_px);
   }
@@ -101,15 +99,14 @@ LensCamera OneCamera(const std::vector<PlacedCamera>& cameras, const std::string
   if (largest_px >= kMostPx) {
     throw InputError(
         fmt::format("{}: is another camera than that of the other images: image "
-                    "points are up to {:.1f} px from those of the mean camera (fx "
-                    "{:.2f}, not {:.2f}); expected one for all images, to {:g} px "
-                    "({})",
+                    "points are {:.1f} px (root mean square) from those of the mean camera "
+                    "(fx {:.2f}, not {:.2f}); expected one for all images, to {:g} px ({})",
                     farthest->place, largest_px, other.fx, mean.camera.fx, kMostPx, remedy));
   }
   findings->push_back(
       {"camera_per_image", Severity::kWarning,
        fmt::format("{}: images have cameras of their own; their mean (fx {:.2f}), which is used "
-                   "for all, displaces image points by up to {:.2f} px",
+                   "for all, displaces image points by {:.2f} px (root mean square)",
                    first.place, mean.camera.fx, largest_px),
        "one camera for all images", "a reconstruction with a camera for each image",
        fmt::format("nothing where boxes are less accurate than that; otherwise {}", remedy)});

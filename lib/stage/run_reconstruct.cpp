@@ -183,10 +183,10 @@ ColmapModel LargestModel(const std::vector<fs::path>& folders,
 void CheckCamera(const ColmapModel& model, const Given& given, const fs::path& dataset) {
   constexpr double kTolerancePx = 0.01;
   if (!given.camera_is_fixed) return;
-  const double displacement_px = LargestDisplacementPx(model.camera, *given.camera);
+  const double displacement_px = DisplacementPx(model.camera, *given.camera);
   if (displacement_px < kTolerancePx) return;
   throw InputError(fmt::format(
-      "{}: is another camera than the model's, which displaces image points by up to {:.2g} px (fx "
+      "{}: is another camera than the model's, which displaces image points by {:.2g} px (fx "
       "{:.2f}, not {:.2f}); expected a model of this camera, or calibration estimated, which "
       "replaces the file by the model's camera",
       (dataset / "camera.json").string(), displacement_px, model.camera.camera.fx,

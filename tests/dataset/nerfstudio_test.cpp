@@ -122,8 +122,8 @@ TEST_F(NerfstudioTest, BadFilesAreNamed) {
   ExpectRefused("/camera_angle_x", 0.5, {"transforms.json: w is missing", "images"});
 }
 
-// Focal lengths of 500 and 500.5 px displace the corner of the image, 400 px from its middle, by
-// 0.2 px from their mean.
+// Points on a grid over the image are 196 px from its middle column (root mean square), so that
+// focal lengths of 500 and 500.5 px displace them by 0.1 px from their mean.
 TEST_F(NerfstudioTest, CamerasOfFrames) {
   document_["frames"].push_back(document_["frames"][0]);
   document_["frames"][1]["fl_x"] = 500.0;
@@ -139,10 +139,10 @@ TEST_F(NerfstudioTest, CamerasOfFrames) {
   document_["p2"] = 0.0;
   document_["frames"][1]["fl_x"] = 500.5;
   EXPECT_EQ(Camera().camera.fx, 500.25);
-  EXPECT_THAT(Only(findings_).found, testing::HasSubstr("up to 0.16 px"));
+  EXPECT_THAT(Only(findings_).found, testing::HasSubstr("by 0.10 px"));
   document_["frames"][1]["fl_x"] = 510.0;
   ExpectError<InputError>([&] { Camera(); },
-                          {"transforms.json#/frames/", "another camera", "up to 3.2 px"});
+                          {"transforms.json#/frames/", "another camera", "1.9 px"});
 }
 
 // Scenes of Blender have an angle of view, no size, and images without extension.
