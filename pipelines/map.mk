@@ -24,11 +24,13 @@ $(steps)/frames: $(steps)/images.txt
 	$(call step,frames,$(BIN)/soslam-frames --images "$$MAP_IMAGES" --output $(MAP_ROOT)/frames $$MAP_FRAMES_OPTIONS \
 	  $${MAP_DETECTIONS:+--detections "$$MAP_DETECTIONS"} --threads $(MAP_THREADS) $(QUIET))
 
-# The dataset begins with the images, as links to those of the step before, and the camera where it is given.
+# The dataset begins with the images, as links to those of the step before, and the camera where it is given. Its texts
+# are copies, which may be edited.
 $(steps)/dataset: $(steps)/frames $(steps)/camera.txt
 	@rm -rf $(folder).new && mkdir -p $(MAP_ROOT)/data
 	@cp -rl $(MAP_ROOT)/frames $(folder).new 2> /dev/null || \
 	  { rm -rf $(folder).new && cp -r $(MAP_ROOT)/frames $(folder).new; }
+	@cp --remove-destination $(MAP_ROOT)/frames/*.* $(folder).new
 	@rm -f $(folder).new/run.json $(folder).new/timing.json $(folder).new/SHA256SUMS
 	@test -z "$$MAP_CAMERA" || cp -- "$$MAP_CAMERA" $(folder).new/camera.json
 	$(call step,dataset,rm -rf $(folder) && mv $(folder).new $(folder))

@@ -88,7 +88,8 @@ listed "$MAP_NETWORK" | keep "$MAP_ROOT/steps/network.txt"
 # The settings: those of all maps of photos.
 mkdir -p "$MAP_ROOT"/pipelines/{variants,datasets,priors}
 sed "s/\"ground\": \"estimated\"/&, \"scale\": ${MAP_SCALE:-0}, \"camera_height_m\": ${MAP_CAMERA_HEIGHT:-0}/
-  s/\"odometry_has_own_scale\": true/&${MAP_MODEL:+, \"image_orientation\": \"stored\"}/" pipelines/photos/base.json | keep "$MAP_ROOT/pipelines/base.json"
+  s/\"odometry_has_own_scale\": true/&${MAP_MODEL:+, \"image_orientation\": \"stored\"}/" \
+  pipelines/photos/base.json | keep "$MAP_ROOT/pipelines/base.json"
 for file in variants/*.json priors/semantic_table.json; do
   for from in pipelines/$file; do keep "$MAP_ROOT/${from}" < "$from"; done
 done

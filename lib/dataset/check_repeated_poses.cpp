@@ -119,10 +119,11 @@ std::vector<Finding> CheckRepeatedPoses(const ImportView& view) {
     const auto& stamp = frames[run.first].pose_timestamp;
     are_taken_twice &= stamp && stamp == frames[run.last].pose_timestamp;
   }
-  return {{"repeated_poses", Severity::kWarning,
-           fmt::format("{} with exactly the pose of the frame before, while what they show moves: "
-                       "frames {}",
-                       Counted(repeated, "frame"), NamesInWords(names, 5)),
+  return {{are_taken_twice ? "shared_poses" : kRepeatedPoses, Severity::kWarning,
+           fmt::format("{}{} with exactly the pose of the frame before, while what they show "
+                       "moves: frames {}",
+                       all > kMostRuns ? "at least " : "", Counted(repeated, "frame"),
+                       NamesInWords(names, 5)),
            "a pose of its own for each image of a camera that moves",
            are_taken_twice ? "poses that are rarer than images, begin later or end earlier"
                            : "a tracker that was lost and repeated its last pose",

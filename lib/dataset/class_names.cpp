@@ -19,7 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// File names used by programs.
+// File names used by programs. The last one is also that of other lists, so that it counts only
+// beside the labels.
 constexpr std::array kNames = {"classes.txt", "obj.names",    "data.yaml",
                                "data.yml",    "dataset.yaml", "labels.txt"};
 
@@ -110,8 +111,9 @@ std::vector<fs::path> FindLabelFiles(const fs::path& labels, const fs::path& dat
   fs::path folder = IsFolder(labels) ? PlainPath(labels) : PlainPath(labels).parent_path();
   // For labels outside the dataset only their parent folder is searched.
   bool may_leave = IsFolder(labels) && !IsWithin(folder, dataset);
-  for (;;) {
+  for (bool is_of_labels = true;; is_of_labels = false) {
     for (const char* name : kNames) {
+      if (name == kNames.back() && !is_of_labels) continue;
       if (IsFile(folder / name)) files.push_back(folder / name);
     }
     if (folder == folder.parent_path()) return files;  // the root

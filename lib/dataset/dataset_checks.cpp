@@ -31,10 +31,13 @@ std::vector<Finding> CheckDataset(const ImportView& view) {
   const auto has = [&](auto field, const auto& value) {
     return std::ranges::find(findings, value, field) != findings.end();
   };
-  add({&CheckCamera, &CheckImages, &CheckBoxes});
+  add({&CheckCamera, &CheckImages, &CheckBoxes, &CheckRepeatedPoses});
   // Boxes with a wrong camera, and wrong boxes, contradict even the best poses; wrong poses
-  // contradict objects and planes.
+  // contradict objects and planes. Poses that a tracker repeats lag, too, by as long as it was
+  // lost.
+  const bool are_repeated = has(&Finding::check, kRepeatedPoses);
   if (!has(&Finding::severity, Severity::kError)) add({&CheckPoses});
+  if (are_repeated) std::erase_if(findings, [](const auto& one) { return one.check == kPoseLag; });
   if (!has(&Finding::severity, Severity::kError) && !has(&Finding::check, kPoseConvention)) {
     const size_t before = findings.size();
     add({&CheckObjects, &CheckPlanes});
@@ -47,8 +50,8 @@ std::vector<Finding> CheckDataset(const ImportView& view) {
     }
     add({&CheckObjectAxes});
   }
-  add({&CheckRepeatedPoses, &CheckTruth, &CheckScores, &CheckClassNumbers, &CheckBlankLines,
-       &CheckLabels, &CheckRejections});
+  add({&CheckTruth, &CheckScores, &CheckClassNumbers, &CheckBlankLines, &CheckLabels,
+       &CheckRejections});
   findings.insert(findings.begin(), view.content.findings.begin(), view.content.findings.end());
   return WorstFirst(std::move(findings));
 }

@@ -55,6 +55,7 @@ std::vector<Finding> CheckTruth(const ImportView& view);
 inline constexpr const char* kPoseConvention = "pose_convention";
 inline constexpr const char* kFrameOrder = "frame_order";
 inline constexpr const char* kPoseLag = "pose_lag";
+inline constexpr const char* kRepeatedPoses = "repeated_poses";
 inline constexpr const char* kBoxesAgainstPoses = "boxes_against_poses";
 std::vector<Finding> CheckPoses(const ImportView& view);
 // Consecutive frames with exactly the same pose whose images or boxes move.

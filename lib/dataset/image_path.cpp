@@ -115,7 +115,8 @@ namespace {
 std::string NameOfOriginal(const std::string& copy) {
   static const std::regex kRoboflow(R"((.+)_[a-z]+\.rf\.[0-9a-z]{8,}(\.[a-z]+)?)",
                                     std::regex::icase);
-  static const std::regex kLabelStudio("[0-9a-f]{8}(?:-|__)(.+)");
+  // Not eight digits that are a date.
+  static const std::regex kLabelStudio("(?!(?:19|20)[0-9]{6})[0-9a-f]{8}(?:-|__)(.+)");
   std::smatch parts;
   if (copy.size() > kMaxName) return "";
   const bool is_copy =
@@ -156,8 +157,8 @@ std::optional<int> FrameLookup::Find(const FrameKey& key, const std::string& pla
                     "is; expected images of one folder",
                     place, name, row, named.string()));
   }
-  const std::string& copy = copies_.try_emplace(row, is_copy ? file_name : "").first->second;
-  if (copy != (is_copy ? file_name : "")) {
+  const std::string copy = is_copy ? file_name : "";
+  if (copies_.try_emplace(row, copy).first->second != copy) {
     throw InputError(
         fmt::format("{}: image '{}' would be row {} of the list, as another copy of it or itself "
                     "is; expected one of each image: export boxes without augmentation",

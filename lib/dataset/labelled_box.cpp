@@ -54,7 +54,9 @@ CsvColumns ColumnsOfBoxes() {
 
 void RefuseWhatWouldBeIgnored(const CsvRow& row) {
   for (const char* angle : kAngles) {
-    if (!row.fields.contains(angle) || row.Real(angle) == 0.0) continue;
+    if (!row.fields.contains(angle)) continue;
+    const auto numbers = ParseNumbers(row.fields.at(angle));
+    if (!numbers || numbers->size() != 1 || numbers->front() == 0.0) continue;
     throw InputError(fmt::format("{}: {} is {}; expected {}", row.place, angle,
                                  row.fields.at(angle), kUprightBoxes));
   }
@@ -240,7 +242,8 @@ std::optional<RejectReason> ReasonToLeaveOut(const JsonEntry& entry,
       return RejectReason::kCrowd;
     }
   }
-  if (attributes && attributes->Flag("outside", false)) return RejectReason::kOutOfView;
+  if (attributes && attributes->Has("outside") && attributes->Field("outside") == true)
+    return RejectReason::kOutOfView;
   return std::nullopt;
 }
 
@@ -256,6 +259,13 @@ void CheckSameCategories(const CocoNames& names, const fs::path& file, const Coc
   }
 }
 
+// False for words, as attributes have any names.
+bool HasNumber(const JsonEntry& attributes, const char* name) {
+  if (!attributes.Has(name)) return false;
+  const json& value = attributes.Field(name);
+  return value.is_number() || (value.is_string() && ParseNumbers(value.get<std::string>()));
+}
+
 void ReadEntry(const JsonEntry& entry, const std::optional<CocoNames>& names, CocoBoxes* read) {
   const auto attributes = AttributesOf(entry);
   if (const auto reason = ReasonToLeaveOut(entry, attributes)) {
@@ -268,7 +278,7 @@ void ReadEntry(const JsonEntry& entry, const std::optional<CocoNames>& names, Co
     const auto size = names->image_sizes.find(entry.Integer("image_id"));
     if (size != names->image_sizes.end()) box.image_size = size->second;
   }
-  if (attributes && attributes->Has("rotation")) {
+  if (attributes && HasNumber(*attributes, "rotation")) {
     const double angle_deg = attributes->Real("rotation");
     const Box around = BoxAround(box.box, angle_deg);
     if (IsEnlarged(around, box.box, angle_deg)) ++read->enlarged;

@@ -40,12 +40,13 @@ std::string ImageOf(const JsonEntry& frame) {
   return std::filesystem::path(image).has_extension() ? image : image + ".png";
 }
 
-// The size of the first image that is there, as viewers show it.
+// The size of the first image that is there; none if EXIF turns it, so that it has two.
 std::optional<ImageSize> SizeOfImages(const std::vector<JsonEntry>& frames,
                                       const std::filesystem::path& folder) {
   for (const JsonEntry& frame : frames) {
     const auto header = ReadImageHeader(ImagePath(folder, ImageOf(frame), frame.place()));
-    if (header) return header->Size(ImageOrientation::kUpright);
+    if (header && header->IsTurnedByAQuarter()) return std::nullopt;
+    if (header) return header->stored;
   }
   return std::nullopt;
 }

@@ -192,8 +192,6 @@ bool VideoReader::ReadPacket() {
   for (av_packet_unref(&packet); av_read_frame(decoder_->format, &packet) >= 0;
        av_packet_unref(&packet)) {
     const AVStream& stream = *format.streams[packet.stream_index];
-    const AVMediaType type = stream.codecpar->codec_type;
-    if (type != AVMEDIA_TYPE_VIDEO && type != AVMEDIA_TYPE_AUDIO) continue;
     const std::int64_t stamp = packet.pts == AV_NOPTS_VALUE ? packet.dts : packet.pts;
     if (stamp != AV_NOPTS_VALUE) {
       const auto end = static_cast<double>(stamp + packet.duration);

@@ -43,9 +43,9 @@ void RefuseBoxesOfOtherImages(const fs::path& path, size_t frames) {
 std::string FrameBoxesText(const fs::path& path, const ChosenFrames& chosen,
                            const std::vector<Photo>& photos) {
   struct NumberedFrame {
-    decltype(OrderOfName({})) name;
-    size_t index;            // in the record
-    std::optional<int> row;  // among the chosen ones
+    std::pair<std::string, std::string> name;  // see OrderOfName
+    size_t index;                              // in the record
+    std::optional<int> row;                    // among the chosen ones
   };
   std::vector<NumberedFrame> frames;
   int row = 0;
@@ -76,6 +76,12 @@ std::string FrameBoxesText(const fs::path& path, const ChosenFrames& chosen,
     box.box = {Scaled(box.box.x_min, scale_x), Scaled(box.box.y_min, scale_y),
                Scaled(box.box.x_max, scale_x), Scaled(box.box.y_max, scale_y)};
     of_chosen.push_back(std::move(box));
+  }
+  if (unknown > 0 && frames.size() < chosen.record.frames.size()) {
+    throw InputError(fmt::format(
+        "{}: has boxes of images beyond the {} that are no RAW photos; expected `frame` to count "
+        "these alone: move the {} RAW photos elsewhere, or count without them",
+        path.string(), frames.size(), chosen.record.frames.size() - frames.size()));
   }
   if (of_chosen.empty()) {
     throw InputError(fmt::format(

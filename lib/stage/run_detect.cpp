@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
@@ -118,27 +119,37 @@ AllDetections DetectAll(const std::vector<fs::path>& images, const NetworkFile& 
   return all;
 }
 
-double SumOfScores(const AllDetections& all) {
+double SumOfScores(const std::vector<YoloDetection>& detections) {
   double sum = 0.0;
-  for (const auto& detections : all.of_image) {
-    for (const YoloDetection& detection : detections) sum += detection.score;
-  }
+  for (const YoloDetection& detection : detections) sum += detection.score;
   return sum;
 }
 
-// The detections in the pixels that the files store. Networks want upright images, but EXIF may be
-// wrong, as where the camera looked down: they see both, and the orientation in which they are
-// surer of all images together counts.
-AllDetections InStoredPixels(AllDetections upright, AllDetections stored,
-                             const std::vector<fs::path>& images) {
-  if (SumOfScores(stored) > SumOfScores(upright)) return stored;
+// Replaces detections in upright images by those in the pixels that the files store. Networks want
+// upright images, but EXIF may be wrong, as where the camera looked down: they see the images that
+// it turns as stored, too, and the orientation in which they are surer of these together counts.
+void TurnToStored(const std::vector<fs::path>& images,
+                  const std::function<AllDetections(const std::vector<fs::path>&)>& detect_stored,
+                  AllDetections* all) {
+  std::vector<fs::path> turned;
+  std::vector<std::vector<YoloDetection>*> upright;
+  double sum = 0.0;
   for (size_t i = 0; i < images.size(); ++i) {
-    const ImageHeader header = ReadImageHeader(images[i]).value();
-    for (YoloDetection& detection : upright.of_image[i]) {
-      detection.box = BoxInStoredImage(detection.box, header);
+    if (ReadImageHeader(images[i]).value().orientation == 1) continue;
+    turned.push_back(images[i]);
+    upright.push_back(&all->of_image[i]);
+    sum += SumOfScores(all->of_image[i]);
+  }
+  if (turned.empty()) return;
+  const AllDetections stored = detect_stored(turned);
+  for (const auto& detections : stored.of_image) sum -= SumOfScores(detections);
+  for (size_t i = 0; i < turned.size(); ++i) {
+    if (sum < 0.0) *upright[i] = stored.of_image[i];
+    const ImageHeader header = ReadImageHeader(turned[i]).value();
+    for (YoloDetection& detection : *upright[i]) {
+      if (sum >= 0.0) detection.box = BoxInStoredImage(detection.box, header);
     }
   }
-  return upright;
 }
 
 std::vector<LabelledBox> KeptBoxes(const std::vector<std::vector<YoloDetection>>& detections,
@@ -203,16 +214,15 @@ void RunDetect(const DetectorOptions& options, const StageFiles& files, int thre
   const std::vector<fs::path> images = ImagePaths(dataset);
   const YoloFormat format = FindFormat(network, static_cast<int>(labels.names.size()), options,
                                        ReadImage(images.front(), cv::IMREAD_COLOR).size());
-  const auto detect = [&](ImageOrientation orientation) {
-    return DetectAll(images, network, format, labels, options, orientation, threads);
+  const auto detect = [&](const std::vector<fs::path>& some, ImageOrientation orientation) {
+    return DetectAll(some, network, format, labels, options, orientation, threads);
   };
-  const bool is_any_turned = std::ranges::any_of(images, [](const fs::path& image) {
-    const auto header = ReadImageHeader(image);
-    return header && header->orientation != 1;
-  });
-  AllDetections all = detect(ImageOrientation::kUpright);
-  if (options.image_orientation == ImageOrientation::kStored && is_any_turned) {
-    all = InStoredPixels(std::move(all), detect(ImageOrientation::kStored), images);
+  AllDetections all = detect(images, ImageOrientation::kUpright);
+  if (options.image_orientation == ImageOrientation::kStored) {
+    const auto detect_stored = [&](const std::vector<fs::path>& turned) {
+      return detect(turned, ImageOrientation::kStored);
+    };
+    TurnToStored(images, detect_stored, &all);
   }
   CheckBoxesArePossible(all.tally, format, network.name);
   const auto boxes = KeptBoxes(all.of_image, labels);

@@ -336,7 +336,8 @@ void RunReconstruct(const ReconstructOptions& options, const StageFiles& files, 
     AddTrackedPoints(model, files.at("model"), dataset,
                      SequenceOf(model, reconstruction, given.images, options.image_orientation),
                      threads, &reconstruction, &info);
-  } else if (reconstruction.points.empty()) {
+  }
+  if (reconstruction.points.empty()) {
     throw NothingUsableError(
         fmt::format("{}: the model has no points; expected some: do the poses fit the images?",
                     dataset.string()));

@@ -240,7 +240,7 @@ TEST_F(RunReconstructTest, AGivenCameraIsKept) {
   Write("data/camera.json",
         R"({"width": 64, "height": 48, "fx": 50, "fy": 50, "cx": 31.5, "cy": 23.5,
                  "distortion": [0.1, 0, 0, 0, 0]})");
-  ExpectError<InputError>([&] { Run("other", "bin/models"); }, {"displaces image points by up to"});
+  ExpectError<InputError>([&] { Run("other", "bin/models"); }, {"displaces image points by 0.8"});
 }
 
 TEST_F(RunReconstructTest, FilesInTheDatasetThatAreOfThisStageAreNotGiven) {
