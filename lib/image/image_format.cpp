@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "image/image_format.h"
 
+#include <algorithm>
 #include <fstream>
 #include <memory>
 #include <set>

@@ -19,34 +19,20 @@
 #include "base/paths.h"
 #include "base/run_log.h"
 #include "image/file_kind.h"
+#include "image/image_turn.h"
 
 namespace soslam {
 namespace {
 
-// Steps, in this order, that turn the stored pixels upright, as viewers show them. EXIF's
-// orientation states at which sides of the upright image the first stored row and the first stored
-// column are:
+// EXIF's orientation states at which sides of the upright image the first stored row and the first
+// stored column are:
 //   1 top, left    2 top, right    3 bottom, right    4 bottom, left
 //   5 left, top    6 right, top    7 right, bottom    8 left, bottom
-struct TurnToUpright {
-  bool swaps_axes;
-  bool mirrors_x;
-  bool mirrors_y;
-};
-TurnToUpright TurnOf(int exif_orientation) {
+ImageTurn TurnOf(int exif_orientation) {
   const auto is_one_of = [&](std::initializer_list<int> orientations) {
     return std::ranges::find(orientations, exif_orientation) != orientations.end();
   };
   return {exif_orientation >= 5, is_one_of({2, 3, 6, 7}), is_one_of({3, 4, 7, 8})};
-}
-
-cv::Mat TurnUpright(const cv::Mat& stored, int exif_orientation) {
-  if (exif_orientation == 1) return stored;
-  const TurnToUpright turn = TurnOf(exif_orientation);
-  cv::Mat image = turn.swaps_axes ? cv::Mat(stored.t()) : stored.clone();
-  if (turn.mirrors_x) cv::flip(image, image, 1);
-  if (turn.mirrors_y) cv::flip(image, image, 0);
-  return image;
 }
 
 std::vector<char> ReadBytes(const std::filesystem::path& path) {
@@ -138,7 +124,7 @@ cv::Mat ReadImage(const std::filesystem::path& path, int mode, ImageOrientation 
                                  path.string(), format->name));
   }
   const bool is_upright = orientation == ImageOrientation::kUpright;
-  cv::Mat image = is_upright ? TurnUpright(stored, header.orientation) : stored;
+  cv::Mat image = is_upright ? Turned(stored, TurnOf(header.orientation)) : stored;
   if (!size || image.size() == *size) return image;
   std::string hint;
   if (header.IsTurnedByAQuarter() && image.cols == size->height && image.rows == size->width) {
@@ -154,7 +140,7 @@ cv::Mat ReadImage(const std::filesystem::path& path, int mode, ImageOrientation 
 }
 
 Box BoxInStoredImage(const Box& in_upright_image, const ImageHeader& header) {
-  const TurnToUpright turn = TurnOf(header.orientation);
+  const ImageTurn turn = TurnOf(header.orientation);
   const ImageSize size = header.Size(ImageOrientation::kUpright);
   Box box = in_upright_image;
   if (turn.mirrors_x) {

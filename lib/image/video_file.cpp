@@ -26,6 +26,7 @@ extern "C" {
 #include "geometry/image_size.h"
 #include "image/file_kind.h"
 #include "image/image_format.h"
+#include "image/image_turn.h"
 
 namespace soslam {
 namespace {
@@ -72,13 +73,8 @@ const std::uint8_t* DisplayMatrix(const AVStream& stream) {
 #endif
 }
 
-// Whether a display matrix exchanges the axes of an image, and then mirrors them.
-struct Turn {
-  bool is_transposed = false, flips_x = false, flips_y = false;
-};
-
 // Throws InputError for rotations by other than quarters of a full turn, to a degree.
-Turn TurnOf(const std::uint8_t* display_matrix, const std::string& place) {
+ImageTurn TurnOf(const std::uint8_t* display_matrix, const std::string& place) {
   constexpr double kTan1Deg = 0.017;
   const auto* matrix = reinterpret_cast<const std::int32_t*>(display_matrix);
   const auto at = [&](int index) { return static_cast<double>(matrix[index]); };
@@ -93,17 +89,8 @@ Turn TurnOf(const std::uint8_t* display_matrix, const std::string& place) {
         fmt::format("{}: is to be shown turned by {:.0f} degrees; expected a multiple of 90. {}",
                     place, -av_display_rotation_get(matrix), kByFfmpeg));
   }
-  return is_transposed ? Turn{true, y_x < 0.0, x_y < 0.0} : Turn{false, x_x < 0.0, y_y < 0.0};
-}
-
-cv::Mat Turned(const cv::Mat& stored, const Turn& turn) {
-  constexpr int kBoth = -1, kX = 1, kY = 0;
-  cv::Mat image = stored;
-  if (turn.is_transposed) cv::transpose(stored, image);
-  if (turn.flips_x || turn.flips_y) {
-    cv::flip(image, image, turn.flips_x && turn.flips_y ? kBoth : turn.flips_x ? kX : kY);
-  }
-  return image;
+  return is_transposed ? ImageTurn{true, y_x < 0.0, x_y < 0.0}
+                       : ImageTurn{false, x_x < 0.0, y_y < 0.0};
 }
 
 }  // namespace
@@ -117,7 +104,7 @@ struct VideoReader::Decoder {
   AVFrame* frame = av_frame_alloc();
   AVFrame* converted = av_frame_alloc();
   SwsContext* converter = nullptr;
-  std::optional<Turn> turn = {};  // none without a display matrix
+  std::optional<ImageTurn> turn = {};  // none without a display matrix
 
   ~Decoder() {
     sws_freeContext(converter);
@@ -282,7 +269,7 @@ cv::Mat VideoReader::Image(int mode) {
   const cv::Mat stored(static_cast<int>(height), static_cast<int>(width),
                        is_grey ? CV_8UC1 : CV_8UC3, decoder_->converted->data[0],
                        static_cast<size_t>(decoder_->converted->linesize[0]));
-  return Turned(stored, decoder_->turn.value_or(Turn{}));
+  return Turned(stored, decoder_->turn.value_or(ImageTurn{}));
 }
 
 int VideoReader::announced_frames() const {
