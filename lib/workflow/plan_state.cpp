@@ -9,6 +9,7 @@
 
 #include "artefact/json_file.h"
 #include "base/error.h"
+#include "base/options.h"
 #include "base/paths.h"
 #include "base/text.h"
 #include "report/results_tree.h"
