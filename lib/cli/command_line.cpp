@@ -31,8 +31,8 @@ Finding SettingWithoutEffect(const std::string& file, const std::string& name,
           Severity::kWarning,
           fmt::format("{}: {} = {} has no effect", file, name, value.dump()),
           InWords(unmet),
-          "a setting of another method",
-          fmt::format("remove {}, or set {}", name, unmet.front().option)};
+          "a setting of another method or kind of evidence",
+          fmt::format("remove {}, or set {}", name, InWords(unmet))};
 }
 
 void ReportFindings(const std::string& stage, const std::vector<Finding>& findings) {
@@ -275,13 +275,14 @@ void Parse(int argc, const char* const* argv, CLI::App* app) {
   }
 }
 
-// Warns of settings that have no effect. A file with all options, as the pipeline's, chooses none.
+// Warns of settings that have no effect. A file with nearly all options, as those that the pipeline
+// writes (perhaps an older one), chooses none.
 void WarnOfSettingsWithoutEffect(const std::vector<SettingsLayer>& layers,
                                  const std::vector<OptionRow>& options,
                                  const nlohmann::json& resolved, const StageInfo& info) {
   std::vector<Finding> findings;
   for (const SettingsLayer& layer : layers) {
-    if (layer.values.size() == options.size()) continue;
+    if (2 * layer.values.size() > options.size()) continue;
     for (const auto& [name, value] : layer.values.items()) {
       const auto unmet = UnmetConditions(options, resolved, name);
       if (unmet.empty()) continue;

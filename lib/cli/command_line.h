@@ -45,8 +45,8 @@ inline std::vector<std::filesystem::path> FilesOf(const StageFiles& files,
   return paths;
 }
 
-// The warning that a setting has no effect: `file` names where it is set, `only_where` are the
-// unmet conditions; none if its stage does not run.
+// The warning that a setting has no effect: `file` names where it is set; one of the conditions
+// `unmet`, at least one, would have to hold.
 Finding SettingWithoutEffect(const std::string& file, const std::string& name,
                              const nlohmann::json& value, const OptionVisitor::Conditions& unmet);
 

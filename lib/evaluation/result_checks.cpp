@@ -123,8 +123,8 @@ std::vector<Finding> CheckHalfAxes(const LandmarkEstimates& estimates, const IsB
   return {finding};
 }
 
-// Boxes cost less than this multiple of what their noise gives by chance: with given ids, less than
-// 3 times; of raw detections, some of whose tracks are of several things, less than 9 times.
+// Limit of the cost of boxes over what their noise gives by chance. Measured maps are below 3 with
+// given ids, and below 9 with raw detections, some of whose tracks are of several things.
 constexpr double kFarAbove = 10.0;
 
 // How a plane differs from the given one where objects stand on it (median).
@@ -190,7 +190,8 @@ std::string PlanesInWords(const Sequence& sequence, const MapEstimate& map,
     planes.push_back(
         normal == given.plane_in_world.normal
             ? fmt::format("plane {} {:.3f} m {}, d = {:.3f}", given.id, std::abs(change.height_m),
-                          change.height_m < 0.0 ? "lower" : "higher", plane.offset)
+                          change.height_m < 0.0 ? "against its normal" : "along its normal",
+                          plane.offset)
             : fmt::format("plane {} turned by {:.1f} degrees, to the normal ({:.3f}, {:.3f}, "
                           "{:.3f}) and d = {:.3f}",
                           given.id, change.tilt_rad * kDegPerRad, normal.x(), normal.y(),

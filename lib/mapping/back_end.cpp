@@ -111,7 +111,9 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
   problem.Solve();
   bool has_converged = true;
   if (options.detection_model == DetectionModel::kTangency) {
-    map.input_alternatives = FindInputAlternatives(input.sequence, &problem);
+    if (problem.summary().converged) {
+      map.input_alternatives = FindInputAlternatives(input.sequence, &problem);
+    }
     if (!input.symmetry_images.empty() || !input.edge_images.empty() || !input.points.empty()) {
       has_converged = SolveWithImages(&problem);
     }

@@ -56,7 +56,8 @@ std::vector<InputAlternative> FindInputAlternatives(const Sequence& sequence,
   if (!is_given(variables.LogFocal())) return {};  // there are no boxes
   std::vector<int> given_planes;
   for (size_t i = 0; i < sequence.planes.size(); ++i) {
-    if (is_given(variables.Offset(i))) given_planes.push_back(static_cast<int>(i));
+    const bool is_estimated = sequence.planes[i].attitude_information.has_value();
+    if (!is_estimated && is_given(variables.Offset(i))) given_planes.push_back(static_cast<int>(i));
   }
   std::vector<InputAlternative> alternatives = {
       {.cost = problem->summary().final_cost, .box_cost = problem->summary().box_cost}};

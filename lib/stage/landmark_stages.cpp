@@ -197,7 +197,9 @@ std::vector<RefinedObservation> RefineAll(const Sequence& sequence,
 }  // namespace
 
 void RunRefine(const OrientationOptions& options, const StageFiles& files, int threads) {
-  CheckMirrorPlane(options.profile.texture, options.turn.symmetry.descriptor);
+  if (options.method == RefinementMethod::kProfile && options.profile.texture_symmetry) {
+    CheckMirrorPlane(options.profile.texture, options.turn.symmetry.descriptor);
+  }
   const PointOptions& point_options = options.profile.points;
   CheckPointEvidence(point_options, kRefinementMethodNames[static_cast<size_t>(options.method)],
                      "profile", files);

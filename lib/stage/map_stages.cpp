@@ -134,15 +134,13 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
   const auto add = [&](const std::vector<Finding>& findings) {
     std::ranges::copy(findings, std::back_inserter(info.findings));
   };
-  // Consequences of wrong inputs are not reported as causes of their own.
-  if (!is_explained) {
-    add(options.support ? CheckSizes(found, sequence, table) : CheckDegenerate(found));
-  }
+  add(options.support ? CheckSizes(found, sequence, table) : CheckDegenerate(found));
   add(CheckCollapsed(found));
-  if (!is_explained) {
-    if (options.detection_model == DetectionModel::kTangency) add(CheckCost(map.solver));
-    add(CheckPoseCorrections(sequence, map.world_from_camera, options.Odometry()));
+  // The cost of boxes is a consequence of wrong inputs, and no cause of its own.
+  if (options.detection_model == DetectionModel::kTangency && !is_explained) {
+    add(CheckCost(map.solver));
   }
+  add(CheckPoseCorrections(sequence, map.world_from_camera, options.Odometry()));
   ReportFindings("optimise", info.findings);
   WriteMap(files.at("output"), map, sequence, info);
   // Texture, edges and points are added once boxes and planes have converged.

@@ -195,7 +195,7 @@ TEST_F(CheckInputsTest, TheCheapestUnlessMoreDegreesOfFreedomGainClearlyMore) {
       {.degrees = 3, .cost = 25.5, .box_cost = 25.5, .planes_in_world = {{0, turned}}});
   const Finding finding = Only(CheckInputs(sequence, map));
   EXPECT_EQ(finding.check, "support_planes");
-  EXPECT_THAT(finding.found, HasSubstr("with plane 3 0.300 m lower, d = 0.300:"));
+  EXPECT_THAT(finding.found, HasSubstr("with plane 3 0.300 m against its normal, d = 0.300:"));
   map.input_alternatives.back().cost = 5.0;
   EXPECT_THAT(Only(CheckInputs(sequence, map)).found,
               HasSubstr("turned by 10.0 degrees, to the normal (0.000, 0.174, 0.985) and d = 0.3"));

@@ -65,7 +65,7 @@ TEST(InputAlternativesTest, PlanesThatAreAllTooHigh) {
   EXPECT_EQ(findings[0].check, "support_planes");
   EXPECT_THAT(findings[0].found, HasSubstr("plane 0 0.2"));
   EXPECT_THAT(findings[0].found, HasSubstr("plane 1 0."));
-  EXPECT_THAT(findings[0].found, HasSubstr("m lower"));
+  EXPECT_THAT(findings[0].found, HasSubstr("m against its normal"));
 }
 
 TEST(InputAlternativesTest, OnePlaneOfTwoThatIsTooLow) {
@@ -74,7 +74,7 @@ TEST(InputAlternativesTest, OnePlaneOfTwoThatIsTooLow) {
   const auto findings = FindingsOf(sequence);
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_THAT(findings[0].found, HasSubstr("fit best with plane 1 0."));
-  EXPECT_THAT(findings[0].found, HasSubstr("m higher, d = "));
+  EXPECT_THAT(findings[0].found, HasSubstr("m along its normal, d = "));
 }
 
 TEST(InputAlternativesTest, PlanesThatAreTurned) {
