@@ -198,7 +198,7 @@ std::vector<Finding> CheckLag(const ImportView& view, const std::vector<TrackedO
   const auto lag = FindLag(view, objects, as_read);
   const bool is_other_lag = lag && std::abs(std::abs(lag->images) - 1.0) > kAboutAnImage;
   if (!is_other_lag) {
-    const std::vector<Finding> findings = CheckFrameNumbers(view, objects, as_read);
+    std::vector<Finding> findings = CheckFrameNumbers(view, objects, as_read);
     if (!findings.empty() || !lag) return findings;
   }
   const bool is_late = lag->seconds > 0.0;
