@@ -36,8 +36,8 @@ std::pair<std::string, std::string> OrderOfName(const std::filesystem::path& pat
 // can be processed, or a name that is not UTF-8.
 std::vector<Photo> ListPhotos(const std::filesystem::path& folder);
 
-// Size and focal length (over the diagonal) that most of the photos have; of sizes that equally many
-// have the largest. Duplicates do not count.
+// Size and focal length (over the diagonal) that most of the photos have; of sizes that equally
+// many have the largest. Duplicates do not count.
 struct CommonCamera {
   ImageOrientation read_as;
   ImageSize size;
