@@ -17,15 +17,13 @@ namespace soslam {
 // Parameter blocks of the residuals. A pose is (qx, qy, qz, qw, tx, ty, tz); a landmark is its pose
 // followed by the logarithms of its half axes, which thus stay positive without bounds. A plane is
 // two blocks: its unit normal, which parallel planes share, and its offset. A detector's bias (px)
-// at one side of its boxes is one block, and so is an object's misfit at one side: the share of a
-// box's width or height by which all of its boxes are further out there than its landmark. The
-// logarithm of the factor of all focal lengths is a block, too.
+// at one side of its boxes is one block, and so is the logarithm of the factor of all focal
+// lengths.
 inline constexpr int kPoseSize = 7;
 inline constexpr int kLandmarkSize = 10;
 inline constexpr int kNormalSize = 3;
 inline constexpr int kOffsetSize = 1;
 inline constexpr int kBiasSize = 1;
-inline constexpr int kMisfitSize = 1;
 inline constexpr int kLogFocalSize = 1;
 using PoseBlock = std::array<double, kPoseSize>;
 using LandmarkBlock = std::array<double, kLandmarkSize>;

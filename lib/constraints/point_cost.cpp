@@ -46,11 +46,8 @@ double SizeForPoints(const std::vector<Landmark>& landmarks) {
 }
 
 PointCost::PointCost(const std::vector<ObjectPoint>& points, const Landmark& start_in_camera,
-                     double size_m, const PointOptions& options, double weight,
-                     const bool* for_solver)
-    : outlier_probability_(options.point_outlier_probability),
-      weight_(weight),
-      for_solver_(for_solver) {
+                     double size_m, const PointOptions& options, double weight)
+    : outlier_probability_(options.point_outlier_probability), weight_(weight) {
   const double sharp_m = options.point_sigma_fraction * size_m;
   const double rough_m = options.point_roughness_fraction * size_m;
   for (const ObjectPoint& point : points) {
@@ -90,8 +87,13 @@ std::pair<double, double> PointCost::CostAndWeight(const Density& density, doubl
   return {-std::log(mixture.Sum() / density.highest), weight};
 }
 
-double PointCost::MeanSquaredDerivative(const Density& density, double from, double to,
-                                        double step) const {
+double PointCost::Information(const Density& /*density*/, double /*distance*/,
+                              double weight) const {
+  return weight;
+}
+
+double PointInformation::MeanSquaredDerivative(const Density& density, double from, double to,
+                                               double step) const {
   double mean = 0.0;
   for (double distance = from + 0.5 * step; distance < to; distance += step) {
     const double derivative = CostAndWeight(density, distance).second * distance;
@@ -100,7 +102,8 @@ double PointCost::MeanSquaredDerivative(const Density& density, double from, dou
   return mean;
 }
 
-double PointCost::Information(const Density& density, double distance) const {
+double PointInformation::Information(const Density& density, double distance,
+                                     double /*weight*/) const {
   const double near = kFarthestSigmas * density.sigma_m;
   const double deep = kFarthestSigmas * density.rough_sigma_m;
   const double information =
@@ -127,8 +130,8 @@ void PointCost::AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) co
     const auto [cost, weight] = CostAndWeight(density, distance);
     model.cost += cost;
     model.gradient += weight * distance * jacobian.transpose();
-    const double information = IsForSolver() ? weight : Information(density, distance);
-    model.information.noalias() += information * jacobian.transpose() * jacobian;
+    model.information.noalias() +=
+        Information(density, distance, weight) * jacobian.transpose() * jacobian;
   }
   sum->Add(model, weight_);
 }

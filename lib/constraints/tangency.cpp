@@ -39,7 +39,7 @@ std::array<BoxEdge, 4> BoxEdges(const Camera& camera, const Box& box,
     const double outwards = i < 2 ? -1.0 : 1.0;
     const double side = i % 2 == 0 ? box.Width() : box.Height();
     edges[i] = {outwards * (to_plane * lines[i]), is_one_sided[i],
-                std::max(kMinSigmaPx, sigma_fraction * side), side};
+                std::max(kMinSigmaPx, sigma_fraction * side)};
   }
   return edges;
 }
@@ -140,14 +140,12 @@ double OutlineExcess(const BoxEdge& edge, const Landmark& landmark_in_camera,
   return is_free ? 0.0 : excess_px / edge.sigma_px;
 }
 
-TangencyResidual::TangencyResidual(const BoxEdge& edge, const Landmark& initial_in_camera,
-                                   const bool* for_solver)
+TangencyResidual::TangencyResidual(const BoxEdge& edge, const Landmark& initial_in_camera)
     : edge_(edge),
       shape_exponents_(initial_in_camera.shape_exponents),
       depth_ratio_(FindTangentDepth(edge, initial_in_camera).depth_m /
                    initial_in_camera.Centre().z()),
-      min_centre_depth_m_(kMinDepthShare * initial_in_camera.Centre().z()),
-      for_solver_(for_solver) {}
+      min_centre_depth_m_(kMinDepthShare * initial_in_camera.Centre().z()) {}
 
 bool TangencyResidual::Evaluate(double const* const* blocks, double* residuals,
                                 double** jacobians) const {
@@ -161,30 +159,27 @@ bool TangencyResidual::Evaluate(double const* const* blocks, double* residuals,
                               is_near ? 0.0 : depth_ratio_};
   LandmarkJacobian1 d_tangency;
   BoxEdge edge = edge_;
-  edge.plane.head<2>() *= std::exp(*blocks[4]);
-  const double outwards_px = *blocks[2] + edge_.extent_px * *blocks[3];
-  const double tangency = Tangency(edge, landmark, depth, outwards_px, &d_tangency);
+  edge.plane.head<2>() *= std::exp(*blocks[3]);
+  const double tangency = Tangency(edge, landmark, depth, *blocks[2], &d_tangency);
   if (!std::isfinite(tangency)) return false;
   Eigen::Map<Eigen::Vector3d>(residuals) << tangency, 0.0, 0.0;
   if (jacobians == nullptr) return true;
   Eigen::Matrix<double, 3, kLandmarkDof> d_landmark;
   d_landmark.setZero();
   d_landmark.row(0) = d_tangency;
-  if (*for_solver_) {
-    d_landmark.bottomLeftCorner<2, 3>() =
-        TangencyCurvature(edge, landmark, depth.depth_m, tangency);
-  }
+  d_landmark.bottomLeftCorner<kCurvatureRows, 3>() =
+      TangencyCurvature(edge, landmark, depth.depth_m, tangency);
   observation.WriteJacobians<3>(d_landmark, blocks, jacobians);
   const bool is_free = edge_.is_one_sided && !(tangency < 0.0);
-  const Eigen::Vector3d d_outwards_px(is_free ? 0.0 : -1.0 / edge_.sigma_px, 0.0, 0.0);
   using Column = Eigen::Map<Eigen::Vector3d>;
-  if (jacobians[2] != nullptr) Column{jacobians[2]} = d_outwards_px;
-  if (jacobians[3] != nullptr) Column{jacobians[3]} = edge_.extent_px * d_outwards_px;
-  if (jacobians[4] != nullptr) {
+  if (jacobians[2] != nullptr) {
+    Column{jacobians[2]} = Eigen::Vector3d(is_free ? 0.0 : -1.0 / edge_.sigma_px, 0.0, 0.0);
+  }
+  if (jacobians[3] != nullptr) {
     const Eigen::Vector3d tangent_point = FindSupportPoint(landmark, edge.plane).point;
     const double d_log_focal =
         edge.plane.head<2>().dot(tangent_point.head<2>()) / (depth.depth_m * edge.sigma_px);
-    Column{jacobians[4]} = Eigen::Vector3d(is_free ? 0.0 : d_log_focal, 0.0, 0.0);
+    Column{jacobians[3]} = Eigen::Vector3d(is_free ? 0.0 : d_log_focal, 0.0, 0.0);
   }
   return true;
 }

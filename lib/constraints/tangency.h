@@ -26,7 +26,6 @@ struct BoxEdge {
   // it).
   bool is_one_sided = false;
   double sigma_px = 1.0;
-  double extent_px = 1.0;  // width of the box for left and right, height for top and bottom
 };
 
 // Edges in the order left, top, right, bottom, of the box without its bias.
@@ -79,15 +78,14 @@ double OutlineExcess(const BoxEdge& edge, const Landmark& landmark_in_camera,
 //
 // Residuals: 1 + 2, the tangency, and curvature rows: two zeros whose Jacobian is
 // TangencyCurvature. Blocks: world_from_camera; landmark in the world; bias (px) of the detector at
-// this side of boxes; misfit of the object at this side; logarithm of the factor of the focal
-// lengths.
+// this side of boxes; logarithm of the factor of the focal lengths.
 class TangencyResidual final
-    : public ceres::SizedCostFunction<3, kPoseSize, kLandmarkSize, kBiasSize, kMisfitSize,
-                                      kLogFocalSize> {
+    : public ceres::SizedCostFunction<3, kPoseSize, kLandmarkSize, kBiasSize, kLogFocalSize> {
  public:
-  // The tangent point of the initial estimate must be in front of the camera. While
-  // `*for_solver` is false, the Jacobian of the curvature rows is zero.
-  TangencyResidual(const BoxEdge& edge, const Landmark& initial_in_camera, const bool* for_solver);
+  static constexpr int kCurvatureRows = 2;  // the last ones
+
+  // The tangent point of the initial estimate must be in front of the camera.
+  TangencyResidual(const BoxEdge& edge, const Landmark& initial_in_camera);
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
 
@@ -96,7 +94,6 @@ class TangencyResidual final
   ShapeExponents shape_exponents_;
   double depth_ratio_;  // of the tangent point and the centre
   double min_centre_depth_m_;
-  const bool* for_solver_;
 };
 
 }  // namespace soslam

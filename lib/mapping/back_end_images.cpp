@@ -25,8 +25,10 @@ constexpr const char* kNoEdgeCounts = "no_edge_point_counts";
 }  // namespace
 
 void BackEndProblem::RenewImageResiduals() {
-  for (const ceres::ResidualBlockId block : image_blocks_) problem_.RemoveResidualBlock(block);
-  image_blocks_.clear();
+  for (auto* blocks : {&image_blocks_, &point_blocks_}) {
+    for (const ceres::ResidualBlockId block : *blocks) problem_.RemoveResidualBlock(block);
+    blocks->clear();
+  }
   for (const char* kind : {kSymmetry, kEdges, kPoints}) summary_.residuals.erase(kind);
   for (const char* reason : {kTooFewPairs, kNoEdgeCounts, kNoPoints}) summary_.gated.erase(reason);
   const auto is_used = [&](int detection_index) {
@@ -53,7 +55,7 @@ void BackEndProblem::RenewImageResiduals() {
     if (input_.points[i].empty()) ++summary_.gated[kNoPoints];
     for (const PointsInView& view : input_.points[i]) {
       detections.push_back(static_cast<size_t>(view.detection_index));
-      makers.push_back([this, i, &view = view] { return PointBlocks(i, view); });
+      makers.push_back([this, i, &view = view] { return PointBlocks<PointCost>(i, view); });
     }
   }
   std::vector<ImageBlocks> made(makers.size());
@@ -70,10 +72,11 @@ void BackEndProblem::AddImageBlocks(size_t index, ImageBlocks blocks) {
   }
   summary_.residuals[blocks.kind] += blocks.count;
   const Detection& detection = input_.sequence.detections[index];
+  auto& added = blocks.kind == kPoints ? point_blocks_ : image_blocks_;
   for (auto& function : blocks.functions) {
-    image_blocks_.push_back(problem_.AddResidualBlock(function.release(),
-                                                      blocks.is_bounded ? nullptr : &loss_,
-                                                      Pose(detection), LandmarkOf(detection)));
+    added.push_back(problem_.AddResidualBlock(function.release(),
+                                              blocks.is_bounded ? nullptr : &loss_, Pose(detection),
+                                              LandmarkOf(detection)));
   }
 }
 
@@ -114,14 +117,23 @@ BackEndProblem::ImageBlocks BackEndProblem::PairBlocks(
   return blocks;
 }
 
-PointCost BackEndProblem::PointCostOf(size_t object_index, const PointsInView& view,
-                                      const Landmark& start_in_camera) const {
-  return {view.points,
-          start_in_camera,
-          SizeForPoints(start_in_camera),
-          options_.points,
-          PointWeight(input_.points[object_index], options_.points),
-          &for_solver_};
+template <typename Cost>
+Cost BackEndProblem::PointCostOf(size_t object_index, const PointsInView& view,
+                                 const Landmark& start_in_camera) const {
+  return {view.points, start_in_camera, SizeForPoints(start_in_camera), options_.points,
+          PointWeight(input_.points[object_index], options_.points)};
+}
+
+void BackEndProblem::PrepareCovariances() {
+  for (const ceres::ResidualBlockId block : point_blocks_) problem_.RemoveResidualBlock(block);
+  point_blocks_.clear();
+  for (size_t i = 0; i < input_.points.size(); ++i) {
+    if (!input_.initial_landmarks[i]) continue;
+    for (const PointsInView& view : input_.points[i]) {
+      AddImageBlocks(static_cast<size_t>(view.detection_index),
+                     PointBlocks<PointInformation>(i, view));
+    }
+  }
 }
 
 std::vector<PointPosterior> BackEndProblem::PointsOf(size_t object_index) const {
@@ -129,18 +141,19 @@ std::vector<PointPosterior> BackEndProblem::PointsOf(size_t object_index) const 
   if (input_.points.empty() || !input_.initial_landmarks[object_index]) return points;
   for (const PointsInView& view : input_.points[object_index]) {
     const Landmark in_camera = LandmarkInCamera(input_.sequence.detections[view.detection_index]);
-    std::ranges::copy(PointCostOf(object_index, view, in_camera).Posteriors(in_camera),
+    std::ranges::copy(PointCostOf<PointCost>(object_index, view, in_camera).Posteriors(in_camera),
                       std::back_inserter(points));
   }
   std::ranges::stable_sort(points, {}, &PointPosterior::point);
   return points;
 }
 
+template <typename Cost>
 BackEndProblem::ImageBlocks BackEndProblem::PointBlocks(size_t object_index,
                                                         const PointsInView& view) const {
   const Detection& detection = input_.sequence.detections[view.detection_index];
   const Landmark in_camera = LandmarkInCamera(detection);
-  auto points = std::make_unique<PointCost>(PointCostOf(object_index, view, in_camera));
+  auto points = std::make_unique<Cost>(PointCostOf<Cost>(object_index, view, in_camera));
   ImageBlocks blocks{kPoints, nullptr, static_cast<int>(view.points.size()), {}, true};
   blocks.functions.push_back(
       std::make_unique<ImageResidual>(std::move(points), in_camera.shape_exponents));

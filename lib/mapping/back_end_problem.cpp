@@ -215,7 +215,7 @@ void BackEndProblem::AddDetections() {
     ++added;
   }
   if (added > 0) summary_.residuals["detection"] = added;
-  if (IsTangency()) AddBiasAndMisfits();
+  if (IsTangency()) AddBias();
 }
 
 void BackEndProblem::AddDetection(size_t index, const Landmark& initial_in_camera) {
@@ -240,11 +240,9 @@ void BackEndProblem::AddDetection(size_t index, const Landmark& initial_in_camer
       continue;
     }
     AddBoxBlock(
-        problem_.AddResidualBlock(
-            new TangencyResidual(edges[side], initial_in_camera, &for_solver_),
-            &view_losses_.back(), Pose(detection), LandmarkOf(detection), variables_.Bias(side),
-            variables_.Misfit(static_cast<size_t>(detection.object_index), side),
-            variables_.LogFocal()),
+        problem_.AddResidualBlock(new TangencyResidual(edges[side], initial_in_camera),
+                                  &view_losses_.back(), Pose(detection), LandmarkOf(detection),
+                                  variables_.Bias(side), variables_.LogFocal()),
         0.5 * view_weights_[index]);
   }
 }
@@ -254,23 +252,18 @@ void BackEndProblem::AddBoxBlock(ceres::ResidualBlockId block, double expected_c
   summary_.expected_box_cost += expected_cost;
 }
 
-// A bias or misfit that some box has: normal about zero, or zero where sigma is.
-void BackEndProblem::AddOutwardPrior(double* variable, double sigma) {
-  if (!problem_.HasParameterBlock(variable)) return;
-  if (sigma > 0.0) {
-    const ceres::Matrix weight = ceres::Matrix::Constant(1, 1, 1.0 / sigma);
-    problem_.AddResidualBlock(new ceres::NormalPrior(weight, ceres::Vector::Zero(1)), nullptr,
-                              variable);
-  } else {
-    problem_.SetParameterBlockConstant(variable);
-  }
-}
-
-void BackEndProblem::AddBiasAndMisfits() {
+// The bias of each side that some box has: normal about zero, or zero where its sigma is.
+void BackEndProblem::AddBias() {
+  const double sigma_px = options_.detector_bias_sigma_px;
   for (size_t side = 0; side < 4; ++side) {
-    AddOutwardPrior(variables_.Bias(side), options_.detector_bias_sigma_px);
-    for (size_t i = 0; i < input_.initial_landmarks.size(); ++i) {
-      AddOutwardPrior(variables_.Misfit(i, side), options_.misfit_sigma_fraction);
+    double* bias = variables_.Bias(side);
+    if (!problem_.HasParameterBlock(bias)) continue;
+    if (sigma_px > 0.0) {
+      const ceres::Matrix weight = ceres::Matrix::Constant(1, 1, 1.0 / sigma_px);
+      problem_.AddResidualBlock(new ceres::NormalPrior(weight, ceres::Vector::Zero(1)), nullptr,
+                                bias);
+    } else {
+      problem_.SetParameterBlockConstant(bias);
     }
   }
 }
@@ -319,7 +312,7 @@ void BackEndProblem::Solve(int max_iterations) {
 
 ceres::Solver::Summary BackEndProblem::Minimise(int max_iterations) {
   ceres::Solver::Options options = SolverOptions(max_iterations);
-  if (IsTangency() && !image_blocks_.empty()) {
+  if (IsTangency() && !(image_blocks_.empty() && point_blocks_.empty())) {
     // The costs of images have kinks at pixels: every step that crosses one may be refused.
     options.use_nonmonotonic_steps = true;
     options.function_tolerance = 1e-6;
@@ -327,7 +320,11 @@ ceres::Solver::Summary BackEndProblem::Minimise(int max_iterations) {
     // A landmark that its boxes hardly determine would shorten the steps of all others: after each
     // step, each is optimised alone.
     options.inner_iteration_ordering = LandmarkOrdering();
-    options.use_inner_iterations = options.inner_iteration_ordering->NumElements() > 0;
+    std::vector<double*> variables;
+    problem_.GetParameterBlocks(&variables);
+    std::erase_if(variables, [&](double* at) { return problem_.IsParameterBlockConstant(at); });
+    options.use_inner_iterations =
+        options.inner_iteration_ordering->NumElements() > 0 && variables.size() > 1;
     // Ceres ends inner iterations for good once they gain less than this: as soon as a step would.
     options.inner_iteration_tolerance = options.function_tolerance;
   }
@@ -342,9 +339,7 @@ double BackEndProblem::Step() {
   ceres::Solver::Options options = SolverOptions(1);
   options.initial_trust_region_radius = 1e8;  // hardly any damping
   ceres::Solver::Summary solution;
-  for_solver_ = false;  // curvature rows shorten steps
   ceres::Solve(options, &problem_, &solution);
-  for_solver_ = true;
   if (solution.iterations.size() < 2) return 0.0;
   const ceres::IterationSummary& step = solution.iterations[1];
   return step.relative_decrease == 0.0 ? 0.0 : step.cost_change / step.relative_decrease;

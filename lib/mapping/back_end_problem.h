@@ -20,8 +20,8 @@ namespace soslam {
 // references to its arguments.
 class BackEndProblem {
  public:
-  // With odometry, detections, support and ratio constraints, preferred axes and the priors of bias
-  // and misfits.
+  // With odometry, detections, support and ratio constraints, preferred axes and the prior of the
+  // detector's bias.
   BackEndProblem(const BackEndInput& input, const OptimiseOptions& options, int threads = 1);
   BackEndProblem(const BackEndProblem&) = delete;
   BackEndProblem& operator=(const BackEndProblem&) = delete;
@@ -49,9 +49,8 @@ class BackEndProblem {
   // Before max_iterations are reached.
   int IterationsLeft() const { return options_.max_iterations - summary_.iterations; }
 
-  // Makes all later Jacobians those that covariances need: without the curvature rows of
-  // TangencyResidual, and with the Fisher information of points.
-  void PrepareCovariances() { for_solver_ = false; }
+  // Replaces the second derivatives of points by their Fisher information, as covariances need.
+  void PrepareCovariances();
 
   // The points of an object at its present landmark; none without a landmark.
   std::vector<PointPosterior> PointsOf(size_t object_index) const;
@@ -80,14 +79,15 @@ class BackEndProblem {
   void AddTerm(std::unique_ptr<const LandmarkTerm> term, size_t object_index);
   void AddDetections();
   void AddDetection(size_t index, const Landmark& initial_in_camera);
-  void AddOutwardPrior(double* variable, double sigma);
-  void AddBiasAndMisfits();
+  void AddBias();
   void SetManifolds();
   void FixPoses();
   ImageBlocks TextureBlocks(size_t index, const std::shared_ptr<const SymmetryImage>& image) const;
   ImageBlocks PairBlocks(size_t index, const std::shared_ptr<const SymmetryImage>& image) const;
-  PointCost PointCostOf(size_t object_index, const PointsInView& view,
-                        const Landmark& start_in_camera) const;
+  template <typename Cost>
+  Cost PointCostOf(size_t object_index, const PointsInView& view,
+                   const Landmark& start_in_camera) const;
+  template <typename Cost>
   ImageBlocks PointBlocks(size_t object_index, const PointsInView& view) const;
   ImageBlocks EdgeBlocks(size_t index, const std::shared_ptr<const EdgeImage>& image) const;
   void AddImageBlocks(size_t index, ImageBlocks blocks);
@@ -108,13 +108,13 @@ class BackEndProblem {
   const OptimiseOptions& options_;
   int threads_;
   std::vector<double> view_weights_;  // one per detection
-  bool for_solver_ = true;
   BackEndVariables variables_;
   ceres::HuberLoss loss_;
   std::deque<ceres::ScaledLoss> view_losses_;
   ceres::Problem problem_;
   std::vector<ceres::ResidualBlockId> box_blocks_;
-  std::vector<ceres::ResidualBlockId> image_blocks_;
+  std::vector<ceres::ResidualBlockId> image_blocks_;  // of texture and edges
+  std::vector<ceres::ResidualBlockId> point_blocks_;
   SolverSummary summary_;
 };
 

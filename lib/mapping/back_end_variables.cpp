@@ -26,9 +26,7 @@ BackEndVariables::BackEndVariables(const BackEndInput& input)
       first_normal_(first_landmark_ + kLandmarkSize * input.initial_landmarks.size()),
       first_offset_(first_normal_ + kNormalSize * input.sequence.planes.size()),
       first_bias_(first_offset_ + kOffsetSize * input.sequence.planes.size()),
-      first_misfit_(first_bias_ + 4 * kBiasSize),
-      values_(first_misfit_ + 4 * kMisfitSize * input.initial_landmarks.size() + kLogFocalSize,
-              0.0) {
+      values_(first_bias_ + 4 * kBiasSize + kLogFocalSize, 0.0) {
   const Sequence& sequence = input.sequence;
   for (size_t i = 0; i < sequence.frames.size(); ++i) {
     std::ranges::copy(ToParameterBlock(sequence.frames[i].world_from_camera), Pose(i));

@@ -13,8 +13,8 @@
 namespace soslam {
 
 // The parameter blocks of the back end (see parameters.h): a pose for each frame, a landmark for
-// each object, normal and offset of each plane, the detector's bias at each side of a box, the
-// misfit of each object at each side, and the logarithm of the factor of all focal lengths. They
+// each object, normal and offset of each plane, the detector's bias at each side of a box, and
+// the logarithm of the factor of all focal lengths. They
 // begin at the input's values. Keeps a reference to the input.
 //
 // All are in one array, as Ceres sorts blocks by their address: the order of blocks, on which last
@@ -37,9 +37,6 @@ class BackEndVariables {
   double NormalSide(size_t plane_index) const { return planes_[plane_index].side; }
   double* Offset(size_t plane_index) { return &values_[first_offset_ + plane_index]; }
   double* Bias(size_t side) { return &values_[first_bias_ + side]; }
-  double* Misfit(size_t object_index, size_t side) {
-    return &values_[first_misfit_ + kMisfitSize * (4 * object_index + side)];
-  }
   double* LogFocal() { return &values_.back(); }
 
   // The values of all blocks.
@@ -66,7 +63,7 @@ class BackEndVariables {
 
   const BackEndInput& input_;
   std::vector<PlaneNormal> planes_;
-  size_t first_landmark_, first_normal_, first_offset_, first_bias_, first_misfit_;
+  size_t first_landmark_, first_normal_, first_offset_, first_bias_;
   std::vector<double> values_;
 };
 

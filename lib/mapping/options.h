@@ -39,7 +39,6 @@ struct OptimiseOptions {
   int symmetry_views = 1;
   double detection_sigma_fraction = 0.02;
   double detector_bias_sigma_px = 0.0;
-  double misfit_sigma_fraction = 0.02;
   double view_correlation_deg = 20.0;
   double axes_weight = 1.0;
   double standing_angle_sigma_deg = 0.1;
@@ -102,10 +101,6 @@ struct OptimiseOptions {
       visit.Real("detector_bias_sigma_px", &detector_bias_sigma_px, {0.0, 1e4},
                  "standard deviation of a bias that each of the four edges has in all boxes "
                  "of the sequence, estimated along; 0: no bias");
-      visit.Real("misfit_sigma_fraction", &misfit_sigma_fraction, {0.0, 1.0},
-                 "standard deviation of a misfit between landmark and boxes that all boxes of an "
-                 "object share at each of the four sides, as a fraction of the box's width or "
-                 "height, estimated along, so that it does not move the cameras; 0: no misfit");
       visit.Real(
           "view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
           "boxes from viewpoints closer than this angle at the object share the error of the "

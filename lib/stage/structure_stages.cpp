@@ -105,7 +105,6 @@ MapEstimate Adjusted(const Sequence& sequence, std::vector<std::optional<ShapePr
     optimise.odometry_rotation_sigma_deg = options.odometry_rotation_sigma_deg;
   }
   optimise.axes_weight = 0.0;  // the planes of the scene's axes are not known yet
-  optimise.misfit_sigma_fraction = 0.0;
   std::vector<bool> may_lean;
   for (auto& prior : priors) {
     may_lean.push_back(prior && prior->attitude == Attitude::kFree);

@@ -136,11 +136,11 @@ struct Derivatives {
   double first;
   double information;
 };
-Derivatives DerivativesAtDistance(double distance, double prior, const PointOptions& options,
-                                  bool for_solver) {
+template <typename Cost>
+Derivatives DerivativesAtDistance(double distance, double prior, const PointOptions& options) {
   const auto [point, cuboid] = AtDistance(distance, prior);
   LandmarkModel model;
-  PointCost({point}, cuboid, 1.0, options, 1.0, &for_solver).AddTo(cuboid, &model);
+  Cost({point}, cuboid, 1.0, options, 1.0).AddTo(cuboid, &model);
   // The parameter is the x of the centre, which moves along the normal.
   return {model.gradient[3], model.information(3, 3)};
 }
@@ -156,10 +156,11 @@ TEST(PointCostTest, CovariancesHaveTheFisherInformation) {
     double squares = 0.0, information = 0.0, for_steps = 0.0;
     for (double distance = -2.0; distance < 1.0; distance += kStepM) {
       const double density = std::exp(-CostAtDistance(distance, prior, 1.0, options));
-      const auto [first, fisher] = DerivativesAtDistance(distance, prior, options, false);
+      const auto [first, fisher] =
+          DerivativesAtDistance<PointInformation>(distance, prior, options);
       squares += density * first * first;
       information += density * fisher;
-      for_steps += density * DerivativesAtDistance(distance, prior, options, true).information;
+      for_steps += density * DerivativesAtDistance<PointCost>(distance, prior, options).information;
     }
     EXPECT_NEAR(information, squares, 0.01 * squares);
     EXPECT_GT(for_steps, 1.2 * squares);

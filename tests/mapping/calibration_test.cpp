@@ -33,8 +33,7 @@ OptimiseOptions ModelOptions() {
   options.odometry_translation_sigma_m = 0.003;
   options.huber_delta = 1e6;           // errors are Gaussian
   options.view_correlation_deg = 0.0;  // and independent
-  options.misfit_sigma_fraction = 0.0;
-  options.axes_weight = 0.0;  // yaws are any
+  options.axes_weight = 0.0;           // yaws are any
   return options;
 }
 
@@ -92,10 +91,6 @@ Truth RandomTruth(const Case& c, const OptimiseOptions& options) {
 // What is observed of it, with errors as the options say.
 Sequence Observe(const Truth& truth, const OptimiseOptions& options) {
   Sequence sequence = ViewsOfBody(truth.landmark_in_world, truth.world_from_camera);
-  std::array<double, 4> misfits{};
-  if (options.misfit_sigma_fraction > 0.0) {
-    for (double& misfit : misfits) misfit = RandomNormal(options.misfit_sigma_fraction);
-  }
   for (size_t i = 0; i < truth.world_from_camera.size(); ++i) {
     if (i > 0) {
       Rigid3d step = truth.world_from_camera[i - 1].Inverse() * truth.world_from_camera[i];
@@ -106,12 +101,8 @@ Sequence Observe(const Truth& truth, const OptimiseOptions& options) {
       sequence.frames[i].world_from_camera = sequence.frames[i - 1].world_from_camera * step;
     }
     Box& box = sequence.detections[i].box;
-    const double width = box.Width();
-    const double height = box.Height();
-    box = {box.x_min - misfits[0] * width, box.y_min - misfits[1] * height,
-           box.x_max + misfits[2] * width, box.y_max + misfits[3] * height};
-    const double sigma_x = options.detection_sigma_fraction * width;
-    const double sigma_y = options.detection_sigma_fraction * height;
+    const double sigma_x = options.detection_sigma_fraction * box.Width();
+    const double sigma_y = options.detection_sigma_fraction * box.Height();
     box = {box.x_min + RandomNormal(sigma_x), box.y_min + RandomNormal(sigma_y),
            box.x_max + RandomNormal(sigma_x), box.y_max + RandomNormal(sigma_y)};
   }
@@ -180,16 +171,6 @@ TEST(Calibration, CovariancesAreHonestWhereTheModelHolds) {
     c.shape_exponents = c.assumed_exponent = p;
     ExpectHonest(MeanNees(c), c.scenes);
   }
-}
-
-// An object whose boxes all are too large, or too far to one side.
-TEST(Calibration, CovariancesAreHonestWhereBoxesShareAMisfit) {
-  Case c;
-  c.actual.misfit_sigma_fraction = c.assumed.misfit_sigma_fraction =
-      OptimiseOptions().misfit_sigma_fraction;
-  ExpectHonest(MeanNees(c), c.scenes);
-  c.assumed.misfit_sigma_fraction = 0.0;
-  EXPECT_GT(MeanNees(c).centre, 1.5);
 }
 
 // A loss that forgives outliers costs next to nothing where there are none.

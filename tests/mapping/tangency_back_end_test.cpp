@@ -155,29 +155,6 @@ TEST(TangencyBackEnd, FindsTheBiasOfTheDetector) {
   EXPECT_GT(MeanIou(sequence, with), MeanIou(sequence, without));
 }
 
-// Boxes of one object that all reach out too far below, as of a car with its shadow.
-TEST(TangencyBackEnd, AMisfitThatBoxesShareMovesNoCameras) {
-  Sequence sequence = CuboidSequence(4, 20);
-  for (Detection& detection : sequence.detections) {
-    if (detection.object_index == 0) detection.box.y_max += 0.04 * detection.box.Height();
-  }
-  OptimiseOptions options = TangencyOptions();
-  options.odometry_rotation_sigma_deg = 0.02;
-  options.odometry_translation_sigma_m = 0.001;
-  const auto farthest_m = [&](double misfit_sigma_fraction) {
-    options.misfit_sigma_fraction = misfit_sigma_fraction;
-    const MapEstimate map = OptimiseMap(TruthInput(sequence), options);
-    double distance = 0.0;
-    for (size_t i = 0; i < sequence.frames.size(); ++i) {
-      distance = std::max(distance, (map.world_from_camera[i].translation -
-                                     sequence.frames[i].world_from_camera.translation)
-                                        .norm());
-    }
-    return distance;
-  };
-  EXPECT_LT(farthest_m(0.02), 0.8 * farthest_m(0.0));
-}
-
 // A ratio far from its prior costs what its spread says: no loss makes outliers cheap.
 TEST(TangencyBackEnd, RatiosAreWithoutLoss) {
   const Sequence sequence = CuboidSequence(3, 10);
