@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "association/box_likelihood.h"
-#include "association/fit_object.h"
+#include "association/fit_track.h"
 #include "association/labels.h"
 #include "association/options.h"
 #include "association/up_estimate.h"

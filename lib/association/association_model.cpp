@@ -111,7 +111,7 @@ void AssociationModel::Try(const Track& track, const std::string& label,
             ? 0.0
             : CostOfPlane(sequence_, std::get<Plane>(support.in_world), prior);
     if (!std::isfinite(cost_of_plane)) continue;
-    const auto fit = FitObject(sequence_, track.detections, prior, options_, support.in_world);
+    const auto fit = FitTrack(sequence_, track.detections, prior, options_, support.in_world);
     if (!fit) continue;
     const double cost = cost_of(*fit) + cost_of_plane;
     const auto [of_label, is_first] = hypotheses->cost_of_label.emplace(label, cost);
@@ -123,7 +123,7 @@ void AssociationModel::Try(const Track& track, const std::string& label,
   }
   if (sequence_.planes.empty() || prior.mount != Mount::kStanding) return;
   const UpEstimate up{UpOfPlanes(sequence_), Eigen::Matrix3d::Zero()};
-  const auto free = FitObject(sequence_, track.detections, prior, options_, up);
+  const auto free = FitTrack(sequence_, track.detections, prior, options_, up);
   if (!free || MayStandOnSome(sequence_, *free)) return;
   hypotheses->cost_at_free_height = std::min(
       hypotheses->cost_at_free_height, cost_of(*free) - std::log(options_.no_support_probability));

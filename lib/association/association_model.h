@@ -10,7 +10,7 @@
 
 #include "association/association.h"
 #include "association/box_likelihood.h"
-#include "association/fit_object.h"
+#include "association/fit_track.h"
 #include "association/labels.h"
 #include "association/options.h"
 #include "association/up_estimate.h"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "association/fit_object.h"
+#include "association/fit_track.h"
 #include "association/options.h"
 #include "constraints/tangency.h"
 #include "geometry/box.h"

@@ -8,7 +8,7 @@
 
 #include "geometry/angles.h"
 #include "geometry/rigid3.h"
-#include "initialisation/multi_view.h"
+#include "initialisation/object_evidence.h"
 #include "planes/camera_holding.h"
 #include "planes/up_prior.h"
 
@@ -52,7 +52,7 @@ std::map<int, Segment> SegmentsOf(const Sequence& sequence) {
 }
 
 // Per label, single-box observations of an upright body at a free height.
-using BoxesOfLabels = std::vector<std::vector<MultiViewObservation>>;
+using BoxesOfLabels = std::vector<std::vector<ObjectEvidence>>;
 
 BoxesOfLabels ObserveLabels(const Sequence& sequence, const Segment& segment,
                             const SemanticTable& table, const AssociateOptions& options) {
@@ -63,7 +63,7 @@ BoxesOfLabels ObserveLabels(const Sequence& sequence, const Segment& segment,
     boxes.emplace_back();
     for (const int detection : SpreadOver(detections, kBoxesOfLabel)) {
       boxes.back().push_back(
-          MakeMultiViewObservation(sequence, {detection}, prior, options.box_sigma_fraction));
+          EvidenceInWorld(sequence, {detection}, prior, options.box_sigma_fraction));
       boxes.back().back().height_is_free = true;
       boxes.back().back().size_is_known = true;
     }
@@ -72,11 +72,11 @@ BoxesOfLabels ObserveLabels(const Sequence& sequence, const Segment& segment,
 }
 
 // Mean cost over a label's boxes; a mean, because boxes of the same object are correlated.
-std::optional<double> MeanCost(const std::vector<MultiViewObservation>& boxes,
+std::optional<double> MeanCost(const std::vector<ObjectEvidence>& boxes,
                                const Eigen::Vector3d& up) {
   double sum = 0.0;
   int count = 0;
-  for (const MultiViewObservation& box : boxes) {
+  for (const ObjectEvidence& box : boxes) {
     const auto cost = CostOfUprightBody(up, box);
     if (!cost) continue;
     sum += *cost;

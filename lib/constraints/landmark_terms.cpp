@@ -28,10 +28,9 @@ void LandmarkTerm::AddTo(const Landmark& landmark, LandmarkModel* sum) const {
   }
 }
 
-BoxTerm::BoxTerm(const std::array<BoxEdge, 4>& edges, const Landmark& start_in_camera)
+BoxTerm::BoxTerm(const std::array<BoxEdge, 4>& edges, const Landmark& linearisation_in_camera)
     : edges_(edges) {
-  for (size_t i = 0; i < edges.size(); ++i)
-    depths_[i] = FindTangentDepth(edges[i], start_in_camera);
+  for (size_t i = 0; i < edges.size(); ++i) depths_[i] = {edges[i], linearisation_in_camera};
 }
 
 void BoxTerm::Evaluate(const Landmark& landmark_in_camera, Residuals residuals,
@@ -39,7 +38,7 @@ void BoxTerm::Evaluate(const Landmark& landmark_in_camera, Residuals residuals,
   for (size_t i = 0; i < edges_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     LandmarkJacobian1 d_landmark;
-    residuals[row] = Tangency(edges_[i], landmark_in_camera, depths_[i], 0.0,
+    residuals[row] = Tangency(edges_[i], landmark_in_camera, depths_[i].At(landmark_in_camera), 0.0,
                               jacobian != nullptr ? &d_landmark : nullptr);
     if (jacobian != nullptr) jacobian->row(row) = d_landmark;
   }

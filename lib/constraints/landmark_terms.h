@@ -34,18 +34,17 @@ class LandmarkTerm : public LandmarkCost {
   void AddTo(const Landmark& landmark, LandmarkModel* sum) const final;
 };
 
-// Tangencies of the four edges of one detection, with the tangent points at the depths that they
-// have on `start_in_camera`.
+// Tangencies of the four edges of one detection, with the TangentDepthRatio of each.
 class BoxTerm final : public LandmarkTerm {
  public:
-  BoxTerm(const std::array<BoxEdge, 4>& edges, const Landmark& start_in_camera);
+  BoxTerm(const std::array<BoxEdge, 4>& edges, const Landmark& linearisation_in_camera);
   int NumResiduals() const override { return 4; }
   void Evaluate(const Landmark& landmark_in_camera, Residuals residuals,
                 Jacobian* jacobian) const override;
 
  private:
   std::array<BoxEdge, 4> edges_;
-  std::array<TangentDepth, 4> depths_;
+  std::array<TangentDepthRatio, 4> depths_;
 };
 
 // Signed distances (OutlineExcess) by which the silhouette reaches outside the four edges of one

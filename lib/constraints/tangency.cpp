@@ -23,7 +23,7 @@ namespace {
 // Lower limit of sigma: boxes of a few pixels are not more precise than this.
 constexpr double kMinSigmaPx = 1.0;
 
-constexpr double kMinDepthShare = 0.1;  // of the initial depth
+constexpr double kMinDepthShare = 0.1;  // of the depth at the linearisation point
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -122,6 +122,17 @@ TangentDepth FindTangentDepth(const BoxEdge& edge, const Landmark& landmark_in_c
   return {FindSupportPoint(landmark_in_camera, edge.plane).point.z()};
 }
 
+TangentDepthRatio::TangentDepthRatio(const BoxEdge& edge, const Landmark& linearisation_in_camera)
+    : ratio_(FindTangentDepth(edge, linearisation_in_camera).depth_m /
+             linearisation_in_camera.Centre().z()),
+      min_centre_depth_m_(kMinDepthShare * linearisation_in_camera.Centre().z()) {}
+
+TangentDepth TangentDepthRatio::At(const Landmark& landmark_in_camera) const {
+  const double centre_depth_m = landmark_in_camera.Centre().z();
+  if (!(centre_depth_m > min_centre_depth_m_)) return {ratio_ * min_centre_depth_m_};
+  return {ratio_ * centre_depth_m, ratio_};
+}
+
 double OutlineExcess(const BoxEdge& edge, const Landmark& landmark_in_camera,
                      LandmarkJacobian1* jacobian) {
   const auto silhouette = FindSilhouettePoint(
@@ -143,9 +154,7 @@ double OutlineExcess(const BoxEdge& edge, const Landmark& landmark_in_camera,
 TangencyResidual::TangencyResidual(const BoxEdge& edge, const Landmark& initial_in_camera)
     : edge_(edge),
       shape_exponents_(initial_in_camera.shape_exponents),
-      depth_ratio_(FindTangentDepth(edge, initial_in_camera).depth_m /
-                   initial_in_camera.Centre().z()),
-      min_centre_depth_m_(kMinDepthShare * initial_in_camera.Centre().z()) {}
+      depth_(edge, initial_in_camera) {}
 
 bool TangencyResidual::Evaluate(double const* const* blocks, double* residuals,
                                 double** jacobians) const {
@@ -153,10 +162,7 @@ bool TangencyResidual::Evaluate(double const* const* blocks, double* residuals,
   const Landmark& landmark = observation.landmark_in_camera();
   if (!landmark.half_axes.allFinite())
     return false;  // the step was too large: the solver shortens it
-  const double centre_depth_m = landmark.Centre().z();
-  const bool is_near = !(centre_depth_m > min_centre_depth_m_);
-  const TangentDepth depth = {depth_ratio_ * (is_near ? min_centre_depth_m_ : centre_depth_m),
-                              is_near ? 0.0 : depth_ratio_};
+  const TangentDepth depth = depth_.At(landmark);
   LandmarkJacobian1 d_tangency;
   BoxEdge edge = edge_;
   edge.plane.head<2>() *= std::exp(*blocks[3]);

@@ -42,6 +42,20 @@ struct TangentDepth {
 // Depth of the point where an object is tangent to a plane parallel to the one behind an edge.
 TangentDepth FindTangentDepth(const BoxEdge& edge, const Landmark& landmark_in_camera);
 
+// The same to first order about a linearisation point: the depth of the centre times their ratio
+// there. With fixed depths, a smaller world would have smaller residuals. A centre nearer than a
+// tenth of its depth there, or behind the camera, counts as if it were at this tenth.
+class TangentDepthRatio {
+ public:
+  TangentDepthRatio() = default;
+  TangentDepthRatio(const BoxEdge& edge, const Landmark& linearisation_in_camera);
+  TangentDepth At(const Landmark& landmark_in_camera) const;
+
+ private:
+  double ratio_ = 1.0;
+  double min_centre_depth_m_ = 0.0;
+};
+
 // Signed distance (px / sigma) by which an object reaches outside a box edge: zero when the plane
 // behind the edge is tangent to it. Equals h(n) + n . c + d of the plane in metres, divided by the
 // depth of the tangent point (its other changes alter the residual by less than the residual's own
@@ -71,10 +85,7 @@ Eigen::Matrix<double, 2, 3> TangencyCurvature(const BoxEdge& edge,
 double OutlineExcess(const BoxEdge& edge, const Landmark& landmark_in_camera,
                      LandmarkJacobian1* jacobian);
 
-// The tangency of one box edge in the back end. The depth of the tangent point is that of the
-// centre times their ratio at the initial estimate: with fixed depths, a smaller world would have
-// smaller residuals. A centre nearer than a tenth of its initial depth, or behind the camera,
-// counts as if it were there.
+// The tangency of one box edge in the back end, with the TangentDepthRatio of the initial estimate.
 //
 // Residuals: 1 + 2, the tangency, and curvature rows: two zeros whose Jacobian is
 // TangencyCurvature. Blocks: world_from_camera; landmark in the world; bias (px) of the detector at
@@ -92,8 +103,7 @@ class TangencyResidual final
  private:
   BoxEdge edge_;
   ShapeExponents shape_exponents_;
-  double depth_ratio_;  // of the tangent point and the centre
-  double min_centre_depth_m_;
+  TangentDepthRatio depth_;
 };
 
 }  // namespace soslam

@@ -7,7 +7,7 @@
 #include <optional>
 #include <set>
 
-#include "association/fit_object.h"
+#include "association/fit_track.h"
 #include "base/parallel.h"
 #include "model/label_groups.h"
 
@@ -101,7 +101,7 @@ class Measurement {
  private:
   void Try(ScaleHypothesis hypothesis, const ShapePrior& prior, const LogNormal& height_m,
            const std::variant<Plane, UpEstimate>& support) {
-    const auto fit = FitObject(sequence_, object_->detections, prior, options_, support);
+    const auto fit = FitTrack(sequence_, object_->detections, prior, options_, support);
     if (!fit) return;
     if (hypothesis.plane != kNoPlane &&
         !IsOverSurface(planes_.planes[hypothesis.plane], planes_.up_in_world,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/parallel.h"
 #include "geometry/angles.h"
@@ -10,15 +11,16 @@
 #include "geometry/plane.h"
 #include "initialisation/cuboid_proposals.h"
 #include "initialisation/cuboid_score.h"
-#include "initialisation/multi_view.h"
+#include "initialisation/fit_object.h"
+#include "initialisation/object_evidence.h"
 #include "initialisation/single_frame.h"
 #include "initialisation/svd.h"
-#include "initialisation/yaw_sweep.h"
 
 namespace soslam {
 namespace {
 
 constexpr size_t kMinViews = 3;
+constexpr size_t kAllHypotheses = std::numeric_limits<size_t>::max();
 
 // An estimate per detection, each from the value of its object; a failure where that has none.
 template <typename Value, typename Estimator>
@@ -69,21 +71,9 @@ std::vector<Plane> TangentPlanesInWorld(const Sequence& sequence,
   return planes;
 }
 
-// All local optima of the sweeps over yaw of one observation, on each face that the object may rest
-// on, lowest cost first.
-std::vector<Hypothesis> SweepFaces(const std::vector<UprightObservation>& on_faces,
-                                   double yaw_step) {
+std::vector<Hypothesis> HypothesesOf(const std::vector<ObjectFit>& fits) {
   std::vector<Hypothesis> hypotheses;
-  const YawObjective objective;
-  for (const UprightObservation& observation : on_faces) {
-    const YawSweep sweep = SweepYaw(observation, objective, yaw_step);
-    for (const UprightSolution& optimum :
-         LocalOptima(observation, objective, sweep, sweep.yaw.size())) {
-      hypotheses.push_back({optimum.landmark, optimum.cost});
-    }
-  }
-  std::ranges::stable_sort(hypotheses, {},
-                           [](const Hypothesis& one) { return RankOfCost(one.cost); });
+  for (const ObjectFit& fit : fits) hypotheses.push_back({fit.landmark, fit.cost.total});
   return hypotheses;
 }
 
@@ -109,20 +99,19 @@ LandmarkEstimates InitialiseUpright(const Sequence& sequence,
                                     const PointsInFrames* points) {
   const auto estimator = [&](const ShapePrior& prior, int index) {
     const Detection& detection = sequence.detections[index];
-    ObservationEstimate estimate;
-    std::vector<UprightObservation> on_faces;
-    for (const auto& on_face : OnPossibleFaces(prior)) {
-      on_faces.push_back(MakeUprightObservation(sequence, detection, *on_face, options));
-      if (!yaw_priors.empty()) on_faces.back().yaw_prior = yaw_priors[index];
-    }
+    ObjectEvidence evidence =
+        EvidenceInCamera(sequence, detection, prior, options.detection_sigma_fraction);
+    evidence.axes_weight = options.axes_weight;
+    if (!yaw_priors.empty()) evidence.yaw_prior = yaw_priors[index];
     const double yaw_step = options.yaw_grid_deg * kRadPerDeg;
-    estimate.hypotheses = SweepFaces(on_faces, yaw_step);
-    const auto evidence = points ? points->Of(index, estimate.hypotheses) : std::nullopt;
-    if (evidence) {
-      for (UprightObservation& on_face : on_faces) on_face.points = evidence;
-      estimate.hypotheses = SweepFaces(on_faces, yaw_step);
+    ObservationEstimate estimate;
+    estimate.hypotheses = HypothesesOf(FitObject(evidence, yaw_step, kAllHypotheses));
+    const auto of_points = points ? points->Of(index, estimate.hypotheses) : std::nullopt;
+    if (of_points) {
+      evidence.further = {InCamera(*of_points)};
+      estimate.hypotheses = HypothesesOf(FitObject(evidence, yaw_step, kAllHypotheses));
     }
-    if (estimate.hypotheses.empty()) estimate.failure = WhyNoSolution(on_faces.back());
+    if (estimate.hypotheses.empty()) estimate.failure = WhyNoSolution(evidence);
     return estimate;
   };
   return EstimateObservations(sequence, priors, threads, estimator);
@@ -138,18 +127,13 @@ LandmarkEstimates InitialiseMultiView(const Sequence& sequence,
     ObjectEstimate& object = estimates.objects[i];
     if (!object.failure.empty()) return;
     const auto index = static_cast<size_t>(object.object_index);
-    MultiViewObservation observation = MakeMultiViewObservation(
-        sequence, detections[index], priors[index], options.upright.detection_sigma_fraction);
-    WeighViews(options.view_correlation_deg * kRadPerDeg, &observation);
-    observation.axes_weight = options.upright.axes_weight;
-    std::optional<UprightSolution> best;
-    for (const auto& on_face : OnPossibleFaces(priors[index])) {
-      observation.prior = on_face;
-      const auto found = SolveViews(observation, options.upright.yaw_grid_deg * kRadPerDeg);
-      if (found && (!best || found->cost < best->cost)) best = found;
-    }
-    if (best) {
-      object.landmark_in_world = best->landmark;
+    ObjectEvidence evidence = EvidenceInWorld(sequence, detections[index], priors[index],
+                                              options.upright.detection_sigma_fraction);
+    WeighViews(options.view_correlation_deg * kRadPerDeg, &evidence);
+    evidence.axes_weight = options.upright.axes_weight;
+    const auto fits = FitObject(evidence, options.upright.yaw_grid_deg * kRadPerDeg, 1);
+    if (!fits.empty()) {
+      object.landmark_in_world = fits.front().landmark;
     } else {
       object.failure = "not_determined_by_its_views";
     }

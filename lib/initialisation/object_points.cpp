@@ -160,6 +160,14 @@ std::vector<PointsOfObject> FindObjectPoints(const Sequence& sequence,
   return finder.Found();
 }
 
+FurtherEvidence InCamera(const PointEvidence& points) {
+  const auto cost_at = [points](const Landmark& in_camera) {
+    return std::make_unique<PointCost>(points.points, in_camera, points.size_m, points.options,
+                                       points.weight);
+  };
+  return {cost_at, Rigid3d()};
+}
+
 double PointWeight(const PointsOfObject& points, const PointOptions& options) {
   double expected = 0.0;
   for (const PointsInView& view : points) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "constraints/point_cost.h"
+#include "initialisation/object_evidence.h"
 #include "model/estimates.h"
 #include "model/map_points.h"
 #include "model/sequence.h"
@@ -27,6 +28,9 @@ using PointsOfObject = std::vector<PointsInView>;
 std::vector<PointsOfObject> FindObjectPoints(const Sequence& sequence,
                                              const std::vector<MapPoint>& points,
                                              const PointOptions& options);
+
+// Points in the camera that is the reference.
+FurtherEvidence InCamera(const PointEvidence& points);
 
 // Weight of each point of an object, so that all together have the expected weight of
 // options.effective_points at most.

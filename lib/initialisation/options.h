@@ -7,7 +7,7 @@
 #include "constraints/point_cost.h"
 #include "constraints/variances.h"
 #include "initialisation/cuboid_score.h"
-#include "initialisation/upright_observation.h"
+#include "initialisation/upright_options.h"
 #include "initialisation/yaw_prior.h"
 #include "model/semantic_table.h"
 

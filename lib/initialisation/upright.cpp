@@ -9,7 +9,9 @@
 namespace soslam {
 namespace {
 
-constexpr int kMaxIterations = 50;
+// With one box, whose minimum is a narrow valley along its ray, the last per cent of a free height
+// takes many.
+constexpr int kMaxIterations = 100;
 
 }  // namespace
 
@@ -24,14 +26,14 @@ Landmark UprightGround::LandmarkAt(const UprightVector& parameters,
                                    const ShapeExponents& shape_exponents,
                                    RestingFace rests_on) const {
   Landmark landmark;
-  landmark.half_axes = parameters.tail<3>().array().exp();
+  landmark.half_axes = parameters.segment<3>(3).array().exp();
   landmark.shape_exponents = shape_exponents;
   landmark.rests_on = rests_on;
   const double half_yaw = 0.5 * parameters[0];
   const Eigen::Quaterniond turn(std::cos(half_yaw), 0.0, 0.0, std::sin(half_yaw));
-  landmark.frame_from_object = {
-      (rotation * turn).normalized(),
-      origin + parameters[1] * x + parameters[2] * y + landmark.half_axes.z() * normal};
+  landmark.frame_from_object = {(rotation * turn).normalized(),
+                                origin + parameters[1] * x + parameters[2] * y +
+                                    (parameters[6] + landmark.half_axes.z()) * normal};
   return landmark;
 }
 
@@ -39,7 +41,8 @@ UprightVector UprightGround::ParametersOf(const Landmark& landmark) const {
   const Eigen::Vector3d from_origin = landmark.Centre() - origin;
   UprightVector parameters;
   parameters << Yaw(normal, landmark.frame_from_object.rotation), from_origin.dot(x),
-      from_origin.dot(y), landmark.half_axes.array().log().matrix();
+      from_origin.dot(y), landmark.half_axes.array().log().matrix(),
+      from_origin.dot(normal) - landmark.half_axes.z();
   return parameters;
 }
 
@@ -50,31 +53,26 @@ UprightJacobian UprightGround::ParameterJacobian(const Landmark& landmark) const
   jacobian.block<3, 1>(3, 2) = y;
   jacobian.block<3, 1>(3, 5) = landmark.half_axes.z() * normal;
   jacobian.block<3, 3>(6, 3).setIdentity();
-  return jacobian;
-}
-
-Eigen::Matrix<double, kLandmarkDof, 7> UprightGround::ParameterJacobianWithHeight(
-    const Landmark& landmark) const {
-  Eigen::Matrix<double, kLandmarkDof, 7> jacobian;
-  jacobian.setZero();
-  jacobian.leftCols<6>() = ParameterJacobian(landmark);
   jacobian.block<3, 1>(3, 6) = normal;
   return jacobian;
 }
 
 std::optional<UprightSolution> FitUpright(const Plane& plane, const Landmark& start,
-                                          const LandmarkCosts& costs, bool yaw_is_free) {
+                                          const LandmarkCosts& costs,
+                                          const UprightFreedom& is_free) {
   const UprightGround ground(plane);
   const auto landmark_at = [&](const UprightVector& at) {
     return ground.LandmarkAt(at, start.shape_exponents, start.rests_on);
   };
   const auto evaluate = [&](const UprightVector& at) {
     const Landmark landmark = landmark_at(at);
-    QuadraticModel<6> sum = ModelOf(costs, landmark).Chained(ground.ParameterJacobian(landmark));
-    if (!yaw_is_free) sum.Hold(0);
+    QuadraticModel<7> sum = ModelOf(costs, landmark).Chained(ground.ParameterJacobian(landmark));
+    if (!is_free.yaw) sum.Hold(0);
+    if (!is_free.height) sum.Hold(6);
     return sum;
   };
   UprightVector parameters = ground.ParametersOf(start);
+  if (!is_free.height) parameters[6] = 0.0;
   const double cost =
       MinimiseSquares(evaluate, {kMaxIterations, NegligibleDecrease(costs)}, &parameters).cost;
   if (!std::isfinite(cost) || !parameters.allFinite()) return std::nullopt;

@@ -5,7 +5,7 @@
 
 #include "base/parallel.h"
 #include "geometry/angles.h"
-#include "initialisation/multi_view.h"
+#include "initialisation/fit_object.h"
 #include "initialisation/options.h"
 #include "model/occlusion.h"
 
@@ -76,12 +76,12 @@ std::optional<YawPrior> MotionPrior(const Sequence& sequence, const Detection& d
   if (around.size() < kMinPriorViews || (shape && shape->attitude != Attitude::kStanding)) {
     return std::nullopt;
   }
-  MultiViewObservation views =
-      MakeMultiViewObservation(sequence, around, shape, options.upright.detection_sigma_fraction);
+  ObjectEvidence views =
+      EvidenceInWorld(sequence, around, shape, options.upright.detection_sigma_fraction);
   WeighViews(options.view_correlation_deg * kRadPerDeg, &views);
-  const auto optima = SweepViews(views, options.upright.yaw_grid_deg * kRadPerDeg);
+  const auto optima = ProfileOverYaw(views, options.upright.yaw_grid_deg * kRadPerDeg).Minima(1);
   if (optima.empty()) return std::nullopt;
-  const Eigen::Quaterniond& rotation = optima.front().landmark.frame_from_object.rotation;
+  const Eigen::Quaterniond& rotation = optima.front().frame_from_object.rotation;
   return AlongDirection(sequence, detection, rotation * Eigen::Vector3d::UnitX(),
                         options.yaw_prior.standing_sigma_deg * kRadPerDeg);
 }

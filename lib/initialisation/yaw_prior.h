@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/options.h"
-#include "initialisation/upright_observation.h"
+#include "constraints/landmark_terms.h"
 #include "model/sequence.h"
 #include "model/shape_prior.h"
 
@@ -55,7 +55,7 @@ struct InitialiseOptions;
 // Prior of each detection, with the frames' estimated poses; none if the source has no information.
 // kMotion: the direction of the straight line through the feet of the object, where the rays
 // through the centres of its boxes' lower edges meet their support planes; if the motion is shorter
-// than motion_min_m, the best yaw of SweepViews.
+// than motion_min_m, the yaw that fits its boxes best (ProfileOverYaw).
 std::vector<std::optional<YawPrior>> YawPriors(const Sequence& sequence,
                                                const std::vector<std::optional<ShapePrior>>& shapes,
                                                const InitialiseOptions& options, int threads);

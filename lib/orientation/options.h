@@ -8,7 +8,7 @@
 #include "constraints/point_cost.h"
 #include "constraints/symmetry.h"
 #include "constraints/variances.h"
-#include "initialisation/upright_observation.h"
+#include "initialisation/upright_options.h"
 #include "model/semantic_table.h"
 
 namespace soslam {

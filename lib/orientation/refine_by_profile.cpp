@@ -11,8 +11,9 @@
 
 #include "geometry/angles.h"
 #include "geometry/landmark.h"
+#include "initialisation/fit_object.h"
+#include "initialisation/object_points.h"
 #include "initialisation/yaw_prior.h"
-#include "initialisation/yaw_sweep.h"
 #include "model/occlusion.h"
 #include "orientation/refine_by_turning.h"
 #include "orientation/texture_asymmetry.h"
@@ -22,8 +23,6 @@ namespace {
 
 // Further hypotheses are far less likely.
 constexpr size_t kMaxHypotheses = 6;
-// The visible points of an object's edges depend on the landmark, so it is fitted twice.
-constexpr int kEdgeRounds = 2;
 
 // The orientation profile of an object that rests on one face.
 class OrientationProfile {
@@ -34,68 +33,70 @@ class OrientationProfile {
                      const std::optional<PointEvidence>& points)
       : options_(options),
         symmetry_options_(symmetry_options),
-        observation_(MakeUprightObservation(sequence, detection, prior, options.upright)),
-        edge_image_(std::make_shared<const EdgeImage>(
-            EdgeImage{edges, detection.box, BoxesInFront(sequence, detection)})),
+        camera_(sequence.CameraOf(detection)),
         symmetry_image_(edges->maps, detection.box),
-        asymmetry_(symmetry_image_, observation_.camera, options.texture, symmetry_options) {
-    observation_.points = points;
+        asymmetry_(symmetry_image_, camera_, options.texture, symmetry_options),
+        evidence_(EvidenceInCamera(sequence, detection, prior,
+                                   options.upright.detection_sigma_fraction)) {
+    evidence_.axes_weight = options.upright.axes_weight;
+    if (points) evidence_.further.push_back(InCamera(*points));
+    if (options.edge_alignment) {
+      const auto image = std::make_shared<const EdgeImage>(
+          EdgeImage{edges, detection.box, BoxesInFront(sequence, detection)});
+      evidence_.further.push_back({[this, image](const Landmark& in_camera) {
+                                     return std::make_unique<EdgeCost>(image, camera_, in_camera,
+                                                                       options_.edges);
+                                   },
+                                   Rigid3d()});
+    }
+    if (options.texture_symmetry) {
+      evidence_.compared_cost = [this](const Landmark& landmark, double /*limit*/) {
+        return asymmetry_.Cost(landmark);
+      };
+    }
   }
+  OrientationProfile(const OrientationProfile&) = delete;
+  OrientationProfile& operator=(const OrientationProfile&) = delete;
 
   // Without the observation's place in the sequence.
   RefinedObservation Refine() const {
     RefinedObservation result;
-    const YawObjective objective = Objective();
-    const YawSweep sweep =
-        SweepYaw(observation_, objective, options_.upright.yaw_grid_deg * kRadPerDeg);
-    std::vector<YawSweep::Optimum> optima;
-    for (const UprightSolution& optimum :
-         LocalOptima(observation_, objective, sweep, kMaxHypotheses)) {
-      result.estimate.hypotheses.push_back({optimum.landmark, optimum.cost});
-      optima.push_back({YawOf(optimum.landmark), optimum.cost});
+    const YawProfile profile =
+        ProfileOverYaw(evidence_, options_.upright.yaw_grid_deg * kRadPerDeg);
+    std::vector<YawProfile::Optimum> optima;
+    for (const ObjectFit& fit :
+         FitObject(evidence_, profile.Minima(kMaxHypotheses), {kMaxHypotheses, profile.Step()})) {
+      result.estimate.hypotheses.push_back({fit.landmark, fit.cost.total});
+      optima.push_back({YawOf(fit.landmark), fit.cost.total});
     }
     if (result.estimate.hypotheses.empty()) {
-      result.estimate.failure = WhyNoSolution(observation_);
+      result.estimate.failure = WhyNoSolution(evidence_);
       return result;
     }
     const Landmark& best = result.estimate.hypotheses.front().landmark_in_camera;
-    RecordCurves(sweep, &result.record);
+    RecordCurves(profile, &result.record);
     RecordPairs(best, &result.record);
     result.record.refined_yaw = YawOf(best);
     // The mirror plane of an object on its side is horizontal.
-    if (options_.texture_symmetry && observation_.prior.rests_on != RestingFace::kSide) {
+    if (options_.texture_symmetry && evidence_.RestsOn() != RestingFace::kSide) {
       result.record.mirror_planes =
-          MirrorPlanes(sweep.yaw, result.record.cost.at("texture_symmetry"),
+          MirrorPlanes(profile.yaw, result.record.cost.at("texture_symmetry"),
                        result.record.refined_yaw, options_.texture);
     }
-    result.record.yaw_sigma = sweep.StandardDeviation(optima);
+    result.record.yaw_sigma = profile.StandardDeviation(optima);
     return result;
   }
 
  private:
   double YawOf(const Landmark& landmark) const {
-    return Yaw(observation_.plane_in_camera.normal, landmark.frame_from_object.rotation);
-  }
-
-  YawObjective Objective() const {
-    YawObjective objective;
-    if (options_.edge_alignment) {
-      objective.fitted_costs = [this](const Landmark& start) { return EdgeCosts(start); };
-      objective.rounds = kEdgeRounds;
-    }
-    if (options_.texture_symmetry) {
-      objective.compared_cost = [this](const Landmark& landmark) {
-        return asymmetry_.Cost(landmark);
-      };
-    }
-    return objective;
+    return Yaw(evidence_.plane.normal, landmark.frame_from_object.rotation);
   }
 
   void RecordPairs(const Landmark& landmark, SymmetryRecord* record) const {
     const auto texture = asymmetry_.Find(landmark);
     if (!texture) return;
-    const SymmetryDescriptor descriptor(symmetry_options_.descriptor, symmetry_image_,
-                                        observation_.camera, InOwnAxes(landmark));
+    const SymmetryDescriptor descriptor(symmetry_options_.descriptor, symmetry_image_, camera_,
+                                        InOwnAxes(landmark));
     for (const Eigen::Vector2d& pixel : texture->pixels) {
       const auto pair = descriptor.Evaluate(pixel, std::nullopt, false, texture->mirror_plane);
       if (!pair) continue;  // at the border of the image, by rounding
@@ -104,33 +105,26 @@ class OrientationProfile {
     }
   }
 
-  void RecordCurves(const YawSweep& sweep, SymmetryRecord* record) const {
-    record->yaw = sweep.yaw;
-    record->cost["total"] = sweep.Costs();
+  void RecordCurves(const YawProfile& profile, SymmetryRecord* record) const {
+    record->yaw = profile.yaw;
+    record->cost["total"] = profile.Costs();
     const double none = std::numeric_limits<double>::quiet_NaN();
-    for (const auto& fit : sweep.fits) {
+    for (const auto& fit : profile.fits) {
       if (options_.edge_alignment) {
-        record->cost["edge_alignment"].push_back(fit ? fit->fitted_cost : none);
+        record->cost["edge_alignment"].push_back(fit ? fit->cost.further : none);
       }
       if (options_.texture_symmetry) {
-        record->cost["texture_symmetry"].push_back(fit ? fit->compared_cost : none);
+        record->cost["texture_symmetry"].push_back(fit ? fit->cost.compared : none);
       }
     }
   }
 
-  LandmarkCosts EdgeCosts(const Landmark& start) const {
-    LandmarkCosts costs;
-    costs.push_back(
-        std::make_unique<EdgeCost>(edge_image_, observation_.camera, start, options_.edges));
-    return costs;
-  }
-
   const ProfileOptions& options_;
   const SymmetryOptions& symmetry_options_;
-  UprightObservation observation_;
-  std::shared_ptr<const EdgeImage> edge_image_;
+  Camera camera_;
   SymmetryImage symmetry_image_;
   TextureAsymmetry asymmetry_;
+  ObjectEvidence evidence_;
 };
 
 // Joins the hypotheses of two faces; the record is that of the better one, if equal of the first.

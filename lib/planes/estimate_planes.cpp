@@ -9,6 +9,7 @@
 
 #include "base/parallel.h"
 #include "geometry/angles.h"
+#include "initialisation/fit_object.h"
 #include "planes/plane_heights.h"
 #include "planes/standing_body.h"
 
@@ -31,7 +32,7 @@ constexpr double kMaxHeightSigmaBySize = 1.0;
 
 // Expected cost of an object's boxes if they contain only their noise: half the degrees of freedom,
 // that is residuals of edges and, if used, two ratios minus the parameters of a body.
-double ExpectedCost(const MultiViewObservation& observation) {
+double ExpectedCost(const ObjectEvidence& observation) {
   constexpr double kParameters = 7.0;
   const double ratios = observation.ratio_is_free ? 0.0 : 2.0;
   double edges = 0.0;
@@ -82,11 +83,11 @@ class Estimator {
   }
 
  private:
-  std::optional<MultiViewObservation> Observe(const std::vector<int>& detections,
-                                              const std::optional<ShapePrior>& prior) const {
+  std::optional<ObjectEvidence> Observe(const std::vector<int>& detections,
+                                        const std::optional<ShapePrior>& prior) const {
     if (detections.empty() || (prior && prior->attitude == Attitude::kFree)) return std::nullopt;
-    MultiViewObservation observation =
-        MakeMultiViewObservation(sequence_, detections, prior, options_.detection_sigma_fraction);
+    ObjectEvidence observation =
+        EvidenceInWorld(sequence_, detections, prior, options_.detection_sigma_fraction);
     observation.height_is_free = true;
     WeighViews(options_.view_correlation_deg * kRadPerDeg, &observation);
     observation.huber_delta = options_.huber_delta;
@@ -157,7 +158,7 @@ class Estimator {
     for (const StandingBody& body : own_) {
       evidence.push_back(WithHeightNoise(EvidenceOf(body, pivot),
                                          HeightSigma(body, options_.height_sigma_fraction)));
-      heights.push_back(-body.observation.plane_in_world.SignedDistance(pivot));
+      heights.push_back(-body.evidence.plane.SignedDistance(pivot));
     }
     const PlaneHeights levels = ClusterPlaneHeights(
         evidence, heights, EvidenceOf(up_prior_, *reference), kMaxTilt, options_.new_plane_cost);
@@ -168,12 +169,12 @@ class Estimator {
     }
     for (size_t i = 0; i < own_.size(); ++i) {
       StandingBody& body = standing_.bodies[i];
-      const Plane own = body.observation.plane_in_world;
+      const Plane own = body.evidence.plane;
       const auto level = static_cast<size_t>(levels.level_of[i]);
       body.landmark =
           Moved(own, pivot, {levels.tilt.x(), levels.tilt.y(), levels.heights[level] - heights[i]},
                 body.landmark);
-      body.observation.plane_in_world = standing_.planes[level];
+      body.evidence.plane = standing_.planes[level];
     }
   }
 
@@ -259,12 +260,12 @@ class Estimator {
     support.reason = decides ? SupportReason::kOwnHeight : SupportReason::kLowestCost;
     for (size_t i = 0; i < planes.size(); ++i) {
       if (decides && support.plane_index != static_cast<int>(i)) continue;
-      MultiViewObservation observation = *observations_[index];
-      observation.plane_in_world = planes[i].plane_in_world;
+      ObjectEvidence observation = *observations_[index];
+      observation.plane = planes[i].plane_in_world;
       observation.height_is_free = false;
-      const auto solution = SolveViews(observation, kYawStep);
-      if (!solution || (support.cost && solution->cost >= *support.cost)) continue;
-      support.cost = solution->cost;
+      const auto fits = FitObject(observation, kYawStep, 1);
+      if (fits.empty() || (support.cost && fits.front().cost.total >= *support.cost)) continue;
+      support.cost = fits.front().cost.total;
       support.plane_index = static_cast<int>(i);
     }
     if (!decides && !support.cost) {
@@ -287,8 +288,8 @@ class Estimator {
   int threads_;
   UpPrior up_prior_;
   // Per object; none for an object without detections.
-  std::vector<std::optional<MultiViewObservation>> observations_;
-  std::vector<std::optional<MultiViewObservation>> sparse_;
+  std::vector<std::optional<ObjectEvidence>> observations_;
+  std::vector<std::optional<ObjectEvidence>> sparse_;
   // Objects that decide about planes, and their bodies, each on its own plane.
   std::vector<size_t> deciding_;
   std::vector<StandingBody> own_;

@@ -4,22 +4,22 @@
 #include <Eigen/Dense>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "base/levenberg_marquardt.h"
 #include "base/parallel.h"
+#include "initialisation/fit_object.h"
 #include "initialisation/upright.h"
 #include "planes/plane_heights.h"
 
 namespace soslam {
 namespace {
 
-// Iterations of FitWithHeight. With one box, whose minimum is a narrow valley along its ray, the
-// last per cent of the height is left to go.
-constexpr int kMaxHeightIterations = 100;
 // Information of a prior of all parameters of a body, as a share of the largest, for those that are
 // not observed (the yaw of a round body).
 constexpr double kPriorShare = 1e-9;
+constexpr size_t kAllMinima = std::numeric_limits<size_t>::max();
 
 Rigid3d MotionOf(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMotion& motion) {
   const Eigen::Quaterniond level = UprightRotation(plane.normal, 0.0);
@@ -40,31 +40,6 @@ Eigen::Matrix<double, kLandmarkDof, 3> MotionJacobian(const Plane& plane,
   return d_motion;
 }
 
-// The body near the given one that fits best, with the height of its plane free.
-std::optional<StandingBody> FitWithHeight(StandingBody body) {
-  using Parameters = Eigen::Matrix<double, 7, 1>;  // UprightVector, height of the foot (m)
-  Plane& plane = body.observation.plane_in_world;
-  const UprightGround ground(plane);
-  const LandmarkCosts outlines = OutlineTerms(body.observation);
-  const auto landmark_at = [&](const Parameters& at) {
-    Landmark landmark =
-        ground.LandmarkAt(at.head<6>(), body.landmark.shape_exponents, body.landmark.rests_on);
-    landmark.frame_from_object.translation += at[6] * plane.normal;
-    return landmark;
-  };
-  const auto linearise = [&](const Parameters& at) {
-    const Landmark landmark = landmark_at(at);
-    return ModelOf(outlines, landmark).Chained(ground.ParameterJacobianWithHeight(landmark));
-  };
-  Parameters parameters;
-  parameters << ground.ParametersOf(body.landmark), 0.0;
-  const double cost = MinimiseSquares(linearise, {kMaxHeightIterations}, &parameters).cost;
-  if (!std::isfinite(cost) || !parameters.allFinite()) return std::nullopt;
-  body.landmark = landmark_at(parameters);
-  plane.offset -= parameters[6];
-  return body;
-}
-
 }  // namespace
 
 Plane Moved(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMotion& motion) {
@@ -77,18 +52,18 @@ Landmark Moved(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMoti
 }
 
 std::optional<StandingBody> FitOnPlane(StandingBody body) {
-  const auto fitted = FitUpright(body.observation.plane_in_world, body.landmark,
-                                 OutlineTerms(body.observation), /*yaw_is_free=*/true);
+  const auto fitted = FitUpright(body.evidence.plane, body.landmark, OutlineCosts(body.evidence));
   if (!fitted) return std::nullopt;
   body.landmark = fitted->landmark;
   return body;
 }
 
 PlaneEvidence EvidenceOf(const StandingBody& body, const Eigen::Vector3d& pivot) {
-  const Plane& plane = body.observation.plane_in_world;
+  const Plane& plane = body.evidence.plane;
   const auto d_motion = MotionJacobian(plane, pivot, body.landmark);
-  const UprightJacobian d_upright = UprightGround(plane).ParameterJacobian(body.landmark);
-  const LandmarkCosts outlines = OutlineTerms(body.observation);
+  const Eigen::Matrix<double, kLandmarkDof, 6> d_upright =  // at a fixed height
+      UprightGround(plane).ParameterJacobian(body.landmark).leftCols<6>();
+  const LandmarkCosts outlines = OutlineCosts(body.evidence);
   const LandmarkModel model = ModelOf(outlines, body.landmark);
   QuadraticModel<6> of_body = model.Chained(d_upright);
   of_body.information.diagonal().array() += kPriorShare * of_body.information.diagonal().maxCoeff();
@@ -103,26 +78,20 @@ PlaneEvidence EvidenceOf(const StandingBody& body, const Eigen::Vector3d& pivot)
   return evidence;
 }
 
-std::optional<StandingBody> FitBodyAtFreeHeight(MultiViewObservation observation,
+std::optional<StandingBody> FitBodyAtFreeHeight(ObjectEvidence evidence,
                                                 const Eigen::Vector3d& normal_in_world,
                                                 double step) {
-  observation.plane_in_world = {normal_in_world, 0.0};
-  observation.height_is_free = true;
-  const auto optima = SweepViews(observation, step);
-  observation.height_is_free = false;
-  std::optional<StandingBody> best;
-  double lowest = 0.0;
-  for (const UprightSolution& optimum : optima) {
-    observation.plane_in_world.offset = SupportPlaneOf(optimum.landmark).offset;
-    const auto body = FitWithHeight({observation, optimum.landmark});
-    if (!body) continue;
-    const PlaneEvidence evidence = EvidenceOf(*body, body->landmark.Centre());
-    const bool is_determined = evidence.information(2, 2) > 0.0;
-    if (!is_determined || (best && evidence.cost >= lowest)) continue;
-    best = body;
-    lowest = evidence.cost;
+  evidence.plane = {normal_in_world, 0.0};
+  evidence.height_is_free = true;
+  const auto fits = FitObject(evidence, ProfileOverYaw(evidence, step).Minima(kAllMinima),
+                              {.max_hypotheses = kAllMinima});
+  evidence.height_is_free = false;
+  for (const ObjectFit& fit : fits) {
+    evidence.plane.offset = SupportPlaneOf(fit.landmark).offset;
+    const StandingBody body{evidence, fit.landmark};
+    if (EvidenceOf(body, fit.landmark.Centre()).information(2, 2) > 0.0) return body;
   }
-  return best;
+  return std::nullopt;
 }
 
 namespace {
@@ -172,7 +141,7 @@ std::optional<StandingBodies> Stepped(const StandingBodies& standing, const Eige
     const int plane = standing.plane_of[index];
     StandingBody body = standing.bodies[index];
     body.landmark = Moved(standing.planes[plane], pivot, MotionOfPlane(step, plane), body.landmark);
-    body.observation.plane_in_world = stepped.planes[plane];
+    body.evidence.plane = stepped.planes[plane];
     settled[index] = FitOnPlane(std::move(body));
   });
   for (size_t i = 0; i < settled.size(); ++i) {
@@ -201,8 +170,7 @@ double HeightSigma(const StandingBody& body, double height_sigma_fraction) {
 Eigen::Vector3d MeanBasePoint(const std::vector<StandingBody>& bodies) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const StandingBody& body : bodies) {
-    sum += body.landmark.Centre() -
-           body.landmark.half_axes.z() * body.observation.plane_in_world.normal;
+    sum += body.landmark.Centre() - body.landmark.half_axes.z() * body.evidence.plane.normal;
   }
   return sum / static_cast<double>(bodies.size());
 }

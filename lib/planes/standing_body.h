@@ -8,7 +8,7 @@
 #include "base/quadratic_model.h"
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
-#include "initialisation/multi_view.h"
+#include "initialisation/object_evidence.h"
 #include "planes/up_prior.h"
 
 namespace soslam {
@@ -27,7 +27,7 @@ using PlaneEvidence = QuadraticModel<3>;
 
 // The boxes of an object and the body on a plane that fits them best.
 struct StandingBody {
-  MultiViewObservation observation;  // plane_in_world: the plane that it stands on
+  ObjectEvidence evidence;  // plane: the one that it stands on
   Landmark landmark;
 };
 
@@ -39,7 +39,7 @@ PlaneEvidence EvidenceOf(const StandingBody& body, const Eigen::Vector3d& pivot)
 
 // The best body on a plane with this normal and free height, over all yaws in steps of `step`
 // (rad). None when the views do not determine its height.
-std::optional<StandingBody> FitBodyAtFreeHeight(MultiViewObservation observation,
+std::optional<StandingBody> FitBodyAtFreeHeight(ObjectEvidence observation,
                                                 const Eigen::Vector3d& normal_in_world,
                                                 double step);
 

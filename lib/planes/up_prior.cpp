@@ -11,6 +11,7 @@
 #include "constraints/loss.h"
 #include "geometry/angles.h"
 #include "geometry/landmark.h"
+#include "initialisation/fit_object.h"
 #include "initialisation/view_weights.h"
 
 namespace soslam {
@@ -218,7 +219,7 @@ constexpr double kBetweenStarts = 1.6 * kTiltStep;
 constexpr double kYawStepOfSearch = 6.0 * kRadPerDeg;
 
 double CostOf(const Eigen::Vector3d& up, const UpPrior& up_prior,
-              const std::vector<std::optional<MultiViewObservation>>& observations) {
+              const std::vector<std::optional<ObjectEvidence>>& observations) {
   double cost = 0.5 * up.dot(up_prior.information * up);
   for (const auto& observation : observations) {
     if (observation) cost += CostOfUprightBody(up, *observation).value_or(kCostWithoutBody);
@@ -265,14 +266,17 @@ std::vector<Eigen::Vector3d> LowestApart(const std::vector<Eigen::Vector3d>& dir
 }
 
 std::optional<double> CostOfUprightBody(const Eigen::Vector3d& up_in_world,
-                                        MultiViewObservation observation) {
-  observation.plane_in_world = {up_in_world, 0.0};
-  const auto optima = SweepViews(observation, kYawStepOfSearch);
-  return optima.empty() ? std::nullopt : std::optional(optima.front().cost);
+                                        ObjectEvidence observation) {
+  observation.plane = {up_in_world, 0.0};
+  std::optional<double> lowest;
+  for (const auto& fit : ProfileOverYaw(observation, kYawStepOfSearch).fits) {
+    if (fit && !(lowest && *lowest <= fit->cost.total)) lowest = fit->cost.total;
+  }
+  return lowest;
 }
 
 std::vector<Eigen::Vector3d> SearchUp(
-    const UpPrior& up_prior, const std::vector<std::optional<MultiViewObservation>>& observations,
+    const UpPrior& up_prior, const std::vector<std::optional<ObjectEvidence>>& observations,
     int threads) {
   const std::vector<Eigen::Vector3d> candidates = UpDirections(up_prior, kTiltStep);
   std::vector<double> costs(candidates.size());

@@ -8,7 +8,7 @@
 #include "geometry/camera.h"
 #include "geometry/rigid3.h"
 #include "image/edge_maps.h"
-#include "initialisation/multi_view.h"
+#include "initialisation/object_evidence.h"
 #include "model/sequence.h"
 #include "planes/camera_holding.h"
 
@@ -83,13 +83,13 @@ inline constexpr double kCostWithoutBody = 1e4;
 
 // Cost of an object's boxes with the best upright body of free height; none when there is none.
 std::optional<double> CostOfUprightBody(const Eigen::Vector3d& up_in_world,
-                                        MultiViewObservation observation);
+                                        ObjectEvidence observation);
 
 // Local minima of up, among the directions that the cameras allow, in which upright bodies of free
 // height fit the boxes best, lowest cost first. There are several minima, because bodies may stand
 // on another of their axes. `observations`: per object; none for objects that do not take part.
 std::vector<Eigen::Vector3d> SearchUp(
-    const UpPrior& up_prior, const std::vector<std::optional<MultiViewObservation>>& observations,
+    const UpPrior& up_prior, const std::vector<std::optional<ObjectEvidence>>& observations,
     int threads);
 
 // world_from_camera of each view.

@@ -15,8 +15,8 @@ class BoxLikelihoodTest : public testing::Test {
     options_.cut_edge_probability = 0.0;
     detections_ = DetectionsByObject(sequence_)[0];
     const std::vector<int> first(detections_.begin(), detections_.begin() + 3);
-    object_ = *FitObject(sequence_, first, *UnknowingTable().default_prior, options_,
-                         sequence_.planes[0].plane_in_world);
+    object_ = *FitTrack(sequence_, first, *UnknowingTable().default_prior, options_,
+                        sequence_.planes[0].plane_in_world);
     expected_ = sequence_.detections[detections_[3]];
     expected_.box = Predicted(0).outline;
   }
@@ -141,8 +141,8 @@ TEST(BoxLikelihoodCalibrationTest, DistancesAreInStandardDeviations) {
     for (const std::vector<int>& of_object : DetectionsByObject(sequence)) {
       if (of_object.size() < 4) continue;
       const std::vector<int> first(of_object.begin(), of_object.begin() + 3);
-      const auto object = FitObject(sequence, first, {{1.0, 1.0}, {0.7, 0.7}, kCuboidExponent},
-                                    options, sequence.planes[0].plane_in_world);
+      const auto object = FitTrack(sequence, first, {{1.0, 1.0}, {0.7, 0.7}, kCuboidExponent},
+                                   options, sequence.planes[0].plane_in_world);
       if (!object) continue;
       const Detection& next = sequence.detections[of_object[3]];
       const auto prediction = likelihood.Predict(*object, next.frame_index, next.frame_index);

@@ -22,7 +22,7 @@ LandmarkCosts BoxAndRatio(const std::array<BoxEdge, 4>& edges, const ShapePrior&
 Landmark DisturbedFootAndSize(const Landmark& landmark, const Plane& plane) {
   UprightVector parameters = UprightGround(plane).ParametersOf(landmark);
   parameters.segment<2>(1) += 0.2 * RandomVector(-1, 1).head<2>();
-  parameters.tail<3>() += RandomVector(-0.2, 0.2);
+  parameters.segment<3>(3) += RandomVector(-0.2, 0.2);
   return UprightGround(plane).LandmarkAt(parameters, landmark.shape_exponents);
 }
 
@@ -34,8 +34,8 @@ TEST(FitUpright, FindsTheBodyOfAnExactBoxAtItsYaw) {
     for (int i = 0; i < 20; ++i) {
       const ObservedBody body(p);
       const Landmark start = DisturbedFootAndSize(body.truth, body.plane);
-      const auto terms = BoxAndRatio(body.observation.edges, body.observation.prior, start);
-      const auto solution = FitUpright(body.plane, start, terms, /*yaw_is_free=*/false);
+      const auto terms = BoxAndRatio(body.evidence.views[0].edges, *body.evidence.prior, start);
+      const auto solution = FitUpright(body.plane, start, terms, {.yaw = false});
       ASSERT_TRUE(solution);
       EXPECT_LT(solution->cost, kCostTolerance) << p;
       EXPECT_TRUE(IsSameBody(solution->landmark, body.truth, 2e-3)) << p;
@@ -46,12 +46,12 @@ TEST(FitUpright, FindsTheBodyOfAnExactBoxAtItsYaw) {
 TEST(FitUpright, LowersTheCostThatItReportsAndKeepsWhatItIsTold) {
   for (int i = 0; i < 100; ++i) {
     const ObservedBody body(RandomUniform(1, 2));
-    const auto edges = body.Observe(Disturbed(body.box, 0.05)).edges;
+    const auto edges = body.Observe(Disturbed(body.box, 0.05)).views[0].edges;
     const Landmark start =
         RotatedAboutZ(DisturbedFootAndSize(body.truth, body.plane), RandomUniform(-0.5, 0.5));
-    const auto terms = BoxAndRatio(edges, body.observation.prior, start);
+    const auto terms = BoxAndRatio(edges, *body.evidence.prior, start);
     for (const bool yaw_is_free : {false, true}) {
-      const auto solution = FitUpright(body.plane, start, terms, yaw_is_free);
+      const auto solution = FitUpright(body.plane, start, terms, {.yaw = yaw_is_free});
       ASSERT_TRUE(solution);
       const Landmark& landmark = solution->landmark;
       EXPECT_NEAR(solution->cost, TotalCost(terms, landmark), 1e-9 * (1.0 + solution->cost));

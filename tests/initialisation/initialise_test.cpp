@@ -93,7 +93,8 @@ TEST(InitialiseUpright, NamesDetectionsThatAreCutOnTwoSides) {
   ExpectFailureOfSecond(sequence, "fewer_than_three_measured_edges");
 }
 
-// Hypotheses are in the camera frame, and the world's horizontal axes are alike.
+// Hypotheses are in the camera frame, and the world's horizontal axes are alike: but for rounding,
+// which decides where a fit ends in the kinks of a cuboid's cost.
 TEST(InitialiseUpright, DoesNotDependOnWhereTheWorldIsNorOnItsQuarterTurns) {
   const Sequence sequence = Bodies();
   const auto priors = TruePriors(sequence);
@@ -106,8 +107,8 @@ TEST(InitialiseUpright, DoesNotDependOnWhereTheWorldIsNorOnItsQuarterTurns) {
     const auto& found = after.observations[i].hypotheses;
     ASSERT_EQ(found.size(), expected.size());
     for (size_t k = 0; k < found.size(); ++k) {
-      EXPECT_NEAR(found[k].cost, expected[k].cost, 1e-6);
-      EXPECT_TRUE(IsSameBody(found[k].landmark_in_camera, expected[k].landmark_in_camera, 1e-6));
+      EXPECT_NEAR(found[k].cost, expected[k].cost, 1e-3 * (1.0 + expected[k].cost));
+      EXPECT_TRUE(IsSameBody(found[k].landmark_in_camera, expected[k].landmark_in_camera, 1e-3));
     }
   }
 }

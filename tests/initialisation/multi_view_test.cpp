@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "initialisation/multi_view.h"
-
 #include <gtest/gtest.h>
 
 #include "geometry/angles.h"
 #include "geometry/iou.h"
+#include "initialisation/body_at_yaw.h"
+#include "initialisation/fit_object.h"
 #include "initialisation/initialise.h"
 #include "support/cuboid_map.h"
 #include "support/one_body.h"
@@ -38,9 +38,8 @@ struct World {
             {log_sigma, log_sigma},
             truth.shape_exponents};
   }
-  MultiViewObservation Observation(const std::optional<ShapePrior>& prior) const {
-    return MakeMultiViewObservation(sequence, DetectionsByObject(sequence)[0], prior,
-                                    kSigmaFraction);
+  ObjectEvidence Evidence(const std::optional<ShapePrior>& prior) const {
+    return EvidenceInWorld(sequence, DetectionsByObject(sequence)[0], prior, kSigmaFraction);
   }
   double TrueYaw() const { return Yaw(Eigen::Vector3d::UnitZ(), truth.frame_from_object.rotation); }
 
@@ -55,130 +54,131 @@ void ExpectSame(const Landmark& found, const Landmark& expected, double toleranc
 }
 
 // Expects the true body from the views at its yaw.
-void ExpectTruth(const World& world, const MultiViewObservation& observation,
-                 double tolerance = 1e-4) {
-  const auto found = SolveViewsAtYaw(observation, world.TrueYaw());
+void ExpectTruth(const World& world, const ObjectEvidence& evidence, double tolerance = 1e-4) {
+  const auto found = BodyAtYaw(evidence).Solve(world.TrueYaw());
   ASSERT_TRUE(found);
-  ExpectSame(found->landmark, world.truth, tolerance);
-  EXPECT_LT(found->cost, tolerance);
+  ExpectSame(*found, world.truth, tolerance);
+  EXPECT_LT(CostOf(evidence, *found).total, tolerance);
 }
 
 // The plane is given one metre too low.
 TEST(WeighViews, APlaneCountsOnlyWhereItsHeightIsKnown) {
   const World world(kCuboidExponent, Arc(5));
   const auto weights_at = [&](double offset, bool height_is_free) {
-    MultiViewObservation observation = world.Observation(world.Prior(0.3));
-    observation.plane_in_world.offset = offset;
-    observation.height_is_free = height_is_free;
-    WeighViews(0.3, &observation);
+    ObjectEvidence evidence = world.Evidence(world.Prior(0.3));
+    evidence.plane.offset = offset;
+    evidence.height_is_free = height_is_free;
+    WeighViews(0.3, &evidence);
     std::vector<double> weights;
-    for (const BoxView& view : observation.views) weights.push_back(view.weight);
+    for (const BoxView& view : evidence.views) weights.push_back(view.weight);
     return weights;
   };
   EXPECT_EQ(weights_at(0.0, true), weights_at(3.0, true));
   EXPECT_NE(weights_at(0.0, false), weights_at(3.0, false));
 }
 
-TEST(SolveViewsAtYaw, FindsTheHeightOfTheFootWhereItIsFree) {
+TEST(BodyAtYaw, FindsTheHeightOfTheFootWhereItIsFree) {
   for (const double exponent : {kCuboidExponent, 1.4, kEllipsoidExponent}) {
     World world(exponent, Arc(8));
-    MultiViewObservation observation = world.Observation(world.Prior(0.2));
-    observation.plane_in_world.offset += 1.0;
-    observation.height_is_free = true;
-    ExpectTruth(world, observation, 1e-3);
+    ObjectEvidence evidence = world.Evidence(world.Prior(0.2));
+    evidence.plane.offset += 1.0;
+    evidence.height_is_free = true;
+    ExpectTruth(world, evidence, 1e-3);
   }
 }
 
 // How high a body is says how far away it is, also where the camera was in one place only.
-TEST(SolveViewsAtYaw, AKnownSizeTellsDepthFromOneBox) {
+TEST(BodyAtYaw, AKnownSizeTellsDepthFromOneBox) {
   World world(kCuboidExponent, {LookingAt({4, 0, 1.6}, {0, 0, 0.4})});
-  MultiViewObservation observation = world.Observation(world.Prior(0.02));
-  observation.height_is_free = true;
-  EXPECT_FALSE(SolveViewsAtYaw(observation, world.TrueYaw()));
-  observation.prior->height_m = LogNormal{2.0 * world.truth.half_axes.z(), 0.02};
-  EXPECT_FALSE(SolveViewsAtYaw(observation, world.TrueYaw()));
-  observation.size_is_known = true;
-  ExpectTruth(world, observation, 1e-3);
+  ObjectEvidence evidence = world.Evidence(world.Prior(0.02));
+  evidence.height_is_free = true;
+  EXPECT_FALSE(BodyAtYaw(evidence).Solve(world.TrueYaw()));
+  evidence.prior->height_m = LogNormal{2.0 * world.truth.half_axes.z(), 0.02};
+  EXPECT_FALSE(BodyAtYaw(evidence).Solve(world.TrueYaw()));
+  evidence.size_is_known = true;
+  ExpectTruth(world, evidence, 1e-3);
 }
 
 // The grid of yaws is no coarser or finer, and begins nowhere else, in a world that is turned.
-TEST(SweepViews, TurnsAlongWithTheWorld) {
+TEST(ProfileOverYaw, TurnsAlongWithTheWorld) {
   for (int i = 0; i < 20; ++i) {
     World world(1.1, Arc(5));
-    const auto optima = SweepViews(world.Observation(world.Prior(0.3)), 10.0 * kRadPerDeg);
+    const auto optima =
+        ProfileOverYaw(world.Evidence(world.Prior(0.3)), 10.0 * kRadPerDeg).Minima(1);
     const Rigid3d turn{
         Eigen::Quaterniond(Eigen::AngleAxisd(RandomUniform(-3, 3), Eigen::Vector3d::UnitZ())),
         {RandomUniform(-5, 5), RandomUniform(-5, 5), 0.0}};
     for (Frame& frame : world.sequence.frames) {
       frame.world_from_camera = turn * frame.world_from_camera;
     }
-    const auto turned = SweepViews(world.Observation(world.Prior(0.3)), 10.0 * kRadPerDeg);
+    const auto turned =
+        ProfileOverYaw(world.Evidence(world.Prior(0.3)), 10.0 * kRadPerDeg).Minima(1);
     ASSERT_FALSE(optima.empty());
     ASSERT_EQ(turned.size(), optima.size());
     for (size_t k = 0; k < optima.size(); ++k) {
-      const Landmark expected = Transform(turn, optima[k].landmark);
-      ExpectSame(turned[k].landmark, expected, 1e-6);
-      EXPECT_LT(turned[k].landmark.frame_from_object.rotation.angularDistance(
-                    expected.frame_from_object.rotation),
-                1e-6);
+      const Landmark expected = Transform(turn, optima[k]);
+      ExpectSame(turned[k], expected, 1e-6);
+      EXPECT_LT(
+          turned[k].frame_from_object.rotation.angularDistance(expected.frame_from_object.rotation),
+          1e-6);
     }
   }
 }
 
-TEST(SolveViewsAtYaw, RecoversTheBodyFromExactBoxes) {
+TEST(BodyAtYaw, RecoversTheBodyFromExactBoxes) {
   for (const ShapeExponents& p : kShapeExponents) {
     SCOPED_TRACE(p);
     for (int i = 0; i < 20; ++i) {
       const World world(p, Arc(6));
-      ExpectTruth(world, world.Observation(world.Prior(0.3)));
+      ExpectTruth(world, world.Evidence(world.Prior(0.3)));
     }
   }
 }
 
-TEST(SolveViewsAtYaw, FindsTheRatioOfACuboidWithoutAPrior) {
+TEST(BodyAtYaw, FindsTheRatioOfACuboidWithoutAPrior) {
   for (int i = 0; i < 20; ++i) {
     const World world(kCuboidExponent, Arc(6));
-    ExpectTruth(world, world.Observation(std::nullopt));
+    ExpectTruth(world, world.Evidence(std::nullopt));
   }
 }
 
-TEST(SolveViewsAtYaw, IsNotMisledByOneWrongBox) {
+TEST(BodyAtYaw, IsNotMisledByOneWrongBox) {
   World world(kCuboidExponent, Arc(12));
   world.sequence.detections[5].box.x_max += 150.0;
   world.sequence.detections[5].box.y_min -= 80.0;
-  const auto found = SolveViewsAtYaw(world.Observation(world.Prior(0.3)), world.TrueYaw());
+  const auto found = BodyAtYaw(world.Evidence(world.Prior(0.3))).Solve(world.TrueYaw());
   ASSERT_TRUE(found);
-  EXPECT_GT(BoxIou(found->landmark, world.truth), 0.9);
+  EXPECT_GT(BoxIou(*found, world.truth), 0.9);
 }
 
-TEST(SolveViewsAtYaw, LetsTheBodyReachBeyondOneSidedEdges) {
+TEST(BodyAtYaw, LetsTheBodyReachBeyondOneSidedEdges) {
   World world(kCuboidExponent, Arc(8));
   for (Detection& detection : world.sequence.detections) {
     detection.box.y_max -= 0.3 * detection.box.Height();
   }
   const auto taken_for_measured =
-      SolveViewsAtYaw(world.Observation(world.Prior(0.3)), world.TrueYaw());
-  EXPECT_TRUE(!taken_for_measured || BoxIou(taken_for_measured->landmark, world.truth) < 0.95);
+      BodyAtYaw(world.Evidence(world.Prior(0.3))).Solve(world.TrueYaw());
+  EXPECT_TRUE(!taken_for_measured || BoxIou(*taken_for_measured, world.truth) < 0.95);
   for (Detection& detection : world.sequence.detections) detection.is_one_sided[3] = true;
-  ExpectTruth(world, world.Observation(world.Prior(0.3)));
+  ExpectTruth(world, world.Evidence(world.Prior(0.3)));
 }
 
-TEST(SolveViewsAtYaw, IsExactWithBoxesOfAKnownBias) {
+TEST(BodyAtYaw, IsExactWithBoxesOfAKnownBias) {
   World world(kCuboidExponent, Arc(8));
   for (Detection& detection : world.sequence.detections) {
     detection.box.y_max -= 0.2 * detection.box.Height();
   }
   ShapePrior prior = world.Prior(0.3);
   prior.edge_bias = {0.0, 0.0, 0.0, -0.25};  // of the height that is left
-  ExpectTruth(world, world.Observation(prior));
+  ExpectTruth(world, world.Evidence(prior));
 }
 
-TEST(SolveViews, PolishesTheYaw) {
+TEST(FitObject, PolishesTheYaw) {
   for (int i = 0; i < 10; ++i) {
     World world(kCuboidExponent, Arc(8));
-    const auto found = SolveViews(world.Observation(world.Prior(0.05)), 3.0 * kRadPerDeg);
-    ASSERT_TRUE(found);
-    EXPECT_GT(BoxIou(found->landmark, world.truth), 0.97);
+    const auto found = FitObject(world.Evidence(world.Prior(0.05)), 3.0 * kRadPerDeg, 1);
+    ASSERT_FALSE(found.empty());
+    EXPECT_GT(BoxIou(found.front().landmark, world.truth), 0.97);
   }
 }
 

@@ -14,7 +14,7 @@ TEST(UprightLandmark, HasTheGivenYawFootAndHalfAxesAndTellsThem) {
     const UprightVector parameters = RandomUprightParameters();
     const Landmark landmark = UprightGround(plane).LandmarkAt(parameters, 1.5);
     EXPECT_NEAR(Yaw(plane.normal, landmark.frame_from_object.rotation), parameters(0), 1e-12);
-    EXPECT_LT((landmark.half_axes.array() - parameters.tail<3>().array().exp()).matrix().norm(),
+    EXPECT_LT((landmark.half_axes.array() - parameters.segment<3>(3).array().exp()).matrix().norm(),
               1e-12);
     // The foot, from the point of the plane that is nearest to the origin.
     const Eigen::Vector3d foot =
@@ -46,7 +46,7 @@ TEST(UprightByParameters, AgreesWithNumbers) {
       return tangent;
     };
     const UprightJacobian jacobian = UprightGround(plane).ParameterJacobian(landmark);
-    for (int k = 0; k < 6; ++k) {
+    for (int k = 0; k < 7; ++k) {
       const LandmarkStep numeric = (8.0 * (moved(k, kStep) - moved(k, -kStep)) -
                                     (moved(k, 2.0 * kStep) - moved(k, -2.0 * kStep))) /
                                    (12.0 * kStep);

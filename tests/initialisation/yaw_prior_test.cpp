@@ -5,7 +5,7 @@
 
 #include "geometry/angles.h"
 #include "initialisation/initialise.h"
-#include "initialisation/upright_observation.h"
+#include "initialisation/object_evidence.h"
 
 namespace soslam {
 namespace {

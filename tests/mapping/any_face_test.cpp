@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "association/fit_object.h"
+#include "association/fit_track.h"
 #include "evaluation/landmark_errors.h"
 #include "evaluation/statistics.h"
 #include "geometry/angles.h"
@@ -126,7 +126,7 @@ TEST(AnyFace, SeveralViewsAloneTellTheFace) {
     EXPECT_EQ(of_views.objects[0].landmark_in_world.value().rests_on, face);
     std::vector<int> all(sequence.detections.size());
     std::iota(all.begin(), all.end(), 0);
-    const auto fitted = FitObject(sequence, all, prior, AssociateOptions(), Plane());
+    const auto fitted = FitTrack(sequence, all, prior, AssociateOptions(), Plane());
     ASSERT_TRUE(fitted);
     EXPECT_EQ(fitted->landmark_in_world.rests_on, face);
     EXPECT_LT(AttitudeError(fitted->landmark_in_world, truth), 1.0 * kRadPerDeg);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "geometry/angles.h"
+#include "initialisation/fit_object.h"
 #include "planes/plane_heights.h"
 #include "planes/standing_body.h"
 #include "support/random.h"
@@ -203,12 +204,12 @@ TEST(WithHeightNoise, AddsTheVariances) {
 constexpr double kStep = 3.0 * kRadPerDeg;
 
 // An object of a random scene with noisy boxes.
-MultiViewObservation RandomObservation(int seed, bool noise = true) {
+ObjectEvidence RandomEvidence(int seed, bool noise = true) {
   Scene scene = RandomScene(seed, 1, 12, {Shape::kBox});
   scene.noise.box_edge_sigma = 0.02;
   const Sequence sequence = SyntheticSequence(scene, noise);
-  return MakeMultiViewObservation(sequence, DetectionsByObject(sequence)[0],
-                                  TrueCuboidPriors(sequence, 0.1)[0], 0.02);
+  return EvidenceInWorld(sequence, DetectionsByObject(sequence)[0],
+                         TrueCuboidPriors(sequence, 0.1)[0], 0.02);
 }
 
 // After a body is carried along, it is as upright on its plane as before.
@@ -216,7 +217,7 @@ TEST(Moved, KeepsBodiesOnTheirPlanes) {
   for (int i = 0; i < 20; ++i) {
     const Plane plane = RandomPlane();
     UprightVector parameters;
-    parameters << RandomUniform(-3, 3), RandomVector(-2, 2).head<2>(), RandomVector(-1, 1);
+    parameters << RandomUniform(-3, 3), RandomVector(-2, 2).head<2>(), RandomVector(-1, 1), 0.0;
     const Landmark landmark = UprightGround(plane).LandmarkAt(parameters, kCuboidExponent);
     const Eigen::Vector3d pivot = RandomVector(-3, 3);
     const PlaneMotion motion = RandomVector(-0.5, 0.5);
@@ -240,13 +241,13 @@ TEST(EvidenceOf, IsHowTheBestCostChanges) {
   for (int trial = 0; trial < 10; ++trial) {
     SCOPED_TRACE(trial);
     const bool noise = trial % 2 == 0;
-    MultiViewObservation observation = RandomObservation(trial / 2, noise);
-    observation.huber_delta = 1e6;
-    const auto start = SolveViews(observation, kStep);
-    ASSERT_TRUE(start);
+    ObjectEvidence evidence = RandomEvidence(trial / 2, noise);
+    evidence.huber_delta = 1e6;
+    const auto start = FitObject(evidence, kStep, 1);
+    ASSERT_FALSE(start.empty());
     const auto at = [&](const PlaneMotion& motion) {
-      StandingBody body{observation, Moved(Plane(), pivot, motion, start->landmark)};
-      body.observation.plane_in_world = Moved(Plane(), pivot, motion);
+      StandingBody body{evidence, Moved(Plane(), pivot, motion, start.front().landmark)};
+      body.evidence.plane = Moved(Plane(), pivot, motion);
       return EvidenceOf(*FitOnPlane(body), pivot);
     };
     const PlaneEvidence here = at(PlaneMotion::Zero());
@@ -267,9 +268,9 @@ TEST(FitBodyAtFreeHeight, FindsHeightAndBodyFromExactBoxes) {
   for (int seed = 0; seed < 6; ++seed) {
     SCOPED_TRACE(seed);
     const auto body =
-        FitBodyAtFreeHeight(RandomObservation(seed, false), Eigen::Vector3d::UnitZ(), kStep);
+        FitBodyAtFreeHeight(RandomEvidence(seed, false), Eigen::Vector3d::UnitZ(), kStep);
     ASSERT_TRUE(body);
-    EXPECT_NEAR(body->observation.plane_in_world.offset, 0.0, 0.005);
+    EXPECT_NEAR(body->evidence.plane.offset, 0.0, 0.005);
     EXPECT_LT(EvidenceOf(*body, body->landmark.Centre()).cost, 0.01);
   }
 }

@@ -5,10 +5,11 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
-#include "initialisation/closed_form.h"
-#include "initialisation/yaw_sweep.h"
+#include "initialisation/body_at_yaw.h"
+#include "initialisation/object_evidence.h"
 #include "support/drawn_cuboids.h"
 #include "support/random.h"
 #include "support/shape_exponents.h"
@@ -21,7 +22,8 @@ inline double RandomYaw() { return RandomUniform(-3.1, 3.1); }
 
 inline UprightVector RandomUprightParameters() {
   UprightVector parameters;
-  parameters << RandomYaw(), RandomUniform(-3, 3), RandomUniform(-3, 3), RandomVector(-2.0, 0.5);
+  parameters << RandomYaw(), RandomUniform(-3, 3), RandomUniform(-3, 3), RandomVector(-2.0, 0.5),
+      RandomUniform(-1, 1);
   return parameters;
 }
 
@@ -53,46 +55,43 @@ inline ShapePrior PriorOf(const Landmark& landmark, double log_sigma) {
           Eigen::Vector2d::Constant(log_sigma), landmark.shape_exponents};
 }
 
-inline UprightObservation ObservationOf(const Box& box, const std::array<bool, 4>& is_one_sided,
-                                        const Plane& floor, const ShapePrior& prior) {
-  UprightObservation observation;
-  observation.camera = TestCamera();
-  observation.edges = BoxEdges(observation.camera, box, is_one_sided, kDetectionSigmaFraction);
-  observation.plane_in_camera = floor;
-  observation.prior = prior;
-  observation.scene_axis_in_camera =
+inline ObjectEvidence EvidenceOfBox(const Box& box, const std::array<bool, 4>& is_one_sided,
+                                    const Plane& floor, const ShapePrior& prior) {
+  ObjectEvidence evidence;
+  evidence.views = {
+      {BoxEdges(TestCamera(), box, is_one_sided, kDetectionSigmaFraction), Rigid3d()}};
+  evidence.plane = floor;
+  evidence.prior = prior;
+  evidence.scene_axis =
       (UprightRotation(floor.normal, RandomYaw()) * Eigen::Vector3d::UnitX()).eval();
-  return observation;
+  evidence.huber_delta = std::numeric_limits<double>::infinity();
+  return evidence;
 }
 
-// A body, and the observation of it by one exact box and its true ratio.
+// A body, and the evidence of one exact box and its true ratio.
 struct ObservedBody {
   explicit ObservedBody(const ShapeExponents& shape_exponents, double ratio_log_sigma = 0.05)
       : plane(RandomFloor()),
         truth(RandomUprightBody(plane, shape_exponents)),
         box(*OutlineBox(TestCamera(), truth)),
-        observation(ObservationOf(box, {}, plane, PriorOf(truth, ratio_log_sigma))) {}
+        evidence(EvidenceOfBox(box, {}, plane, PriorOf(truth, ratio_log_sigma))) {}
 
   double Yaw() const { return soslam::Yaw(plane.normal, truth.frame_from_object.rotation); }
-  // The same observation with another box.
-  UprightObservation Observe(const Box& other, const std::array<bool, 4>& is_one_sided = {}) const {
-    UprightObservation changed = observation;
-    changed.edges = BoxEdges(TestCamera(), other, is_one_sided, kDetectionSigmaFraction);
+  // The same evidence with another box.
+  ObjectEvidence Observe(const Box& other, const std::array<bool, 4>& is_one_sided = {}) const {
+    ObjectEvidence changed = evidence;
+    changed.views[0].edges = BoxEdges(TestCamera(), other, is_one_sided, kDetectionSigmaFraction);
     return changed;
   }
 
   Plane plane;
   Landmark truth;
   Box box;
-  UprightObservation observation;
+  ObjectEvidence evidence;
 };
 
-// ClosedForm::At for a single yaw, as a landmark in the camera frame.
-inline std::optional<Landmark> SolveAtYaw(const UprightObservation& observation, double yaw) {
-  const auto solution = ClosedForm(observation).At(yaw);
-  if (!solution) return std::nullopt;
-  return UprightGround(observation.plane_in_camera)
-      .LandmarkAt(*solution, observation.prior.shape_exponents);
+inline std::optional<Landmark> SolveAtYaw(const ObjectEvidence& evidence, double yaw) {
+  return BodyAtYaw(evidence).Solve(yaw);
 }
 
 // Each edge moved by up to `fraction` of the box's width or height.
@@ -132,11 +131,6 @@ inline Eigen::VectorXd Residuals(const LandmarkTerm& term, const Landmark& landm
   Eigen::VectorXd residuals(term.NumResiduals());
   term.Evaluate(landmark, residuals, nullptr);
   return residuals;
-}
-
-// The sum of the observation's terms, tangent points at the depths of the landmark itself.
-inline double CostAtOwnDepths(const UprightObservation& observation, const Landmark& landmark) {
-  return TotalCost(ObservationTerms(observation, landmark), landmark);
 }
 
 }  // namespace soslam

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "initialisation/yaw_sweep.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +7,7 @@
 #include <numbers>
 
 #include "geometry/angles.h"
-#include "initialisation/upright_observation.h"
+#include "initialisation/fit_object.h"
 #include "support/shape_exponents.h"
 #include "support/upright_bodies.h"
 
@@ -43,26 +41,21 @@ TEST(CircularMinima, AreSortedAndOfPlateausTheFirstIndices) {
   for (const auto& one : cases) EXPECT_EQ(CircularMinima(one.values), one.minima);
 }
 
-Landmark LandmarkOf(const UprightObservation& observation, const UprightFit& fit) {
-  return UprightGround(observation.plane_in_camera)
-      .LandmarkAt(fit.parameters, observation.prior.shape_exponents);
-}
-
-TEST(SweepYaw, CoversHalfATurnWithLandmarksAtTheirYaws) {
+TEST(ProfileOverYaw, CoversHalfATurnWithLandmarksAtTheirYaws) {
   for (const double step_deg : {1.0, 3.0, 7.0, 45.0}) {
     const ObservedBody body(1.5);
-    const YawSweep sweep = SweepYaw(body.observation, {}, step_deg * kRadPerDeg);
-    ASSERT_EQ(sweep.yaw.size(), static_cast<size_t>(std::lround(180.0 / step_deg)));
-    ASSERT_EQ(sweep.fits.size(), sweep.yaw.size());
-    const std::vector<double> costs = sweep.Costs();
-    const double step = std::numbers::pi / static_cast<double>(sweep.yaw.size());
-    for (size_t i = 0; i < sweep.yaw.size(); ++i) {
-      EXPECT_NEAR(sweep.yaw[i], step * static_cast<double>(i), 1e-12);
-      ASSERT_TRUE(sweep.fits[i]);
-      EXPECT_EQ(costs[i], sweep.fits[i]->cost);
-      const Landmark landmark = LandmarkOf(body.observation, *sweep.fits[i]);
+    const YawProfile profile = ProfileOverYaw(body.evidence, step_deg * kRadPerDeg);
+    ASSERT_EQ(profile.yaw.size(), static_cast<size_t>(std::lround(180.0 / step_deg)));
+    ASSERT_EQ(profile.fits.size(), profile.yaw.size());
+    const std::vector<double> costs = profile.Costs();
+    const double step = std::numbers::pi / static_cast<double>(profile.yaw.size());
+    for (size_t i = 0; i < profile.yaw.size(); ++i) {
+      EXPECT_NEAR(profile.yaw[i], step * static_cast<double>(i), 1e-12);
+      ASSERT_TRUE(profile.fits[i]);
+      EXPECT_EQ(costs[i], profile.fits[i]->cost.total);
+      const Landmark& landmark = profile.fits[i]->landmark;
       const double yaw = Yaw(body.plane.normal, landmark.frame_from_object.rotation);
-      EXPECT_NEAR(YawDifferenceModuloPi(yaw, sweep.yaw[i]), 0.0, 1e-9);
+      EXPECT_NEAR(YawDifferenceModuloPi(yaw, profile.yaw[i]), 0.0, 1e-9);
       EXPECT_NEAR(body.plane.SignedDistance(landmark.Centre()), landmark.half_axes.z(), 1e-9);
       EXPECT_EQ(landmark.shape_exponents, 1.5);
       EXPECT_TRUE(IsInFront(landmark));
@@ -70,18 +63,18 @@ TEST(SweepYaw, CoversHalfATurnWithLandmarksAtTheirYaws) {
   }
 }
 
-// A sweep whose costs are a function of the yaw.
+// A profile whose costs are a function of the yaw.
 template <typename Cost>
-YawSweep SweepOf(Cost cost, int points) {
-  YawSweep sweep;
+YawProfile ProfileOf(Cost cost, int points) {
+  YawProfile profile;
   for (int i = 0; i < points; ++i) {
-    sweep.yaw.push_back(i * std::numbers::pi / points);
-    sweep.fits.push_back(UprightFit{UprightVector::Zero(), cost(sweep.yaw.back())});
+    profile.yaw.push_back(i * std::numbers::pi / points);
+    profile.fits.push_back(ObjectFit{{}, {.total = cost(profile.yaw.back())}});
   }
-  return sweep;
+  return profile;
 }
 
-TEST(YawSweep, StandardDeviationOfAGaussianLikelihoodIsItsSigma) {
+TEST(YawProfile, StandardDeviationOfAGaussianLikelihoodIsItsSigma) {
   for (int i = 0; i < 50; ++i) {
     const double sigma = RandomUniform(2.0, 10.0) * kRadPerDeg;
     const double mean = RandomYaw();  // also where the grid goes round
@@ -89,23 +82,24 @@ TEST(YawSweep, StandardDeviationOfAGaussianLikelihoodIsItsSigma) {
     const auto cost = [&](double yaw) {
       return offset + 0.5 * std::pow(YawDifferenceModuloPi(yaw, mean) / sigma, 2);
     };
-    const YawSweep sweep = SweepOf(cost, 360);
-    EXPECT_NEAR(sweep.StandardDeviation({{mean, offset}}), sigma, 0.02 * sigma);
-    EXPECT_NEAR(sweep.StandardDeviation({{mean + std::numbers::pi, offset}}), sigma, 0.02 * sigma);
+    const YawProfile profile = ProfileOf(cost, 360);
+    EXPECT_NEAR(profile.StandardDeviation({{mean, offset}}), sigma, 0.02 * sigma);
+    EXPECT_NEAR(profile.StandardDeviation({{mean + std::numbers::pi, offset}}), sigma,
+                0.02 * sigma);
     // About another yaw, the way there counts too.
     const double away = mean + RandomUniform(-0.3, 0.3);
-    EXPECT_NEAR(sweep.StandardDeviation({{away, cost(away)}}),
+    EXPECT_NEAR(profile.StandardDeviation({{away, cost(away)}}),
                 std::hypot(sigma, YawDifferenceModuloPi(away, mean)), 0.01);
   }
 }
 
 // The same body called by its other horizontal axis: two equal peaks a quarter turn apart.
-TEST(YawSweep, StandardDeviationOfAQuarterTurnAmbiguity) {
+TEST(YawProfile, StandardDeviationOfAQuarterTurnAmbiguity) {
   for (int i = 0; i < 50; ++i) {
     const double sigma = RandomUniform(0.3, 3.0) * kRadPerDeg;
     const double mean = RandomYaw();
     const double other = mean + 0.5 * std::numbers::pi;
-    const YawSweep sweep = SweepOf(
+    const YawProfile profile = ProfileOf(
         [&](double yaw) {
           const auto squared = [&](double peak) {
             return 0.5 * std::pow(YawDifferenceModuloPi(yaw, peak) / sigma, 2);
@@ -114,36 +108,36 @@ TEST(YawSweep, StandardDeviationOfAQuarterTurnAmbiguity) {
         },
         60);
     const double expected = 0.5 * std::numbers::pi / std::sqrt(2.0);
-    EXPECT_NEAR(sweep.StandardDeviation({{mean, 0.0}, {other, 0.0}}), expected, 0.06 * expected);
+    EXPECT_NEAR(profile.StandardDeviation({{mean, 0.0}, {other, 0.0}}), expected, 0.06 * expected);
   }
 }
 
-TEST(YawSweep, StandardDeviationLeavesOutYawsWithoutALandmark) {
+TEST(YawProfile, StandardDeviationLeavesOutYawsWithoutALandmark) {
   // Nothing but 20 degrees around the mean, and 10 degrees further on.
-  YawSweep sweep = SweepOf([](double) { return 1.0; }, 1800);
+  YawProfile profile = ProfileOf([](double) { return 1.0; }, 1800);
   const double mean = 80.05 * kRadPerDeg;
   const auto leave_out = [&](double from, double to) {
-    for (size_t i = 0; i < sweep.yaw.size(); ++i) {
-      const double distance = (sweep.yaw[i] - mean) / kRadPerDeg;
-      if (distance > from && distance < to) sweep.fits[i].reset();
+    for (size_t i = 0; i < profile.yaw.size(); ++i) {
+      const double distance = (profile.yaw[i] - mean) / kRadPerDeg;
+      if (distance > from && distance < to) profile.fits[i].reset();
     }
   };
   leave_out(-90, -10);
   leave_out(20, 101);
-  EXPECT_NEAR(sweep.StandardDeviation({{mean, 1.0}}), std::sqrt(9000.0 / 3.0 / 30.0) * kRadPerDeg,
+  EXPECT_NEAR(profile.StandardDeviation({{mean, 1.0}}), std::sqrt(9000.0 / 3.0 / 30.0) * kRadPerDeg,
               1e-3);
   leave_out(10, 20);
-  EXPECT_NEAR(sweep.StandardDeviation({{mean, 1.0}}), 20.0 * kRadPerDeg / std::sqrt(12.0), 1e-3);
+  EXPECT_NEAR(profile.StandardDeviation({{mean, 1.0}}), 20.0 * kRadPerDeg / std::sqrt(12.0), 1e-3);
 }
 
-TEST(YawSweep, StandardDeviationOfAYawAloneIsThatOfItsStep) {
+TEST(YawProfile, StandardDeviationOfAYawAloneIsThatOfItsStep) {
   for (const double others_cost : {100.0, 800.0, 1e5}) {
-    YawSweep sweep = SweepOf([&](double yaw) { return yaw == 0.0 ? 0.0 : others_cost; }, 60);
-    sweep.fits[1].reset();
-    sweep.fits[59].reset();
+    YawProfile profile = ProfileOf([&](double yaw) { return yaw == 0.0 ? 0.0 : others_cost; }, 60);
+    profile.fits[1].reset();
+    profile.fits[59].reset();
     const double step = std::numbers::pi / 60.0;
     for (const double rounding : {0.0, 4e-16, -1e-12}) {
-      EXPECT_NEAR(sweep.StandardDeviation({{rounding, 0.0}}), step / std::sqrt(12.0), 1e-6);
+      EXPECT_NEAR(profile.StandardDeviation({{rounding, 0.0}}), step / std::sqrt(12.0), 1e-6);
     }
   }
 }

@@ -38,8 +38,8 @@ struct Support {
 // An object without a plane is upright at a free height, and its prior's height_m fixes the scale
 // and thus the distance. The covariance includes the uncertainty of up, with the landmark adapting
 // to it.
-std::optional<FittedObject> FitObject(const Sequence& sequence, const std::vector<int>& detections,
-                                      const ShapePrior& prior, const AssociateOptions& options,
-                                      const std::variant<Plane, UpEstimate>& support_in_world);
+std::optional<FittedObject> FitTrack(const Sequence& sequence, const std::vector<int>& detections,
+                                     const ShapePrior& prior, const AssociateOptions& options,
+                                     const std::variant<Plane, UpEstimate>& support_in_world);
 
 }  // namespace soslam

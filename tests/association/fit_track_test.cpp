@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "association/fit_object.h"
+#include "association/fit_track.h"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ TEST(FitObjectWithoutPlanesTest, OneBoxGivesABodyOfThePriorsHeight) {
   for (const double height_m : {0.2, 2.0}) {
     ShapePrior prior = *UnknowingTable().default_prior;
     prior.height_m = LogNormal{height_m, 0.3};
-    const auto object = FitObject(sequence, {0}, prior, options, up);
+    const auto object = FitTrack(sequence, {0}, prior, options, up);
     ASSERT_TRUE(object);
     EXPECT_NEAR(2.0 * object->landmark_in_world.half_axes.z() / height_m, 1.0,
                 0.02);  // as far as the fit gets along its valley

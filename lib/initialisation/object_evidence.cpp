@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "initialisation/object_evidence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "geometry/triangulation.h"
+#include "initialisation/view_weights.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kCostOfViewBehind = 1e6;
+
+// Adds a weak equation of each view's depth, for rays that are almost parallel: at this depth an
+// object of the prior's height is as high in the image as the box.
+void AddDepthsOfSize(const ObjectEvidence& evidence, PointOnPlanes* point) {
+  constexpr double kWeight = 1e-4;  // relative to a ray
+  for (const BoxView& view : evidence.views) {
+    const Eigen::Vector3d axis =
+        view.camera_from_reference.rotation.conjugate() * Eigen::Vector3d::UnitZ();
+    const double depth = evidence.prior->height_m->median / HeightAtUnitDepth(view);
+    point->Add({axis, view.camera_from_reference.translation.z() - depth}, kWeight);
+  }
+}
+
+// Costs that do not depend on the boxes.
+LandmarkCosts PriorCosts(const ObjectEvidence& evidence) {
+  LandmarkCosts costs;
+  if (evidence.HasRatio()) costs.push_back(std::make_unique<RatioTerm>(*evidence.prior));
+  if (evidence.HasSize()) {
+    costs.push_back(std::make_unique<HeightTerm>(*evidence.prior->height_m, evidence.RestsOn()));
+  }
+  if (evidence.scene_axis) {
+    costs.push_back(
+        std::make_unique<AxisTerm>(evidence.plane, *evidence.scene_axis, evidence.axes_weight));
+  }
+  if (evidence.yaw_prior) {
+    costs.push_back(std::make_unique<YawTerm>(evidence.plane, *evidence.yaw_prior));
+  }
+  if (evidence.MayLean()) {
+    costs.push_back(std::make_unique<LeaningTerm>(evidence.plane, evidence.standing));
+  }
+  return costs;
+}
+
+std::unique_ptr<const LandmarkTerm> InView(const ObjectEvidence& evidence, const BoxView& view,
+                                           std::unique_ptr<const LandmarkTerm> box) {
+  return std::make_unique<RobustViewTerm>(std::move(box), view.camera_from_reference,
+                                          evidence.huber_delta, view.weight);
+}
+
+LandmarkCosts FurtherCosts(const ObjectEvidence& evidence, const Landmark& linearisation) {
+  LandmarkCosts costs;
+  for (const FurtherEvidence& further : evidence.further) {
+    const Landmark in_camera = Transform(further.camera_from_reference, linearisation);
+    if (!IsInFront(in_camera)) continue;
+    costs.push_back(std::make_unique<ViewCost>(further.cost_at(in_camera),
+                                               further.camera_from_reference, further.weight));
+  }
+  return costs;
+}
+
+LandmarkCosts BoxAndPriorCosts(const ObjectEvidence& evidence, const Landmark& linearisation) {
+  LandmarkCosts costs = PriorCosts(evidence);
+  for (const BoxView& view : evidence.views) {
+    const Landmark in_camera = Transform(view.camera_from_reference, linearisation);
+    if (!IsInFront(in_camera)) continue;
+    costs.push_back(InView(evidence, view, std::make_unique<BoxTerm>(view.edges, in_camera)));
+  }
+  return costs;
+}
+
+}  // namespace
+
+ObjectEvidence EvidenceInWorld(const Sequence& sequence, const std::vector<int>& detections,
+                               const std::optional<ShapePrior>& prior,
+                               double detection_sigma_fraction) {
+  ObjectEvidence evidence;
+  evidence.prior = prior;
+  const EdgeBias bias = prior ? prior->edge_bias : EdgeBias();
+  for (const int index : detections) {
+    const Detection& detection = sequence.detections[index];
+    const Object& object = sequence.ObjectOf(detection);
+    if (object.plane_index != kNoPlane) {
+      const SupportPlane& support = sequence.planes[object.plane_index];
+      evidence.plane = support.plane_in_world;
+      evidence.scene_axis = support.scene_axis_in_world;
+    }
+    evidence.views.push_back({BoxEdges(sequence.CameraOf(detection), detection.box,
+                                       detection.is_one_sided, detection_sigma_fraction, bias),
+                              sequence.FrameOf(detection).world_from_camera.Inverse()});
+  }
+  return evidence;
+}
+
+ObjectEvidence EvidenceInCamera(const Sequence& sequence, const Detection& detection,
+                                const std::optional<ShapePrior>& prior,
+                                double detection_sigma_fraction) {
+  ObjectEvidence evidence;
+  evidence.views = {{BoxEdges(sequence.CameraOf(detection), detection.box, detection.is_one_sided,
+                              detection_sigma_fraction, prior ? prior->edge_bias : EdgeBias()),
+                     Rigid3d()}};
+  evidence.plane = detection.plane_in_camera;
+  evidence.prior = prior;
+  evidence.scene_axis = SceneAxisInCamera(sequence, detection);
+  evidence.huber_delta = std::numeric_limits<double>::infinity();
+  return evidence;
+}
+
+std::string WhyNoSolution(const ObjectEvidence& evidence) {
+  const auto measured =
+      std::ranges::count(evidence.views.front().edges, false, &BoxEdge::is_one_sided);
+  return measured < 3 ? "fewer_than_three_measured_edges" : "no_solution";
+}
+
+double HeightAtUnitDepth(const BoxView& view) {
+  const Eigen::Vector3d height = view.edges[1].plane + view.edges[3].plane;
+  return std::abs(height.z() / view.edges[3].plane.y());
+}
+
+Eigen::Vector3d NearestToAllRays(const ObjectEvidence& evidence) {
+  PointOnPlanes point;
+  for (const BoxView& view : evidence.views) {
+    // The ray through the centre lies in the planes half-way between opposite edges.
+    for (const size_t i : {0, 1}) {
+      const Eigen::Vector3d middle = view.edges[i].plane - view.edges[i + 2].plane;
+      point.Add({view.camera_from_reference.rotation.conjugate() * middle.normalized(),
+                 middle.normalized().dot(view.camera_from_reference.translation)});
+    }
+  }
+  if (evidence.HasSize()) AddDepthsOfSize(evidence, &point);
+  if (!evidence.height_is_free) point.Add(evidence.plane);
+  return point.Solve();
+}
+
+void WeighViews(double correlation_rad, ObjectEvidence* evidence) {
+  const Eigen::Vector3d centre = NearestToAllRays(*evidence);
+  std::vector<Eigen::Vector3d> directions;
+  for (const BoxView& view : evidence->views) {
+    directions.push_back(centre - view.camera_from_reference.Inverse().translation);
+  }
+  const auto weights = DirectionWeights(directions, correlation_rad);
+  for (size_t i = 0; i < weights.size(); ++i) evidence->views[i].weight = weights[i];
+}
+
+LandmarkCosts CostsAt(const ObjectEvidence& evidence, const Landmark& linearisation) {
+  LandmarkCosts costs = BoxAndPriorCosts(evidence, linearisation);
+  for (auto& cost : FurtherCosts(evidence, linearisation)) costs.push_back(std::move(cost));
+  return costs;
+}
+
+LandmarkCosts OutlineCosts(const ObjectEvidence& evidence) {
+  LandmarkCosts costs = PriorCosts(evidence);
+  for (const BoxView& view : evidence.views) {
+    costs.push_back(InView(evidence, view, std::make_unique<OutlineTerm>(view.edges)));
+  }
+  return costs;
+}
+
+EvidenceCost CostOf(const ObjectEvidence& evidence, const Landmark& landmark, double limit) {
+  EvidenceCost cost;
+  for (const BoxView& view : evidence.views) {
+    const bool is_behind = !IsInFront(Transform(view.camera_from_reference, landmark));
+    cost.total += is_behind ? kCostOfViewBehind : 0.0;
+  }
+  cost.further = TotalCost(FurtherCosts(evidence, landmark), landmark);
+  cost.total += TotalCost(BoxAndPriorCosts(evidence, landmark), landmark) + cost.further;
+  if (evidence.compared_cost && cost.total < limit) {
+    cost.compared = evidence.compared_cost(landmark, limit - cost.total);
+    cost.total += cost.compared;
+  }
+  return cost;
+}
+
+std::optional<Eigen::Vector3d> SceneAxisInCamera(const Sequence& sequence,
+                                                 const Detection& detection) {
+  const auto plane = static_cast<size_t>(sequence.ObjectOf(detection).plane_index);
+  const std::optional<Eigen::Vector3d>& axis = sequence.planes[plane].scene_axis_in_world;
+  if (!axis) return std::nullopt;
+  return sequence.FrameOf(detection).world_from_camera.rotation.conjugate() * *axis;
+}
+
+}  // namespace soslam

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "constraints/landmark_terms.h"
+#include "constraints/standing_on_plane.h"
+#include "constraints/tangency.h"
+#include "geometry/landmark.h"
+#include "geometry/plane.h"
+#include "model/sequence.h"
+#include "model/shape_prior.h"
+
+namespace soslam {
+
+// One box of an object, in a camera of known pose.
+struct BoxView {
+  std::array<BoxEdge, 4> edges;  // in the camera frame
+  Rigid3d camera_from_reference;
+  double weight = 1.0;  // factor of its cost
+};
+
+// A cost of images or points in one camera that is made anew for each linearisation point.
+struct FurtherEvidence {
+  std::function<std::unique_ptr<const LandmarkCost>(const Landmark& in_camera)> cost_at;
+  Rigid3d camera_from_reference;
+  double weight = 1.0;
+};
+
+// All that is known of one upright object, in one frame, the reference: the world, or the camera of
+// a single box.
+struct ObjectEvidence {
+  std::vector<BoxView> views;       // at least one
+  Plane plane;                      // the support
+  bool height_is_free = false;      // only the normal of the plane is known
+  std::optional<ShapePrior> prior;  // if none, a cuboid of free ratio
+  bool ratio_is_free = false;       // the prior's ratio is not used as a cost
+  bool size_is_known = false;       // the prior's height_m, if any, is used as a cost
+  std::optional<Eigen::Vector3d> scene_axis = std::nullopt;
+  double axes_weight = 0.0;  // see AxisTerm
+  std::optional<YawPrior> yaw_prior = std::nullopt;
+  double huber_delta = 1.0;  // of the boxes; infinite: no loss
+  StandingSigmas standing;   // of bodies that may lean
+  std::vector<FurtherEvidence> further = {};
+  // A cost, none below zero, by which hypotheses are compared, but that is not fitted; may be
+  // empty. It may stop, and return anything higher, once it is above the limit.
+  std::function<double(const Landmark&, double limit)> compared_cost = {};
+
+  bool MayLean() const { return prior && prior->attitude == Attitude::kFree && !height_is_free; }
+  bool HasRatio() const { return prior && !ratio_is_free; }
+  bool HasSize() const { return size_is_known && prior && prior->height_m; }
+  RestingFace RestsOn() const { return prior ? prior->rests_on : RestingFace::kBottom; }
+  ShapeExponents Exponents() const {
+    return prior ? prior->shape_exponents : ShapeExponents(kCuboidExponent);
+  }
+};
+
+// Evidence of one object in the world, from its detections (indices into Sequence::detections, at
+// least one), with the frames' estimated poses, on the object's plane, if it has one. All views
+// have weight 1.
+ObjectEvidence EvidenceInWorld(const Sequence& sequence, const std::vector<int>& detections,
+                               const std::optional<ShapePrior>& prior,
+                               double detection_sigma_fraction);
+
+// Evidence of one detection in its camera, without a loss.
+ObjectEvidence EvidenceInCamera(const Sequence& sequence, const Detection& detection,
+                                const std::optional<ShapePrior>& prior,
+                                double detection_sigma_fraction);
+
+// Why an observation has no solution at any yaw.
+std::string WhyNoSolution(const ObjectEvidence& evidence);
+
+// Height of a view's box at unit depth.
+double HeightAtUnitDepth(const BoxView& view);
+
+// Least squares point of the rays through the centres of all boxes and, as far as they are known,
+// of the support plane and the depths from the size.
+Eigen::Vector3d NearestToAllRays(const ObjectEvidence& evidence);
+
+// Gives the views their DirectionWeights about NearestToAllRays.
+void WeighViews(double correlation_rad, ObjectEvidence* evidence);
+
+// Costs of a landmark: boxes, with the tangent points at their depths on the linearisation point,
+// priors, and further evidence made for this point. Views of which the linearisation point is not
+// wholly in front are left out.
+LandmarkCosts CostsAt(const ObjectEvidence& evidence, const Landmark& linearisation);
+
+// Costs of boxes and priors with exact silhouette residuals, which do not depend on a linearisation
+// point. Not finite if the landmark is not wholly in front of all cameras.
+LandmarkCosts OutlineCosts(const ObjectEvidence& evidence);
+
+// The cost of a landmark, linearised at itself. An object is in front of all cameras with a box of
+// it: each view that it is not in front of costs more than any box.
+// With the compared cost only as far as the total may still be below the limit.
+struct EvidenceCost {
+  double total = 0.0;
+  double further = 0.0;   // part of it
+  double compared = 0.0;  // part of it
+};
+EvidenceCost CostOf(const ObjectEvidence& evidence, const Landmark& landmark,
+                    double limit = std::numeric_limits<double>::infinity());
+
+// SupportPlane::scene_axis_in_world of a detection's plane.
+std::optional<Eigen::Vector3d> SceneAxisInCamera(const Sequence& sequence,
+                                                 const Detection& detection);
+
+}  // namespace soslam
