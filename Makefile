@@ -336,6 +336,11 @@ DATA_ROOT_ARGUMENT = $(if $(filter-out file,$(origin DATA_ROOT)),--data_root $(D
 verify: build ## Say which files in RESULTS, or that they were made from, are no longer what was recorded
 	@$(BIN)/soslam-verify --results $(RESULTS) $(DATA_ROOT_ARGUMENT)
 
+.PHONY: check-minima
+check-minima: build ## Solve each object of the maps of DATASET=<name>, VARIANT=<name>|all, alone from other yaws and sizes
+	@failed=0; for map in $(RESULTS)/$(DATASET)/$(if $(filter all,$(VARIANT)),*,$(VARIANT))/map.json; do \
+	  echo "$$map"; $(BIN)/soslam-check-minima --map $$map --threads $(THREADS) || failed=$$?; done; exit $$failed
+
 .PHONY: reproduce
 reproduce: build ## Run what made the variants in RESULTS once more, as recorded, and compare every byte
 	@$(BIN)/soslam-reproduce --results $(RESULTS) --executables $(BIN) --threads $(THREADS) \

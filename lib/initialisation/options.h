@@ -5,8 +5,8 @@
 
 #include "base/options.h"
 #include "constraints/point_cost.h"
-#include "constraints/variances.h"
 #include "initialisation/cuboid_score.h"
+#include "initialisation/single_frame.h"
 #include "initialisation/upright_options.h"
 #include "initialisation/yaw_prior.h"
 #include "model/semantic_table.h"
@@ -23,24 +23,11 @@ enum class InitialisationMethod {
 inline constexpr std::array kInitialisationMethodNames = {"single_frame", "yaw_sweep", "multi_view",
                                                           "svd", "cuboid_proposals"};
 
-// Choice among several yaws that fit a box equally well. The box does not determine it; the choices
-// are assumptions about how objects stand.
-enum class TieBreak {
-  kSceneAxes,     // along the scene's straight edges: furniture stands along walls
-  kFacingCamera,  // front (or back) towards the camera: what is looked at is mostly seen from the
-                  // front
-};
-inline constexpr std::array kTieBreakNames = {"scene_axes", "facing_camera"};
-
 struct InitialiseOptions {
   InitialisationMethod method = InitialisationMethod::kSingleFrame;
   RatioPrior ratio_prior = RatioPrior::kTable;
   ShapeSource shape = ShapeSource::kTable;
-  ConstraintVariances variances;
-  int yaw_starts = 12;
-  int max_iterations = 100;
-  double tie_edge_px = 1.0;
-  TieBreak tie_break = TieBreak::kSceneAxes;
+  SingleFrameOptions single_frame;
   UprightOptions upright;
   YawPriorOptions yaw_prior;
   PointOptions points;
@@ -59,21 +46,7 @@ struct InitialiseOptions {
       visit.Choice("ratio_prior", &ratio_prior, kRatioPriorNames,
                    "where the size ratio of eq. (11) comes from");
     });
-    visit.OnlyWhere({{"method", {"single_frame"}}}, [&] {
-      visit.Group("Ellipsoids of single frames");
-      visit.Integer("yaw_starts", &yaw_starts, {1, 360},
-                    "starting yaws over half a turn of the solve, eq. (12)");
-      visit.Integer("max_iterations", &max_iterations, {1, 10000},
-                    "Levenberg-Marquardt iterations per start");
-      visit.Real(
-          "tie_edge_px", &tie_edge_px, {0.0, 1000.0},
-          "solutions whose outline fits the box as well as that of the best one, to this rms "
-          "edge distance, count as equal; tie_break chooses among them");
-      visit.Choice("tie_break", &tie_break, kTieBreakNames,
-                   "which yaw is chosen among equal solutions: nearest to the scene's axes (modulo "
-                   "quarter turns), or with the front facing the camera most");
-      variances.Describe(visit);
-    });
+    visit.OnlyWhere({{"method", {"single_frame"}}}, [&] { single_frame.Describe(visit); });
     visit.OnlyWhere({{"method", {"yaw_sweep", "multi_view"}}}, [&] {
       upright.Describe(visit);  // the options up to yaw_prior belong to its group
       visit.Choice("shape", &shape, kShapeSourceNames, "where the shape exponents come from");

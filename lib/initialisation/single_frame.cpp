@@ -14,6 +14,8 @@
 #include "constraints/scale_ratio.h"
 #include "constraints/support.h"
 #include "geometry/angles.h"
+#include "initialisation/estimates_of_sequence.h"
+#include "initialisation/object_evidence.h"
 #include "model/occlusion.h"
 
 namespace soslam {
@@ -59,7 +61,7 @@ void AddSingleFrameConstraints(const SingleFrameObservation& observation,
   problem->SetParameterBlockConstant(camera->data());
 }
 
-Hypothesis Solve(const SingleFrameObservation& observation, const InitialiseOptions& options,
+Hypothesis Solve(const SingleFrameObservation& observation, const SingleFrameOptions& options,
                  const Landmark& start) {
   LandmarkBlock landmark = ToParameterBlock(start);
   PoseBlock camera = ToParameterBlock(Rigid3d());
@@ -127,7 +129,7 @@ double SingleFrameCost(const SingleFrameObservation& observation,
 }
 
 ObservationEstimate InitialiseFromSingleFrame(const SingleFrameObservation& observation,
-                                              const InitialiseOptions& options) {
+                                              const SingleFrameOptions& options) {
   auto start = Start(observation);
   if (!start) return {0, {}, "support_plane_not_in_view"};
 
@@ -162,6 +164,19 @@ ObservationEstimate InitialiseFromSingleFrame(const SingleFrameObservation& obse
   };
   std::ranges::stable_sort(found.begin(), tied_end, {}, oddity);
   return {0, found, ""};
+}
+
+LandmarkEstimates InitialiseSingleFrame(const Sequence& sequence,
+                                        const std::vector<std::optional<Eigen::Vector2d>>& ratios,
+                                        const SingleFrameOptions& options, int threads) {
+  const auto estimator = [&](const Eigen::Vector2d& ratio, int index) {
+    const Detection& detection = sequence.detections[index];
+    return InitialiseFromSingleFrame(
+        {sequence.CameraOf(detection), detection.box, detection.plane_in_camera, ratio,
+         SceneAxisInCamera(sequence, detection)},
+        options);
+  };
+  return EstimateObservations(sequence, ratios, threads, estimator);
 }
 
 }  // namespace soslam

@@ -2,15 +2,52 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
+#include <vector>
 
+#include "base/options.h"
+#include "constraints/variances.h"
 #include "geometry/box.h"
 #include "geometry/camera.h"
 #include "geometry/plane.h"
-#include "initialisation/options.h"
 #include "model/estimates.h"
+#include "model/sequence.h"
 
 namespace soslam {
+
+// Choice among several yaws that fit a box equally well. The box does not determine it; the choices
+// are assumptions about how objects stand.
+enum class TieBreak {
+  kSceneAxes,     // along the scene's straight edges: furniture stands along walls
+  kFacingCamera,  // front (or back) towards the camera: what is looked at is mostly seen from the
+                  // front
+};
+inline constexpr std::array kTieBreakNames = {"scene_axes", "facing_camera"};
+
+// Ellipsoids of single frames.
+struct SingleFrameOptions {
+  int yaw_starts = 12;
+  int max_iterations = 100;
+  double tie_edge_px = 1.0;
+  TieBreak tie_break = TieBreak::kSceneAxes;
+  ConstraintVariances variances;
+
+  void Describe(OptionVisitor& visit) {
+    visit.Group("Ellipsoids of single frames");
+    visit.Integer("yaw_starts", &yaw_starts, {1, 360},
+                  "starting yaws over half a turn of the solve, eq. (12)");
+    visit.Integer("max_iterations", &max_iterations, {1, 10000},
+                  "Levenberg-Marquardt iterations per start");
+    visit.Real("tie_edge_px", &tie_edge_px, {0.0, 1000.0},
+               "solutions whose outline fits the box as well as that of the best one, to this rms "
+               "edge distance, count as equal; tie_break chooses among them");
+    visit.Choice("tie_break", &tie_break, kTieBreakNames,
+                 "which yaw is chosen among equal solutions: nearest to the scene's axes (modulo "
+                 "quarter turns), or with the front facing the camera most");
+    variances.Describe(visit);
+  }
+};
 
 // Measurements of an object in one frame: nine equations for nine unknowns.
 struct SingleFrameObservation {
@@ -30,10 +67,16 @@ struct SingleFrameObservation {
 // Solutions that are not upright above the plane and in front of the camera are dropped. Failures:
 // support_plane_not_in_view, no_solution. The caller sets the index of the detection.
 ObservationEstimate InitialiseFromSingleFrame(const SingleFrameObservation& observation,
-                                              const InitialiseOptions& options);
+                                              const SingleFrameOptions& options);
 
 // The cost of eq. (12): half the sum of squared weighted residuals.
 double SingleFrameCost(const SingleFrameObservation& observation,
                        const ConstraintVariances& variances, const Landmark& landmark_in_camera);
+
+// Single-frame landmarks of all detections (one ObservationEstimate each). Detections of objects
+// without a ratio fail with no_ratio_for_label.
+LandmarkEstimates InitialiseSingleFrame(const Sequence& sequence,
+                                        const std::vector<std::optional<Eigen::Vector2d>>& ratios,
+                                        const SingleFrameOptions& options, int threads);
 
 }  // namespace soslam

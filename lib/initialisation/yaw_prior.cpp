@@ -6,7 +6,6 @@
 #include "base/parallel.h"
 #include "geometry/angles.h"
 #include "initialisation/fit_object.h"
-#include "initialisation/options.h"
 #include "model/occlusion.h"
 
 namespace soslam {
@@ -67,23 +66,23 @@ YawPrior AlongDirection(const Sequence& sequence, const Detection& detection,
 std::optional<YawPrior> MotionPrior(const Sequence& sequence, const Detection& detection,
                                     const std::vector<int>& around,
                                     const std::optional<ShapePrior>& shape,
-                                    const InitialiseOptions& options) {
+                                    const YawPriorOptions& options, const UprightOptions& upright,
+                                    double view_correlation_deg) {
   const auto motion = Motion(sequence, around);
-  if (motion && motion->norm() >= options.yaw_prior.motion_min_m) {
+  if (motion && motion->norm() >= options.motion_min_m) {
     return AlongDirection(sequence, detection, *motion,
-                          std::atan2(options.yaw_prior.motion_foot_sigma_m, motion->norm()));
+                          std::atan2(options.motion_foot_sigma_m, motion->norm()));
   }
   if (around.size() < kMinPriorViews || (shape && shape->attitude != Attitude::kStanding)) {
     return std::nullopt;
   }
-  ObjectEvidence views =
-      EvidenceInWorld(sequence, around, shape, options.upright.detection_sigma_fraction);
-  WeighViews(options.view_correlation_deg * kRadPerDeg, &views);
-  const auto optima = ProfileOverYaw(views, options.upright.yaw_grid_deg * kRadPerDeg).Minima(1);
+  ObjectEvidence views = EvidenceInWorld(sequence, around, shape, upright.detection_sigma_fraction);
+  WeighViews(view_correlation_deg * kRadPerDeg, &views);
+  const auto optima = ProfileOverYaw(views, upright.yaw_grid_deg * kRadPerDeg).Minima(1);
   if (optima.empty()) return std::nullopt;
   const Eigen::Quaterniond& rotation = optima.front().frame_from_object.rotation;
   return AlongDirection(sequence, detection, rotation * Eigen::Vector3d::UnitX(),
-                        options.yaw_prior.standing_sigma_deg * kRadPerDeg);
+                        options.standing_sigma_deg * kRadPerDeg);
 }
 
 std::optional<YawPrior> TruePrior(const Sequence& sequence, const Detection& detection) {
@@ -119,17 +118,20 @@ std::optional<double> TrueYaw(const Sequence& sequence, const Detection& detecti
 
 std::vector<std::optional<YawPrior>> YawPriors(const Sequence& sequence,
                                                const std::vector<std::optional<ShapePrior>>& shapes,
-                                               const InitialiseOptions& options, int threads) {
+                                               const YawPriorOptions& options,
+                                               const UprightOptions& upright,
+                                               double view_correlation_deg, int threads) {
   std::vector<std::optional<YawPrior>> priors(sequence.detections.size());
-  if (options.yaw_prior.source == YawPriorSource::kNone) return priors;
-  const auto neighbours = Neighbours(sequence, options.yaw_prior.motion_frames);
+  if (options.source == YawPriorSource::kNone) return priors;
+  const auto neighbours = Neighbours(sequence, options.motion_frames);
   ParallelFor("detections", static_cast<int>(priors.size()), threads, [&](int i) {
     const auto index = static_cast<size_t>(i);
     const Detection& detection = sequence.detections[index];
-    priors[index] = options.yaw_prior.source == YawPriorSource::kGroundTruth
-                        ? TruePrior(sequence, detection)
-                        : MotionPrior(sequence, detection, neighbours[index],
-                                      shapes[detection.object_index], options);
+    priors[index] =
+        options.source == YawPriorSource::kGroundTruth
+            ? TruePrior(sequence, detection)
+            : MotionPrior(sequence, detection, neighbours[index], shapes[detection.object_index],
+                          options, upright, view_correlation_deg);
   });
   return priors;
 }

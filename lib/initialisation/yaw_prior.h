@@ -7,6 +7,7 @@
 
 #include "base/options.h"
 #include "constraints/landmark_terms.h"
+#include "initialisation/upright_options.h"
 #include "model/sequence.h"
 #include "model/shape_prior.h"
 
@@ -50,14 +51,14 @@ struct YawPriorOptions {
 // Yaw of a detection's object in the camera frame, from ground truth; none without ground truth.
 std::optional<double> TrueYaw(const Sequence& sequence, const Detection& detection);
 
-struct InitialiseOptions;
-
 // Prior of each detection, with the frames' estimated poses; none if the source has no information.
 // kMotion: the direction of the straight line through the feet of the object, where the rays
 // through the centres of its boxes' lower edges meet their support planes; if the motion is shorter
 // than motion_min_m, the yaw that fits its boxes best (ProfileOverYaw).
 std::vector<std::optional<YawPrior>> YawPriors(const Sequence& sequence,
                                                const std::vector<std::optional<ShapePrior>>& shapes,
-                                               const InitialiseOptions& options, int threads);
+                                               const YawPriorOptions& options,
+                                               const UprightOptions& upright,
+                                               double view_correlation_deg, int threads);
 
 }  // namespace soslam

@@ -19,9 +19,12 @@
 #include "base/text.h"
 #include "cli/command_line.h"
 #include "evaluation/result_checks.h"
-#include "initialisation/initialise.h"
+#include "initialisation/cuboids.h"
+#include "initialisation/multi_view.h"
 #include "initialisation/object_points.h"
 #include "initialisation/options.h"
+#include "initialisation/svd.h"
+#include "initialisation/yaw_sweep.h"
 #include "orientation/options.h"
 #include "orientation/refine_by_profile.h"
 #include "orientation/refine_by_turning.h"
@@ -92,14 +95,16 @@ LandmarkEstimates Initialise(const Sequence& sequence, const SemanticTable& tabl
   }
   if (options.method == InitialisationMethod::kSingleFrame) {
     return InitialiseSingleFrame(sequence, ObjectRatios(sequence, table, options.ratio_prior),
-                                 options, threads);
+                                 options.single_frame, threads);
   }
   const auto priors = ObjectPriors(sequence, table, options.ratio_prior, options.shape);
   if (options.method == InitialisationMethod::kMultiView) {
-    return InitialiseMultiView(sequence, priors, options, threads);
+    return InitialiseMultiView(sequence, priors, options.upright, options.view_correlation_deg,
+                               threads);
   }
   return InitialiseUpright(sequence, priors, options.upright, threads,
-                           YawPriors(sequence, priors, options, threads),
+                           YawPriors(sequence, priors, options.yaw_prior, options.upright,
+                                     options.view_correlation_deg, threads),
                            points ? &*points : nullptr);
 }
 

@@ -10,13 +10,16 @@
 #include "artefact/files.h"
 #include "artefact/json_file.h"
 #include "artefact/made_of.h"
+#include "artefact/run_file.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "cli/command_line.h"
 #include "evaluation/alignment.h"
 #include "evaluation/metrics.h"
 #include "evaluation/result_checks.h"
+#include "geometry/angles.h"
 #include "mapping/back_end.h"
+#include "mapping/check_minima.h"
 #include "mapping/initial_landmarks.h"
 #include "mapping/options.h"
 #include "model/occlusion.h"
@@ -102,6 +105,19 @@ void ReadImages(const OptimiseOptions& options, const StageFiles& files, int thr
   }
 }
 
+// The back end's input, still without initial landmarks.
+BackEndInput ReadInput(const Sequence& sequence, const OptimiseOptions& options,
+                       const StageFiles& files, int threads) {
+  const SemanticTable table = ReadSemanticTable(files.at("table"));
+  BackEndInput input{
+      sequence, {}, ObjectPriors(sequence, table, options.ratio_prior, options.shape), {}, {}};
+  if (options.points.point_evidence) {
+    input.points = FindObjectPoints(sequence, ReadPointsOf(sequence, files), options.points);
+  }
+  if (UsesEdges(options)) ReadImages(options, files, threads, &input);
+  return input;
+}
+
 }  // namespace
 
 void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int threads) {
@@ -109,13 +125,8 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
   CheckWasMadeOf(files.at("landmarks"), "landmarks", files.at("sequence"));
   const Sequence sequence = ReadSequence(files.at("sequence"));
   const SemanticTable table = ReadSemanticTable(files.at("table"));
-  const auto priors = ObjectPriors(sequence, table, options.ratio_prior, options.shape);
   const LandmarkEstimates estimates = ReadLandmarks(files.at("landmarks"), sequence);
-  BackEndInput input{sequence, {}, priors, {}, {}};
-  if (options.points.point_evidence) {
-    input.points = FindObjectPoints(sequence, ReadPointsOf(sequence, files), options.points);
-  }
-  if (UsesEdges(options)) ReadImages(options, files, threads, &input);
+  BackEndInput input = ReadInput(sequence, options, files, threads);
   input.initial_landmarks = options.detection_model == DetectionModel::kTangency
                                 ? ChooseInitialUprightLandmarks(input, estimates, options, threads)
                                 : ChooseInitialLandmarks(sequence, estimates);
@@ -148,6 +159,54 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
   fmt::print("{} iterations, cost {:.6g}{} -> {:.6g}{}{}\n", map.solver.iterations,
              map.solver.initial_cost, has_images ? " of boxes" : "", map.solver.final_cost,
              has_images ? " with images" : "", map.solver.converged ? "" : ", not converged");
+}
+
+int RunCheckMinima(const NoOptions& /*options*/, const StageFiles& files, int threads) {
+  const std::filesystem::path path = std::filesystem::canonical(files.at("map"));
+  const RunRecord record = ReadRun(path.parent_path() / "run.json");
+  StageFiles inputs;
+  for (const RunFile& file : record.inputs) {
+    if (!file.argument) continue;
+    inputs[*file.argument] =
+        (file.relative_to == kRelativeToRun ? path.parent_path() : record.called_in) / file.path;
+  }
+  OptimiseOptions options;
+  for (const auto& [name, setting] : record.settings.value()) {
+    OptionsFromJson({{name, setting.value}}, path.string(), &options);
+  }
+  Sequence sequence = ReadSequence(inputs.at("sequence"));
+  const MapEstimate map = ReadMap(path, sequence);
+  BackEndInput input = ReadInput(sequence, options, inputs, threads);
+  for (size_t i = 0; i < sequence.frames.size(); ++i) {
+    sequence.frames[i].world_from_camera = map.world_from_camera[i];
+  }
+  for (size_t i = 0; i < sequence.planes.size(); ++i) {
+    sequence.planes[i].plane_in_world = map.planes_in_world[i];
+  }
+  input.initial_landmarks.resize(sequence.objects.size());
+  for (const ObjectEstimate& object : map.objects) {
+    input.initial_landmarks[static_cast<size_t>(object.object_index)] = object.landmark_in_world;
+  }
+  int above = 0;
+  const auto minima = CheckMinima(input, options, threads);
+  for (const ObjectMinimum& minimum : minima) {
+    if (!minimum.IsAboveLowest()) continue;
+    ++above;
+    const auto index = static_cast<size_t>(minimum.object_index);
+    const Landmark& in_map = *input.initial_landmarks[index];
+    fmt::print(
+        "object {} ({}): cost {:.3f}, {:.3f} from another start: turned by {:.0f} degrees, "
+        "{:.3f} m away, {:.2f} times as large\n",
+        sequence.objects[index].id, sequence.objects[index].label, minimum.cost,
+        minimum.lowest_cost,
+        in_map.frame_from_object.rotation.angularDistance(
+            minimum.lowest_in_world.frame_from_object.rotation) /
+            kRadPerDeg,
+        (minimum.lowest_in_world.Centre() - in_map.Centre()).norm(),
+        MeanHalfAxis(minimum.lowest_in_world) / MeanHalfAxis(in_map));
+  }
+  fmt::print("{} of {} objects have a lower minimum\n", above, minima.size());
+  return above > 0 ? kFindings : static_cast<int>(ExitCode::kDone);
 }
 
 namespace {

@@ -284,6 +284,11 @@ int RunDoctor(const DoctorOptions& options, const StageFiles& files, int threads
 // place. The exit code is kFindings when there is any. Throws as FindRuns.
 int RunVerify(const NoOptions& options, const StageFiles& files, int threads);
 
+// Prints each object of map "map" that has a lower minimum of its cost than its landmark
+// (CheckMinima), with the inputs and settings in the record of the map's run. Returns kFindings if
+// there is one.
+int RunCheckMinima(const NoOptions& options, const StageFiles& files, int threads);
+
 // soslam-reproduce: repeats the runs of the variants in folder "results", as recorded in their
 // run.json, with the programs in folder "executables", into a folder beside "results" that is
 // removed at the end. Prints which artefacts are identical, and the first difference in the others.

@@ -8,7 +8,7 @@
 #include "base/process.h"
 #include "geometry/angles.h"
 #include "geometry/iou.h"
-#include "initialisation/initialise.h"
+#include "initialisation/yaw_sweep.h"
 #include "support/scene.h"
 #include "synthesis/render.h"
 #include "synthesis/scene.h"

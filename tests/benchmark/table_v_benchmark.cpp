@@ -10,7 +10,7 @@
 
 #include "benchmark/inputs.h"
 #include "benchmark/paper_baseline.h"
-#include "initialisation/initialise.h"
+#include "initialisation/yaw_sweep.h"
 #include "orientation/refine_by_profile.h"
 
 namespace soslam {

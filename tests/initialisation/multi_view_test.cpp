@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "initialisation/multi_view.h"
+
 #include <gtest/gtest.h>
 
 #include "geometry/angles.h"
 #include "geometry/iou.h"
 #include "initialisation/body_at_yaw.h"
 #include "initialisation/fit_object.h"
-#include "initialisation/initialise.h"
+#include "initialisation/svd.h"
 #include "support/cuboid_map.h"
 #include "support/one_body.h"
 #include "support/shape_exponents.h"
@@ -194,13 +196,13 @@ TEST(InitialiseMultiView, NeedsNoWideBaseline) {
   for (int i = 0; i < kWorlds; ++i) {
     World world(kCuboidExponent, straight_ahead);
     world.sequence = WithBoxNoise(world.sequence, 1.0);
-    InitialiseOptions options;
-    options.upright.axes_weight = 0.0;
+    UprightOptions options;
+    options.axes_weight = 0.0;
     const auto iou = [&](const LandmarkEstimates& estimates) {
       const auto& landmark = estimates.objects.at(0).landmark_in_world;
       return landmark ? BoxIou(*landmark, world.truth) / kWorlds : 0.0;
     };
-    multi_view += iou(InitialiseMultiView(world.sequence, {world.Prior(0.1)}, options, 1));
+    multi_view += iou(InitialiseMultiView(world.sequence, {world.Prior(0.1)}, options, 20.0, 1));
     svd += iou(InitialiseSvd(world.sequence));
   }
   EXPECT_GT(multi_view, 0.7);
@@ -210,7 +212,7 @@ TEST(InitialiseMultiView, NeedsNoWideBaseline) {
 TEST(InitialiseMultiView, SaysWhichObjectsAreNotDetermined) {
   World world(kCuboidExponent, {LookingAt({3.0, 1.0, 1.5}, {0, 0, 0.4})});
   const LandmarkEstimates estimates =
-      InitialiseMultiView(world.sequence, {std::nullopt}, InitialiseOptions(), 1);
+      InitialiseMultiView(world.sequence, {std::nullopt}, UprightOptions(), 20.0, 1);
   ASSERT_EQ(estimates.objects.size(), 1u);
   EXPECT_FALSE(estimates.objects[0].landmark_in_world);
   EXPECT_EQ(estimates.objects[0].failure, "not_determined_by_its_views");

@@ -5,7 +5,7 @@
 
 #include "geometry/angles.h"
 #include "geometry/iou.h"
-#include "initialisation/initialise.h"
+#include "initialisation/svd.h"
 #include "support/random.h"
 #include "support/scene.h"
 
@@ -40,7 +40,7 @@ bool Contains(const std::vector<Hypothesis>& hypotheses, const Landmark& truth) 
 TEST(SingleFrame, FindsTheTruthAmongTheYawsThatExplainTheBoxAtAnyYaw) {
   for (int degrees = -90; degrees < 90; degrees += 6) {
     const Standing standing(degrees * kRadPerDeg, {0.4, 0.2, 0.3});
-    const auto solution = InitialiseFromSingleFrame(standing.observation, InitialiseOptions());
+    const auto solution = InitialiseFromSingleFrame(standing.observation, SingleFrameOptions());
     EXPECT_TRUE(Contains(solution.hypotheses, standing.truth)) << degrees;
     EXPECT_LE(solution.hypotheses.size(), 4u) << degrees;
     EXPECT_LT(
@@ -54,12 +54,12 @@ TEST(SingleFrame, FindsTheTruthAmongTheYawsThatExplainTheBoxAtAnyYaw) {
 TEST(SingleFrame, BreaksTiesAsItIsTold) {
   const Standing standing(0.5, {0.4, 0.2, 0.3});
   for (const auto& other :
-       InitialiseFromSingleFrame(standing.observation, InitialiseOptions()).hypotheses) {
+       InitialiseFromSingleFrame(standing.observation, SingleFrameOptions()).hypotheses) {
     // With the scene's axis along a solution's front, that solution comes first.
     SingleFrameObservation observation = standing.observation;
     observation.scene_axis_in_camera =
         (other.landmark_in_camera.frame_from_object.rotation * Eigen::Vector3d::UnitX()).eval();
-    const auto solution = InitialiseFromSingleFrame(observation, InitialiseOptions());
+    const auto solution = InitialiseFromSingleFrame(observation, SingleFrameOptions());
     EXPECT_GT(BoxIou(solution.hypotheses.front().landmark_in_camera, other.landmark_in_camera),
               0.9999);
   }
@@ -70,7 +70,7 @@ TEST(SingleFrame, CostsAreThoseOfTheirLandmarks) {
   for (const Eigen::Vector2d& ratio : {Eigen::Vector2d(4.0 / 3.0, 2.0 / 3.0), {1.0, 1.0}}) {
     Standing standing(0.5, {0.4, 0.2, 0.3});
     standing.observation.ratio = ratio;
-    const auto solution = InitialiseFromSingleFrame(standing.observation, InitialiseOptions());
+    const auto solution = InitialiseFromSingleFrame(standing.observation, SingleFrameOptions());
     ASSERT_FALSE(solution.hypotheses.empty());
     for (const Hypothesis& hypothesis : solution.hypotheses) {
       EXPECT_NEAR(SingleFrameCost(standing.observation, ConstraintVariances(),
@@ -83,7 +83,7 @@ TEST(SingleFrame, CostsAreThoseOfTheirLandmarks) {
 TEST(SingleFrame, RefusesAPlaneThatIsNotInView) {
   Standing standing(0.5, {0.4, 0.2, 0.3});
   standing.observation.plane_in_camera.offset = -1.0;  // the floor above the camera
-  const auto solution = InitialiseFromSingleFrame(standing.observation, InitialiseOptions());
+  const auto solution = InitialiseFromSingleFrame(standing.observation, SingleFrameOptions());
   EXPECT_TRUE(solution.hypotheses.empty());
   EXPECT_EQ(solution.failure, "support_plane_not_in_view");
 }

@@ -13,7 +13,8 @@
 #include "evaluation/landmark_errors.h"
 #include "evaluation/statistics.h"
 #include "geometry/angles.h"
-#include "initialisation/initialise.h"
+#include "initialisation/multi_view.h"
+#include "initialisation/yaw_sweep.h"
 #include "mapping/back_end.h"
 #include "mapping/initial_landmarks.h"
 #include "support/one_body.h"
@@ -122,7 +123,7 @@ TEST(AnyFace, SeveralViewsAloneTellTheFace) {
     const Sequence sequence = Observe(truth, Views());
     ShapePrior prior = PriorOf(half_axes, 0.1, Attitude::kAnyFace);
     prior.height_m = LogNormal{2.0 * half_axes.z(), 0.1};
-    const auto of_views = InitialiseMultiView(sequence, {prior}, InitialiseOptions(), 1);
+    const auto of_views = InitialiseMultiView(sequence, {prior}, UprightOptions(), 20.0, 1);
     EXPECT_EQ(of_views.objects[0].landmark_in_world.value().rests_on, face);
     std::vector<int> all(sequence.detections.size());
     std::iota(all.begin(), all.end(), 0);

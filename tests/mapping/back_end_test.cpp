@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "evaluation/metrics.h"
 #include "geometry/iou.h"
-#include "initialisation/initialise.h"
+#include "initialisation/single_frame.h"
 #include "mapping/initial_landmarks.h"
 #include "support/cuboid_map.h"
 #include "support/scene.h"
@@ -95,7 +95,7 @@ TEST(BackEnd, RefusesAnInitialLandmarkWhoseCostIsNotDefined) {
 TEST(ChooseInitialLandmarks, TakesTheHypothesisThatFitsTheOtherViews) {
   const Sequence sequence = SyntheticSequence(RandomScene(11, 5, 20), false);
   const auto ratios = ObjectRatios(sequence, SemanticTable(), RatioPrior::kGroundTruth);
-  LandmarkEstimates estimates = InitialiseSingleFrame(sequence, ratios, InitialiseOptions(), 1);
+  LandmarkEstimates estimates = InitialiseSingleFrame(sequence, ratios, SingleFrameOptions(), 1);
   for (auto& observation : estimates.observations) {
     std::reverse(observation.hypotheses.begin(), observation.hypotheses.end());
   }

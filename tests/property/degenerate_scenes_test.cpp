@@ -8,7 +8,10 @@
 
 #include "association/association.h"
 #include "base/error.h"
-#include "initialisation/initialise.h"
+#include "initialisation/multi_view.h"
+#include "initialisation/single_frame.h"
+#include "initialisation/svd.h"
+#include "initialisation/yaw_sweep.h"
 #include "mapping/back_end.h"
 #include "mapping/initial_landmarks.h"
 #include "planes/estimate_planes.h"
@@ -244,7 +247,7 @@ TEST_P(DegenerateTest, SweepOverYaw) {
 TEST_P(DegenerateTest, SeveralViews) {
   ExpectAnswerOrRefusal([](const Sequence& sequence, const Priors& priors) {
     ExpectDefined(InitialiseSvd(sequence));
-    ExpectDefined(InitialiseMultiView(sequence, priors, {}, 1));
+    ExpectDefined(InitialiseMultiView(sequence, priors, {}, 20.0, 1));
   });
 }
 

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mapping/check_minima.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <utility>
+
+#include "support/cuboid_map.h"
+
+namespace soslam {
+namespace {
+
+OptimiseOptions Options() {
+  OptimiseOptions options;
+  options.detection_model = DetectionModel::kTangency;
+  options.axes_weight = 0.0;
+  return options;
+}
+
+TEST(CheckMinima, TrueLandmarksOfExactBoxesAreLowest) {
+  const Sequence sequence = CuboidSequence(3, 12);
+  const auto minima = CheckMinima(TruthInput(sequence), Options(), 2);
+  ASSERT_EQ(minima.size(), 3u);
+  for (const ObjectMinimum& minimum : minima) {
+    EXPECT_LT(minimum.cost, 1e-3);
+    EXPECT_FALSE(minimum.IsAboveLowest());
+  }
+}
+
+// A cuboid called by its other horizontal axis is a minimum of its own, against the prior's ratio.
+TEST(CheckMinima, FindsTheMinimumAQuarterTurnAway) {
+  const Sequence sequence = CuboidSequence(3, 12);
+  BackEndInput input = TruthInput(sequence);
+  Landmark& wrong = *input.initial_landmarks[1];
+  const Landmark truth = wrong;
+  wrong = RotatedAboutZ(wrong, 0.5 * std::numbers::pi);
+  std::swap(wrong.half_axes.x(), wrong.half_axes.y());
+  input.priors[1]->log_sigma = {0.1, 0.1};
+  const auto minima = CheckMinima(input, Options(), 1);
+  ASSERT_EQ(minima.size(), 3u);
+  EXPECT_FALSE(minima[0].IsAboveLowest());
+  EXPECT_TRUE(minima[1].IsAboveLowest()) << minima[1].cost << " " << minima[1].lowest_cost;
+  EXPECT_LT((minima[1].lowest_in_world.half_axes - truth.half_axes).norm(), 1e-2);
+  EXPECT_FALSE(minima[2].IsAboveLowest());
+}
+
+}  // namespace
+}  // namespace soslam
