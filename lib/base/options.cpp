@@ -9,7 +9,7 @@
 #include <set>
 
 #include "base/error.h"
-#include "base/spelling.h"
+#include "base/text.h"
 
 namespace soslam::internal {
 namespace {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,6 +38,11 @@ std::string NamesInWords(const std::vector<std::string>& names, size_t most = 3)
 
 // "1 object", "2 objects"
 std::string Counted(size_t count, const char* what);
+
+// The known name that a text probably misspells: the one with the fewest letters to insert, remove
+// or replace, at most two and less than half of the name (the first of several); none without one.
+std::optional<std::string> LikelyMeant(std::string_view text,
+                                       const std::vector<std::string>& known);
 
 // "7 near_border, 2 duplicate", the most frequent first; "none" when there are none.
 std::string CountsInWords(const std::map<std::string, int>& counts);

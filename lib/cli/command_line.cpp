@@ -18,7 +18,6 @@
 #include "artefact/json_file.h"
 #include "base/process.h"
 #include "base/progress.h"
-#include "base/spelling.h"
 #include "base/text.h"
 #include "cli/run_recorder.h"
 #include "dataset/image_path.h"

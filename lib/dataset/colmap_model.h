@@ -4,9 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
-#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "dataset/calibration_file.h"

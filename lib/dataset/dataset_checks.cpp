@@ -12,7 +12,6 @@
 #include <set>
 #include <span>
 
-#include "base/spelling.h"
 #include "base/text.h"
 #include "dataset/gate.h"
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/spelling.h"
+#include "base/text.h"
 
 namespace soslam {
 

@@ -10,7 +10,6 @@
 #include <set>
 #include <string>
 
-#include "base/spelling.h"
 #include "base/text.h"
 #include "evaluation/statistics.h"
 #include "geometry/angles.h"
