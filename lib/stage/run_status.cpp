@@ -16,7 +16,7 @@
 #include "cli/command_line.h"
 #include "report/results_tree.h"
 #include "stage/stages.h"
-#include "workflow/pipeline_settings.h"
+#include "workflow/pipeline_stages.h"
 #include "workflow/plan.h"
 #include "workflow/plan_state.h"
 

@@ -11,6 +11,8 @@
 #include "base/hash.h"
 #include "base/paths.h"
 #include "workflow/pipeline_settings.h"
+#include "workflow/pipeline_stages.h"
+#include "workflow/unused_settings.h"
 
 namespace soslam {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "base/paths.h"
-#include "workflow/pipeline_settings.h"
+#include "workflow/pipeline_stages.h"
 #include "workflow/plan.h"
 
 namespace soslam {

@@ -13,7 +13,7 @@
 #include "base/paths.h"
 #include "base/text.h"
 #include "report/results_tree.h"
-#include "workflow/pipeline_settings.h"
+#include "workflow/pipeline_stages.h"
 
 namespace soslam {
 namespace {

@@ -14,7 +14,7 @@
 #include "dataset/image_path.h"
 #include "inspection/difference.h"
 #include "report/results_tree.h"
-#include "workflow/pipeline_settings.h"
+#include "workflow/pipeline_stages.h"
 #include "workflow/verify.h"
 
 namespace soslam {

@@ -12,6 +12,7 @@
 #include "support/folder_test.h"
 #include "support/lists.h"
 #include "workflow/pipeline_settings.h"
+#include "workflow/pipeline_stages.h"
 #include "workflow/plan.h"
 
 namespace soslam {
