@@ -274,14 +274,14 @@ void Parse(int argc, const char* const* argv, CLI::App* app) {
   }
 }
 
-// Warns of settings that have no effect. A file with nearly all options, as those that the pipeline
-// writes (perhaps an older one), chooses none.
+// Warns of settings that have no effect. A file that sets all options, as those that the pipeline
+// writes, chooses none.
 void WarnOfSettingsWithoutEffect(const std::vector<SettingsLayer>& layers,
                                  const std::vector<OptionRow>& options,
                                  const nlohmann::json& resolved, const StageInfo& info) {
   std::vector<Finding> findings;
   for (const SettingsLayer& layer : layers) {
-    if (2 * layer.values.size() > options.size()) continue;
+    if (layer.values.size() == options.size()) continue;
     for (const auto& [name, value] : layer.values.items()) {
       const auto unmet = UnmetConditions(options, resolved, name);
       if (unmet.empty()) continue;

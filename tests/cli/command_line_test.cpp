@@ -127,6 +127,10 @@ TEST_F(CommandLineTest, SettingsWithoutEffectAreWarnedOf) {
   // The pipeline writes all options, which nobody chose.
   EXPECT_EQ(Run({"--settings", WriteSettings(OptionsToJson(TestOptions()).dump())}), 0);
   EXPECT_EQ(printed_.errors, "");
+  EXPECT_EQ(Run({"--settings", WriteSettings(R"({"salt": true, "offset_m": 1, "count": 1,
+                                                 "support": true, "note": "five of six"})")}),
+            0);
+  EXPECT_THAT(printed_.errors, HasSubstr("settings.json: salt = true has no effect"));
   EXPECT_EQ(Run({"--help"}), 0);
   EXPECT_THAT(printed_.output, HasSubstr("[default false; true | false; only where flavour ="));
 }
