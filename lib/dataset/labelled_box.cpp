@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <map>
 #include <string_view>
 
@@ -30,43 +29,39 @@ constexpr const char* kIdColumn = "object_id";
 constexpr std::array kAngles = {"rotation", "angle", "theta"};
 constexpr const char* kUprightBoxes = "no angle: oriented boxes are not read, save upright ones";
 
-// A column that may be absent, and other names of it. Tables with another name only are refused, as
-// their values would be ignored.
-struct OptionalColumn {
-  const char* name;
-  std::array<const char*, 2> other_names;
-};
-constexpr std::array kOptionalColumns = {OptionalColumn{"score", {"confidence", "conf"}},
-                                         OptionalColumn{kIdColumn, {"track_id", "track"}}};
+// Other names of columns that may be absent. Tables that have only these are refused, as their
+// values would be ignored.
+constexpr std::pair<const char*, const char*> kOtherNames[] = {
+    {"confidence", "score"}, {"conf", "score"}, {"track_id", kIdColumn}, {"track", kIdColumn}};
 
 CsvColumns ColumnsOfBoxes() {
   CsvColumns columns{{"frame", "label", "x1", "y1", "x2", "y2"},
-                     {kAngles.begin(), kAngles.end()},
+                     {"score", kIdColumn},
                      "; rows of MOTChallenge and trackers (frame from 1, id, left, top, width, "
                      "height, score) have no labels: docs/detections.md has the command that "
                      "converts them"};
-  for (const auto& [name, other_names] : kOptionalColumns) {
-    columns.optional.push_back(name);
-    std::ranges::copy(other_names, std::back_inserter(columns.optional));
-  }
+  columns.optional.insert(columns.optional.end(), kAngles.begin(), kAngles.end());
+  for (const auto& [other, name] : kOtherNames) columns.optional.emplace_back(other);
   return columns;
+}
+
+// The number that is all of a text; none for other texts.
+std::optional<double> OneNumber(const std::string& text) {
+  const auto numbers = ParseNumbers(text);
+  return numbers && numbers->size() == 1 ? std::optional(numbers->front()) : std::nullopt;
 }
 
 void RefuseWhatWouldBeIgnored(const CsvRow& row) {
   for (const char* angle : kAngles) {
-    if (!row.fields.contains(angle)) continue;
-    const auto numbers = ParseNumbers(row.fields.at(angle));
-    if (!numbers || numbers->size() != 1 || numbers->front() == 0.0) continue;
+    if (!row.fields.contains(angle) || OneNumber(row.fields.at(angle)).value_or(0.0) == 0.0)
+      continue;
     throw InputError(fmt::format("{}: {} is {}; expected {}", row.place, angle,
                                  row.fields.at(angle), kUprightBoxes));
   }
-  for (const auto& [name, other_names] : kOptionalColumns) {
-    if (row.fields.contains(name)) continue;
-    for (const char* other : other_names) {
-      if (!row.fields.contains(other)) continue;
-      throw InputError(fmt::format("{}: column '{}' would be ignored; expected its name to be {}",
-                                   row.place, other, name));
-    }
+  for (const auto& [other, name] : kOtherNames) {
+    if (row.fields.contains(name) || !row.fields.contains(other)) continue;
+    throw InputError(fmt::format("{}: column '{}' would be ignored; expected its name to be {}",
+                                 row.place, other, name));
   }
 }
 
@@ -263,7 +258,7 @@ void CheckSameCategories(const CocoNames& names, const fs::path& file, const Coc
 bool HasNumber(const JsonEntry& attributes, const char* name) {
   if (!attributes.Has(name)) return false;
   const json& value = attributes.Field(name);
-  return value.is_number() || (value.is_string() && ParseNumbers(value.get<std::string>()));
+  return value.is_number() || (value.is_string() && OneNumber(value.get<std::string>()));
 }
 
 void ReadEntry(const JsonEntry& entry, const std::optional<CocoNames>& names, CocoBoxes* read) {

@@ -182,6 +182,18 @@ TEST_F(CocoResultsTest, TurnedBoxesBecomeUpright) {
   EXPECT_EQ(turned(0.2).enlarged, 0);
 }
 
+TEST_F(CocoResultsTest, WordsAsAttributesAreNoAngles) {
+  for (const char* value : {R"("front")", R"("")", R"("30 degrees")", "true", "null", "[30]"}) {
+    SCOPED_TRACE(value);
+    const CocoBoxes read = ReadCocoResults(Write(
+        "results.json", fmt::format(R"([{{"image_id": 0, "category_id": 1, "bbox": [10, 10, 40, 20],
+                          "attributes": {{"rotation": {}}}}}])",
+                                    value)));
+    ExpectBox(Only(read.boxes).box, {9.5, 9.5, 49.5, 29.5});
+    EXPECT_EQ(read.enlarged, 0);
+  }
+}
+
 TEST_F(CocoResultsTest, WhatIsNoSingleObjectInTheImageIsLeftOut) {
   const CocoBoxes read = ReadCocoResults(Write("results.json", R"([
       {"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4], "iscrowd": 1},
