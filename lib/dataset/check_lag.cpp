@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/check_lag.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <vector>
 
-#include "dataset/dataset_checks.h"
 #include "dataset/tracked_rays.h"
 #include "evaluation/statistics.h"
 #include "geometry/rigid3.h"
@@ -17,116 +15,85 @@
 namespace soslam {
 namespace {
 
-// Poses over time, interpolated between time stamps, of each segment.
-class PoseCurves {
- public:
-  explicit PoseCurves(const std::vector<ListedFrame>& frames) {
-    for (const ListedFrame& listed : frames) {
-      if (!listed.has_pose) continue;
-      const double time = listed.pose_timestamp.value_or(listed.frame.timestamp);
-      curves_[listed.frame.segment].emplace(time, listed.frame.world_from_camera);
-    }
-  }
+constexpr double kTooFewRays = std::numeric_limits<double>::infinity();
 
-  // None outside the segment's poses.
-  std::optional<Rigid3d> At(int segment, double time) const {
-    const auto found = curves_.find(segment);
-    if (found == curves_.end()) return std::nullopt;
-    const auto after = found->second.lower_bound(time);
-    if (after == found->second.end()) return std::nullopt;
-    if (after->first == time) return after->second;
-    if (after == found->second.begin()) return std::nullopt;
-    const auto before = std::prev(after);
-    const double share = (time - before->first) / (after->first - before->first);
-    const Rigid3d &one = before->second, &other = after->second;
-    return Rigid3d{one.rotation.slerp(share, other.rotation),
-                   one.translation + share * (other.translation - one.translation)};
-  }
-
- private:
-  std::map<int, std::map<double, Rigid3d>> curves_;
-};
-
-// How rays meet if each image has the pose of so many seconds later.
-class ShiftedPoses {
- public:
-  ShiftedPoses(const ImportView& view, const std::vector<TrackedObject>& objects)
-      : frames_(view.content.frames), objects_(objects), curves_(frames_) {}
-
-  std::optional<RayError> ErrorAt(double shift_s) const {
-    std::vector<std::optional<Rigid3d>> poses;
-    for (const ListedFrame& listed : frames_) {
-      poses.push_back(curves_.At(listed.frame.segment, listed.frame.timestamp + shift_s));
-    }
-    return MedianRayError(objects_, [&](size_t frame) { return poses[frame]; });
-  }
-
- private:
-  const std::vector<ListedFrame>& frames_;
-  const std::vector<TrackedObject>& objects_;
-  PoseCurves curves_;
-};
-
-// A constant time between poses and images.
-struct Lag {
-  double seconds = 0.0;  // by which poses are stamped late
-  double images = 0.0;   // the same in intervals between images
-  RayError error;        // of poses from which the lag is taken
-  RayError with_lag;     // of poses interpolated at the time stamps of images
-};
-
-// Median time between consecutive frames; 0 if there are none.
-double MedianInterval(const std::vector<ListedFrame>& frames) {
-  std::vector<double> intervals;
-  for (size_t i = 1; i < frames.size(); ++i) {
-    const Frame &last = frames[i - 1].frame, &frame = frames[i].frame;
-    if (frame.segment == last.segment) intervals.push_back(frame.timestamp - last.timestamp);
-  }
-  return MedianOf(intervals).value_or(0.0);
+// The pose at a time, interpolated between those of other times; none outside them.
+std::optional<Rigid3d> PoseAt(const std::map<double, Rigid3d>& poses, double time) {
+  const auto after = poses.lower_bound(time);
+  if (after == poses.end()) return std::nullopt;
+  if (after->first == time) return after->second;
+  if (after == poses.begin()) return std::nullopt;
+  const auto& [time_before, before] = *std::prev(after);
+  const double share = (time - time_before) / (after->first - time_before);
+  return Rigid3d{before.rotation.slerp(share, after->second.rotation),
+                 before.translation + share * (after->second.translation - before.translation)};
 }
 
-double LongestSegment(const std::vector<ListedFrame>& frames) {
-  std::map<int, std::pair<double, double>> times;  // first and last, by segment
-  double longest = 0.0;
-  for (const ListedFrame& listed : frames) {
-    const double time = listed.frame.timestamp;
-    auto& [first, last] = times.try_emplace(listed.frame.segment, time, time).first->second;
-    first = std::min(first, time);
-    last = std::max(last, time);
-    longest = std::max(longest, last - first);
-  }
-  return longest;
-}
-
-// True if an error is clearly smaller than that of the poses as they are read.
-bool IsClearlyBetter(const RayError& error, const RayError& as_read, double share) {
-  constexpr double kLeastDeg = 0.02;
-  constexpr double kFitsDeg = 2.0;
-  return error.median_deg <
-         std::min({share * as_read.median_deg, as_read.median_deg - kLeastDeg, kFitsDeg});
+// The median of an error; infinite where too few rays meet.
+double MedianDeg(const std::optional<RayError>& error, const RayError& as_read) {
+  return IsComparable(error, as_read) ? error->median_deg : kTooFewRays;
 }
 
 constexpr double kClearlyBetter = 0.7;
 
-// The lag with which rays meet best, if they do so clearly better than without, and worse with the
-// opposite one.
+// True if rays meet clearly better with a shift than without, and worse with the opposite one.
+bool IsBetterOneWay(double shifted_deg, double opposite_deg, double unshifted_deg, double share) {
+  constexpr double kLeastDeg = 0.02;
+  constexpr double kFitsDeg = 2.0;
+  return shifted_deg < std::min({share * unshifted_deg, unshifted_deg - kLeastDeg, kFitsDeg}) &&
+         opposite_deg > unshifted_deg && opposite_deg < kTooFewRays;
+}
+
+// A constant time between poses and images.
+struct Lag {
+  double seconds = 0.0;       // by which poses are stamped late
+  double images = 0.0;        // the same in intervals between images
+  double median_deg = 0.0;    // error of poses from which the lag is taken
+  double with_lag_deg = 0.0;  // of poses interpolated at the time stamps of images
+};
+
+// The lag with which rays meet best, if they do so clearly better than without.
 std::optional<Lag> FindLag(const ImportView& view, const std::vector<TrackedObject>& objects,
                            const RayError& as_read) {
   constexpr double kMostOfSequence = 0.2;
   constexpr double kMostSteps = 100.0;  // in each direction
   constexpr int kRefinements = 3;
   constexpr double kAsWell = 1.1;
-  const double interval_s = MedianInterval(view.content.frames);
-  const double range_s = kMostOfSequence * LongestSegment(view.content.frames);
+  std::map<int, std::map<double, Rigid3d>> poses_of_segment;  // by time
+  std::vector<double> intervals_s;
+  double longest_s = 0.0, begin = 0.0;  // of a segment
+  const std::vector<ListedFrame>& frames = view.content.frames;
+  for (size_t i = 0; i < frames.size(); ++i) {
+    const Frame& frame = frames[i].frame;
+    if (const auto pose = frames[i].Pose()) {
+      const double time = frames[i].pose_timestamp.value_or(frame.timestamp);
+      poses_of_segment[frame.segment].emplace(time, *pose);
+    }
+    if (i == 0 || frame.segment != frames[i - 1].frame.segment) {
+      begin = frame.timestamp;
+    } else {
+      intervals_s.push_back(frame.timestamp - frames[i - 1].frame.timestamp);
+      longest_s = std::max(longest_s, frame.timestamp - begin);
+    }
+  }
+  const double interval_s = MedianOf(intervals_s).value_or(0.0);
+  const double range_s = kMostOfSequence * longest_s;
   if (!(interval_s > 0.0) || range_s < interval_s) return std::nullopt;
-  const ShiftedPoses shifted(view, objects);
-  const auto with_lag = shifted.ErrorAt(0.0);
-  if (!IsComparable(with_lag, as_read)) return std::nullopt;
-  Lag best{0.0, 0.0, *with_lag, *with_lag};
+  // The error if each image has the pose of so many seconds later.
+  const auto median_at = [&](double shift_s) {
+    std::vector<std::optional<Rigid3d>> poses;
+    for (const auto& [frame, has_pose, pose_timestamp] : frames) {
+      poses.push_back(PoseAt(poses_of_segment[frame.segment], frame.timestamp + shift_s));
+    }
+    return MedianDeg(MedianRayError(objects, [&](size_t frame) { return poses[frame]; }), as_read);
+  };
+  const double with_lag_deg = median_at(0.0);
+  if (with_lag_deg == kTooFewRays) return std::nullopt;
+  Lag best{0.0, 0.0, with_lag_deg, with_lag_deg};
   const auto consider = [&](double shift_s) {
-    const auto error = shifted.ErrorAt(shift_s);
-    if (!IsComparable(error, as_read) || error->median_deg >= best.error.median_deg) return;
-    best = {shift_s, shift_s / interval_s, *error, *with_lag};
+    const double median_deg = median_at(shift_s);
+    if (median_deg >= best.median_deg) return;
+    best = {shift_s, shift_s / interval_s, median_deg, with_lag_deg};
   };
   double step_s = std::max(interval_s, range_s / kMostSteps);
   for (double shift_s = step_s; shift_s <= range_s; shift_s += step_s) {
@@ -140,14 +107,12 @@ std::optional<Lag> FindLag(const ImportView& view, const std::vector<TrackedObje
   }
   // Box noise moves the minimum; a whole number of images with which rays meet as well is likelier.
   const double whole = std::round(best.images);
-  const auto with_whole = shifted.ErrorAt(whole * interval_s);
-  if (IsComparable(with_whole, as_read) &&
-      with_whole->median_deg <= kAsWell * best.error.median_deg) {
-    best = {whole * interval_s, whole, *with_whole, *with_lag};
+  const double with_whole_deg = median_at(whole * interval_s);
+  if (with_whole_deg <= kAsWell * best.median_deg) {
+    best = {whole * interval_s, whole, with_whole_deg, with_lag_deg};
   }
-  const auto opposite = shifted.ErrorAt(-best.seconds);
-  if (!IsClearlyBetter(best.error, *with_lag, kClearlyBetter) || !IsComparable(opposite, as_read) ||
-      opposite->median_deg <= with_lag->median_deg) {
+  const double opposite_deg = median_at(-best.seconds);
+  if (!IsBetterOneWay(best.median_deg, opposite_deg, with_lag_deg, kClearlyBetter)) {
     return std::nullopt;
   }
   return best;
@@ -159,28 +124,25 @@ std::vector<Finding> CheckFrameNumbers(const ImportView& view,
                                        const std::vector<TrackedObject>& objects,
                                        const RayError& as_read) {
   constexpr double kBetter = 0.85;
-  const auto error_at = [&](int shift) {
-    return MedianRayError(objects, [&](size_t frame) {
+  const auto median_at = [&](int shift) {
+    const auto pose_of = [&](size_t frame) {
       return PoseOfOther(view, frame, frame + static_cast<size_t>(shift));  // wraps before 0
-    });
+    };
+    return MedianDeg(MedianRayError(objects, pose_of), as_read);
   };
   const int first_id = view.content.frames.front().frame.id;
   const bool is_first_empty = std::ranges::none_of(
       view.content.rows, [&](const DetectionRow& row) { return row.frame_id == first_id; });
   for (const int shift : {-1, 1}) {
-    const auto error = error_at(shift);
-    const auto opposite = error_at(-shift);
-    if (!IsComparable(error, as_read) || !IsComparable(opposite, as_read)) continue;
+    const double median_deg = median_at(shift);
     const double share = shift < 0 && is_first_empty ? kBetter : kClearlyBetter;
-    if (!IsClearlyBetter(*error, as_read, share) || opposite->median_deg <= as_read.median_deg) {
-      continue;
-    }
+    if (!IsBetterOneWay(median_deg, median_at(-shift), as_read.median_deg, share)) continue;
     const bool is_late = shift < 0;
     return {
         {"frame_numbers", Severity::kWarning,
          fmt::format("things are {:.2f} degrees from where they are seen (median), but {:.2f} if "
                      "each box is of the image {} the one that it names",
-                     as_read.median_deg, error->median_deg, is_late ? "before" : "after"),
+                     as_read.median_deg, median_deg, is_late ? "before" : "after"),
          "frames that are rows of the list of images, from 0",
          is_late ? "frames counted from 1, or poses that are one image early"
                  : "frames that begin one image late, or poses that are one image late",
@@ -206,8 +168,8 @@ std::vector<Finding> CheckLag(const ImportView& view, const std::vector<TrackedO
   return {{kPoseLag, Severity::kWarning,
            fmt::format("things are {:.2f} degrees from where they are seen (median), but {:.2f} if "
                        "each image takes the pose of {:.3g} s {} ({:.3g} images)",
-                       lag->with_lag.median_deg, lag->error.median_deg, seconds,
-                       is_late ? "later" : "earlier", std::abs(lag->images)),
+                       lag->with_lag_deg, lag->median_deg, seconds, is_late ? "later" : "earlier",
+                       std::abs(lag->images)),
            "images and poses of one clock",
            is_late ? "poses that are stamped late, as by a delay or another clock, or images and "
                      "boxes that are stamped early"

@@ -8,7 +8,6 @@
 #include <numeric>
 #include <vector>
 
-#include "dataset/check_lag.h"
 #include "dataset/dataset_checks.h"
 #include "dataset/tracked_rays.h"
 #include "evaluation/trajectory_error.h"

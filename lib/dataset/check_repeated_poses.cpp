@@ -26,22 +26,12 @@ struct PoseRun {
   size_t last = 0;
 };
 
-bool HaveSamePose(const Frame& one, const Frame& other) {
-  const Rigid3d &a = one.world_from_camera, &b = other.world_from_camera;
-  return one.segment == other.segment && a.translation == b.translation &&
-         a.rotation.coeffs() == b.rotation.coeffs();
-}
-
 std::vector<PoseRun> FindRuns(const std::vector<ListedFrame>& frames) {
   std::vector<PoseRun> runs;
-  size_t first = 0;
-  for (size_t i = 1; i <= frames.size(); ++i) {
-    if (i < frames.size() && frames[first].has_pose && frames[i].has_pose &&
-        HaveSamePose(frames[first].frame, frames[i].frame)) {
-      continue;
-    }
-    if (i - first > 1) runs.push_back({first, i - 1});
-    first = i;
+  for (size_t i = 1; i < frames.size(); ++i) {
+    if (!RepeatsPose(frames, i)) continue;
+    if (runs.empty() || runs.back().last != i - 1) runs.push_back({i - 1, i});
+    runs.back().last = i;
   }
   return runs;
 }
@@ -95,6 +85,13 @@ bool DoBoxesMove(const std::vector<TrackedObject>& objects, const PoseRun& run) 
 }
 
 }  // namespace
+
+bool RepeatsPose(const std::vector<ListedFrame>& frames, size_t i) {
+  if (i == 0 || frames[i].frame.segment != frames[i - 1].frame.segment) return false;
+  const auto pose = frames[i].Pose(), before = frames[i - 1].Pose();
+  return pose && before && pose->translation == before->translation &&
+         pose->rotation.coeffs() == before->rotation.coeffs();
+}
 
 std::vector<Finding> CheckRepeatedPoses(const ImportView& view) {
   constexpr size_t kMostRuns = 20;  // whose images are read

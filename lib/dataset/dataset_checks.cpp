@@ -32,11 +32,17 @@ std::vector<Finding> CheckDataset(const ImportView& view) {
   };
   add({&CheckCamera, &CheckImages, &CheckBoxes, &CheckRepeatedPoses});
   // Boxes with a wrong camera, and wrong boxes, contradict even the best poses; wrong poses
-  // contradict objects and planes. Poses that a tracker repeats lag, too, by as long as it was
-  // lost.
-  const bool are_repeated = has(&Finding::check, kRepeatedPoses);
-  if (!has(&Finding::severity, Severity::kError)) add({&CheckPoses});
-  if (are_repeated) std::erase_if(findings, [](const auto& one) { return one.check == kPoseLag; });
+  // contradict objects and planes. Poses that a tracker repeats lag by as long as it was lost.
+  DatasetContent content = view.content;
+  if (has(&Finding::check, kRepeatedPoses)) {
+    for (size_t i = 0; i < content.frames.size(); ++i) {
+      if (RepeatsPose(view.content.frames, i)) content.frames[i].has_pose = false;
+    }
+  }
+  if (!has(&Finding::severity, Severity::kError)) {
+    const ImportView without_repeated = {view.folder, view.options, content, view.sequence};
+    std::ranges::move(CheckPoses(without_repeated), std::back_inserter(findings));
+  }
   if (!has(&Finding::severity, Severity::kError) && !has(&Finding::check, kPoseConvention)) {
     const size_t before = findings.size();
     add({&CheckObjects, &CheckPlanes});

@@ -58,6 +58,8 @@ inline constexpr const char* kPoseLag = "pose_lag";
 inline constexpr const char* kRepeatedPoses = "repeated_poses";
 inline constexpr const char* kBoxesAgainstPoses = "boxes_against_poses";
 std::vector<Finding> CheckPoses(const ImportView& view);
+// True if a frame has exactly the pose of that before in its segment.
+bool RepeatsPose(const std::vector<ListedFrame>& frames, size_t i);
 // Consecutive frames with exactly the same pose whose images or boxes move.
 std::vector<Finding> CheckRepeatedPoses(const ImportView& view);
 // True objects against the boxes with their ids, and against their planes: another world, ids

@@ -52,4 +52,9 @@ std::optional<RayError> MedianRayError(const std::vector<TrackedObject>& objects
 // True if an error is from about the same number of rays.
 bool IsComparable(const std::optional<RayError>& error, const RayError& as_read);
 
+// Poses that are a constant time late or early, of which the seconds and the images are measured,
+// or frames that are counted from 1: rays meet clearly better from the poses of other times.
+std::vector<Finding> CheckLag(const ImportView& view, const std::vector<TrackedObject>& objects,
+                              const RayError& as_read);
+
 }  // namespace soslam

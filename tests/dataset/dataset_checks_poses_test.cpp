@@ -120,6 +120,17 @@ TEST_F(DatasetChecksTest, EverySecondPoseIsThatBefore) {
   EXPECT_THAT(Warnings(), testing::Not(Contains(HasSubstr("pose_lag"))));
 }
 
+TEST_F(DatasetChecksTest, PosesThatLagBesideRepeatedOnes) {
+  dataset.sway = 0.5;
+  dataset.pose_of_frame = [](int frame) { return frame < 10 || frame > 15 ? frame : 10; };
+  dataset.pose_time = [](double t) { return fmt::format("{:.6f}", t + 1.0); };
+  options_.max_time_difference_s = 0.25;
+  const auto warnings = Warnings();
+  EXPECT_THAT(warnings, Contains(testing::StartsWith("repeated_poses: 5 frames")));
+  EXPECT_THAT(warnings, Contains(testing::AllOf(testing::StartsWith("pose_lag"),
+                                                HasSubstr("pose of 1 s later (2 images)"))));
+}
+
 TEST_F(DatasetChecksTest, EurocsPosesOfTheCameraWithAndWithoutBoxesThatTell) {
   WriteEuroc();
   EXPECT_THAT(Warnings(), IsEmpty());
