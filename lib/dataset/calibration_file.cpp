@@ -115,11 +115,6 @@ bool IsOfDistortion(const std::string& plain_key) {
          (last.starts_with("dist") && !last.starts_with("distance"));
 }
 
-bool IsNumber(const std::string& text) {
-  const auto numbers = ParseNumbers(text);
-  return numbers && numbers->size() == 1;
-}
-
 class CalibrationReader {
  public:
   CalibrationReader(const NamedFields& fields, std::string file) : file_(std::move(file)) {
@@ -249,18 +244,18 @@ class CalibrationReader {
     for (const auto& [key, values] : fields_) {
       if (key.find("fisheye") == key.npos || values.empty()) continue;
       const std::string& value = values.front();
-      const bool is_zero = IsNumber(value) ? std::stod(value) == 0.0
-                                           : value == "false" || value == "False" || value == "no";
-      if (!is_zero)
-        ParseLens("fisheye", {}, fmt::format("{}: {} is {}", file_, names_.at(key), value));
+      if (value == "false" || value == "False" || value == "no" || ParseNumber(value) == 0.0)
+        continue;
+      ParseLens("fisheye", {}, fmt::format("{}: {} is {}", file_, names_.at(key), value));
     }
   }
 
   // Refuses distortion in fields that are not `read`, so that it is not ignored silently.
   void RefuseOtherDistortion(const Values* read) const {
     for (const auto& [key, values] : fields_) {
-      if (&values == read || !IsOfDistortion(key) || !std::ranges::any_of(values, IsNumber))
-        continue;
+      const bool has_number = std::ranges::any_of(
+          values, [](const std::string& value) { return ParseNumber(value).has_value(); });
+      if (&values == read || !IsOfDistortion(key) || !has_number) continue;
       Refuse(fmt::format("{} is not read; expected distortion_coefficients, dist_coeffs or D, once",
                          names_.at(key)));
     }

@@ -69,11 +69,9 @@ const std::string& RecordingValues::Of(int recording) const {
 
 double RecordingValues::PositiveOf(int recording) const {
   const std::string& text = Of(recording);
-  const auto numbers = ParseNumbers(text);
-  if (!numbers || numbers->size() != 1 || !(numbers->front() > 0.0)) {
-    RefuseSetting(option_, text, "a number above 0");
-  }
-  return numbers->front();
+  const double number = ParseNumber(text).value_or(0.0);
+  if (!(number > 0.0)) RefuseSetting(option_, text, "a number above 0");
+  return number;
 }
 
 namespace {

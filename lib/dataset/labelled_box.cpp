@@ -45,15 +45,9 @@ CsvColumns ColumnsOfBoxes() {
   return columns;
 }
 
-// The number that is all of a text; none for other texts.
-std::optional<double> OneNumber(const std::string& text) {
-  const auto numbers = ParseNumbers(text);
-  return numbers && numbers->size() == 1 ? std::optional(numbers->front()) : std::nullopt;
-}
-
 void RefuseWhatWouldBeIgnored(const CsvRow& row) {
   for (const char* angle : kAngles) {
-    if (!row.fields.contains(angle) || OneNumber(row.fields.at(angle)).value_or(0.0) == 0.0)
+    if (!row.fields.contains(angle) || ParseNumber(row.fields.at(angle)).value_or(0.0) == 0.0)
       continue;
     throw InputError(fmt::format("{}: {} is {}; expected {}", row.place, angle,
                                  row.fields.at(angle), kUprightBoxes));
@@ -65,13 +59,6 @@ void RefuseWhatWouldBeIgnored(const CsvRow& row) {
   }
 }
 
-// Some programs write a column with gaps as real numbers: 7 is "7.0".
-std::optional<int> ParseObjectId(std::string_view text, const std::string& place) {
-  if (text.empty()) return std::nullopt;
-  if (text.ends_with(".0")) text.remove_suffix(2);
-  return ParseInteger(text, place, kIdColumn);
-}
-
 LabelledBox ParseBox(const CsvRow& row) {
   RefuseWhatWouldBeIgnored(row);
   LabelledBox box{row.place,
@@ -80,8 +67,13 @@ LabelledBox ParseBox(const CsvRow& row) {
                   row.fields.contains("score") ? row.Real("score") : 1.0,
                   {row.Real("x1"), row.Real("y1"), row.Real("x2"), row.Real("y2")}};
   if (box.label.empty()) throw InputError(row.place + ": label is empty; expected a category");
-  const auto id = row.fields.find(kIdColumn);
-  if (id != row.fields.end()) box.object_id = ParseObjectId(id->second, row.place);
+  const auto field = row.fields.find(kIdColumn);
+  if (field != row.fields.end() && !field->second.empty()) {
+    // Some programs write a column with gaps as real numbers: 7 is "7.0".
+    std::string_view id = field->second;
+    if (id.ends_with(".0")) id.remove_suffix(2);
+    box.object_id = ParseInteger(id, row.place, kIdColumn);
+  }
   return box;
 }
 
@@ -258,7 +250,7 @@ void CheckSameCategories(const CocoNames& names, const fs::path& file, const Coc
 bool HasNumber(const JsonEntry& attributes, const char* name) {
   if (!attributes.Has(name)) return false;
   const json& value = attributes.Field(name);
-  return value.is_number() || (value.is_string() && OneNumber(value.get<std::string>()));
+  return value.is_number() || (value.is_string() && ParseNumber(value.get<std::string>()));
 }
 
 void ReadEntry(const JsonEntry& entry, const std::optional<CocoNames>& names, CocoBoxes* read) {

@@ -87,8 +87,7 @@ bool HasDecimalComma(std::string_view text) {
   const size_t comma = with_point.find(',');
   if (comma == with_point.npos) return false;
   with_point[comma] = '.';
-  double number = 0.0;
-  return ParseWhole(with_point, &number);
+  return ParseNumber(with_point).has_value();
 }
 
 }  // namespace
@@ -123,12 +122,9 @@ std::vector<TextLine> RawLines(const std::string& text, const std::string& name)
 }
 
 double ParseReal(std::string_view text, const std::string& place, const std::string& field) {
-  double number = 0.0;
-  if (!ParseWhole(text, &number) || !std::isfinite(number)) {
-    throw InputError(fmt::format("{}: {} is '{}'; expected a finite number{}", place, field, text,
-                                 HasDecimalComma(text) ? ", with a decimal point" : ""));
-  }
-  return number;
+  if (const auto number = ParseNumber(text)) return *number;
+  throw InputError(fmt::format("{}: {} is '{}'; expected a finite number{}", place, field, text,
+                               HasDecimalComma(text) ? ", with a decimal point" : ""));
 }
 
 int ParseInteger(std::string_view text, const std::string& place, const std::string& field) {
@@ -139,12 +135,17 @@ int ParseInteger(std::string_view text, const std::string& place, const std::str
   return number;
 }
 
+std::optional<double> ParseNumber(std::string_view text) {
+  double number = 0.0;
+  return ParseWhole(text, &number) && std::isfinite(number) ? std::optional(number) : std::nullopt;
+}
+
 std::optional<std::vector<double>> ParseNumbers(std::string_view text) {
   std::vector<double> numbers;
   for (const std::string_view word : SplitWords(text)) {
-    double number = 0.0;
-    if (!ParseWhole(word, &number) || !std::isfinite(number)) return std::nullopt;
-    numbers.push_back(number);
+    const auto number = ParseNumber(word);
+    if (!number) return std::nullopt;
+    numbers.push_back(*number);
   }
   return numbers;
 }
@@ -215,9 +216,8 @@ std::map<std::string, size_t> PositionsOf(const CsvColumns& columns,
   if (ParseWhole(std::string_view(header[0]).substr(0, header[0].find(' ')), &number)) {
     const bool is_all_numbers = ParseNumbers(fmt::format("{}", fmt::join(header, " "))).has_value();
     throw InputError(
-        fmt::format("{}: has no header, but '{}'; expected the names of the columns, "
-                    "{}{}",
-                    place, fmt::join(header, ","), fmt::join(columns.required, ","),
+        fmt::format("{}: has no header, but '{}'; expected the names of the columns, {}{}", place,
+                    fmt::join(header, ","), fmt::join(columns.required, ","),
                     is_all_numbers ? columns.rows_of_numbers : ""));
   }
   std::map<std::string, size_t> positions;

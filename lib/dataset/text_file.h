@@ -56,6 +56,8 @@ int ParseInteger(std::string_view text, const std::string& place, const std::str
 
 // The numbers of a setting; none when one of its words is not a number.
 std::optional<std::vector<double>> ParseNumbers(std::string_view text);
+// The finite number that a text consists of; none for other texts.
+std::optional<double> ParseNumber(std::string_view text);
 // Throws SettingsError for the text of an option.
 [[noreturn]] void RefuseSetting(const std::string& option, std::string_view found,
                                 const std::string& expected);
