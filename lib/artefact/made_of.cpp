@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "artefact/made_of.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <set>
-#include <string>
-#include <vector>
 
+#include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
-#include "artefact/json_file.h"
 #include "base/error.h"
 #include "base/options.h"
 #include "base/paths.h"

@@ -22,6 +22,22 @@ struct LensCamera {
   bool operator==(const LensCamera&) const = default;
 };
 
+// The camera of an image, as a file with several cameras has it.
+struct PlacedCamera {
+  std::string place;  // for messages
+  LensCamera camera;
+};
+
+// Distance in pixels of the two image points of a ray, root mean square over the rays of the whole
+// image. Infinite for images of different sizes.
+double DisplacementPx(const LensCamera& one, const LensCamera& other);
+
+// The one camera of all images, of which there is one at least: the mean of the given ones. It is a
+// finding if they are not equal. Throws InputError, naming the place and `remedy`, if one of them
+// displaces image points by a pixel or more, which is the least standard deviation of a box edge.
+LensCamera OneCamera(const std::vector<PlacedCamera>& cameras, const std::string& remedy,
+                     std::vector<Finding>* findings);
+
 // Distortion from the name of a model and its coefficients, in OpenCV's order: 4, 5, 8, 12 or 14 of
 // them. Tools name models differently ("plumb_bob", "radtan", "OPENCV", "rational polynomial");
 // capitals and word separators are ignored. None without coefficients. Throws InputError, naming

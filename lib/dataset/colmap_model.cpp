@@ -14,7 +14,6 @@
 
 #include "base/error.h"
 #include "base/paths.h"
-#include "dataset/one_camera.h"
 #include "dataset/text_file.h"
 #include "geometry/camera.h"
 #include "geometry/image_size.h"
@@ -336,10 +335,9 @@ LensCamera CameraOf(const std::vector<ColmapImage>& images,
   for (const ColmapImage& image : images) {
     const auto camera = by_id.find(image.camera_id);
     if (camera == by_id.end()) {
-      throw InputError(
-          fmt::format("{}: has camera {}, which the cameras do not have; expected "
-                      "files of one model",
-                      image.pose.place, image.camera_id));
+      throw InputError(fmt::format(
+          "{}: has camera {}, which the cameras do not have; expected files of one model",
+          image.pose.place, image.camera_id));
     }
     used.push_back(*camera->second);
   }
@@ -417,10 +415,9 @@ void CheckTracks(ColmapModel* model) {
   if (left_out == 0) return;
   model->findings.push_back(
       {"tracks_without_images", Severity::kWarning,
-       fmt::format(
-           "{}: {} of {} observations of points are in images that the model does not have, "
-           "or has without image points; they are left out",
-           file, left_out, all),
+       fmt::format("{}: {} of {} observations of points are in images that the model does not "
+                   "have, or has without image points; they are left out",
+                   file, left_out, all),
        "images, with their image points, for all observations",
        "images that were taken out of the model, or lines of image points that were left empty",
        "nothing where enough points are left; otherwise the whole model"});

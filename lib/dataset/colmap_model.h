@@ -69,6 +69,13 @@ bool IsColmapModel(const std::filesystem::path& folder);
 // points, a track that refers to none of them is refused.
 ColmapModel ReadColmapModel(const std::filesystem::path& folder);
 
+// Throws InputError unless a finished model is of the images as they are stored, as COLMAP reads
+// them: by the size of its camera and, for images that EXIF turns within their size, by the colours
+// of its points. It is a finding if these do not tell.
+std::vector<Finding> CheckModelOrientation(const ColmapModel& model,
+                                           const std::vector<ListedImage>& images,
+                                           const std::filesystem::path& dataset);
+
 // Name and parameters ("500,500,320,240") of COLMAP's smallest camera model that includes a lens.
 struct ColmapCameraText {
   std::string model;

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/model_orientation.h"
-
 #include <fmt/format.h>
 
 #include <Eigen/Core>
@@ -10,6 +8,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "dataset/colmap_model.h"
 #include "dataset/image_path.h"
 #include "image/image_format.h"
 #include "image/read_image.h"
@@ -30,6 +29,17 @@ struct GreyCorrelations {
   Eigen::Index points = 0;
   double with_stored = 0.0;
   double with_upright = 0.0;  // if images are turned upright
+
+  // Evidence for upright rather than stored images, in standard deviations: the difference after
+  // Fisher's transformation.
+  double SigmasForUpright() const {
+    constexpr double kMost = 1.0 - 1e-9;
+    constexpr Eigen::Index kFewest = 10;
+    if (points < kFewest) return 0.0;
+    const auto transformed = [&](double r) { return std::atanh(std::clamp(r, -kMost, kMost)); };
+    return (transformed(with_upright) - transformed(with_stored)) *
+           std::sqrt(0.5 * static_cast<double>(points - 3));
+  }
 };
 
 // Each point counts once. `images` is keyed by id.
@@ -72,17 +82,6 @@ GreyCorrelations CorrelateGreys(const ColmapModel& model,
   return result;
 }
 
-// Evidence of the colours for upright rather than stored images, in standard deviations: the
-// difference of the correlations after Fisher's transformation.
-double SigmasForUpright(const GreyCorrelations& greys) {
-  constexpr double kMost = 1.0 - 1e-9;
-  constexpr Eigen::Index kFewest = 10;
-  if (greys.points < kFewest) return 0.0;
-  const auto transformed = [&](double r) { return std::atanh(std::clamp(r, -kMost, kMost)); };
-  return (transformed(greys.with_upright) - transformed(greys.with_stored)) *
-         std::sqrt(0.5 * static_cast<double>(greys.points - 3));
-}
-
 constexpr const char* kRemedy =
     "turn the files upright (exiftran -ai) and give these, with a model of them";
 
@@ -122,12 +121,11 @@ std::vector<Finding> CheckModelOrientation(const ColmapModel& model,
   const size_t count = turned.size();
   while (turned.size() > kMostImages) turned.erase(std::prev(turned.end()));
   const GreyCorrelations greys = CorrelateGreys(model, turned);
-  const double sigmas = SigmasForUpright(greys);
+  const double sigmas = greys.SigmasForUpright();
   if (sigmas <= -kSignificant) return {};
   const std::string what = fmt::format(
-      "{} images are turned by EXIF within their size, and {} points of the model "
-      "correlate by {:.2f} with the grey values of stored images, by {:.2f} with those "
-      "of upright ones",
+      "{} images are turned by EXIF within their size, and {} points of the model correlate by "
+      "{:.2f} with the grey values of stored images, by {:.2f} with those of upright ones",
       count, greys.points, greys.with_stored, greys.with_upright);
   if (sigmas >= kSignificant) {
     throw InputError(fmt::format("{}: {}; expected a model of the images as they are stored: {}",

@@ -12,7 +12,6 @@
 #include "base/error.h"
 #include "dataset/image_path.h"
 #include "dataset/json_entry.h"
-#include "dataset/one_camera.h"
 #include "geometry/camera.h"
 #include "geometry/image_size.h"
 #include "image/image_format.h"
@@ -55,8 +54,7 @@ Camera ParseNerfstudioCamera(const JsonEntry& entry) {
   for (const char* side : {"w", "h"}) {
     if (!entry.Has(side)) {
       throw InputError(
-          fmt::format("{}: {} is missing; expected it, or the images that the frames "
-                      "name",
+          fmt::format("{}: {} is missing; expected it, or the images that the frames name",
                       entry.place(), side));
     }
     if (!IsWholeImageSize(entry.Real(side), 1.0)) entry.Refuse(side, "pixels above 0");

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/one_camera.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +6,7 @@
 #include <limits>
 
 #include "base/error.h"
-#include "geometry/distortion.h"
+#include "dataset/calibration_file.h"
 
 namespace soslam {
 namespace {
@@ -82,13 +80,11 @@ LensCamera OneCamera(const std::vector<PlacedCamera>& cameras, const std::string
   const auto is_first = [&](const PlacedCamera& placed) { return placed.camera == first.camera; };
   if (std::ranges::all_of(cameras, is_first)) return first.camera;
   const LensCamera mean = MeanCamera(cameras);
-  double largest_px = 0.0;
-  const PlacedCamera* farthest = &first;
-  for (const PlacedCamera& placed : cameras) {
-    const double displacement_px = DisplacementPx(mean, placed.camera);
-    if (displacement_px > largest_px) farthest = &placed;
-    largest_px = std::max(largest_px, displacement_px);
-  }
+  const auto displacement_px = [&](const PlacedCamera& placed) {
+    return DisplacementPx(mean, placed.camera);
+  };
+  const auto farthest = std::ranges::max_element(cameras, {}, displacement_px);
+  const double largest_px = displacement_px(*farthest);
   const Camera& other = farthest->camera.camera;
   if (other.width != mean.camera.width || other.height != mean.camera.height) {
     throw InputError(fmt::format(

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "artefact/files.h"
-#include "artefact/made_of.h"
 #include "base/error.h"
 #include "geometry/angles.h"
 #include "model/map_points.h"

@@ -13,7 +13,6 @@
 
 #include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
-#include "artefact/made_of.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/text.h"

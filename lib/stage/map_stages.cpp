@@ -9,7 +9,6 @@
 
 #include "artefact/files.h"
 #include "artefact/json_file.h"
-#include "artefact/made_of.h"
 #include "artefact/run_file.h"
 #include "base/error.h"
 #include "base/parallel.h"

@@ -8,7 +8,6 @@
 #include "artefact/atomic_file.h"
 #include "artefact/files.h"
 #include "artefact/json_file.h"
-#include "artefact/made_of.h"
 #include "base/error.h"
 #include "exchange/exports.h"
 #include "exchange/world.h"

@@ -8,7 +8,6 @@
 #include "artefact/atomic_file.h"
 #include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
-#include "artefact/made_of.h"
 #include "base/error.h"
 #include "base/paths.h"
 #include "base/text.h"
@@ -121,10 +120,9 @@ cv::Mat PictureOf(const InspectRequest& request) {
   if (kind == "sequence" || kind == "landmarks" || kind == "map") {
     return OverlayPicture(request, kind);
   }
-  throw SettingsError(
-      fmt::format("{}: there is no picture of kind '{}'; expected sequence, landmarks, map, edges "
-                  "or symmetry",
-                  request.file.string(), kind));
+  throw SettingsError(fmt::format(
+      "{}: there is no picture of kind '{}'; expected sequence, landmarks, map, edges or symmetry",
+      request.file.string(), kind));
 }
 
 void WritePng(const fs::path& path, const cv::Mat& picture) {

@@ -16,8 +16,6 @@
 #include "cli/command_line.h"
 #include "dataset/dataset_json.h"
 #include "dataset/image_path.h"
-#include "dataset/model_orientation.h"
-#include "dataset/one_camera.h"
 #include "dataset/reconstruct_options.h"
 #include "dataset/reconstruction.h"
 #include "dataset/text_file.h"

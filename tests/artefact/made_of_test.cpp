@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "artefact/made_of.h"
-
 #include <gtest/gtest.h>
 
 #include "artefact/files.h"
