@@ -23,31 +23,25 @@ class Reader : public OptionVisitor {
   }
 
   void Real(const char* name, double* value, Range range, const char*) override {
-    if (const auto* found = Find(name)) {
-      if (!found->is_number()) Refuse(name, *found, "a number");
+    if (const auto* found = Find(name, &nlohmann::json::is_number, "a number")) {
       *value = InRange(name, found->get<double>(), range);
     }
   }
   void Integer(const char* name, int* value, Range range, const char*) override {
-    if (const auto* found = Find(name)) {
+    if (const auto* found = Find(name, &nlohmann::json::is_number, "an integer")) {
       // 5.0 is an integer too, as in JSON Schema.
-      if (!found->is_number() || std::trunc(found->get<double>()) != found->get<double>()) {
-        Refuse(name, *found, "an integer");
-      }
-      *value = static_cast<int>(InRange(name, found->get<double>(), range));
+      const auto number = found->get<double>();
+      if (std::trunc(number) != number) Refuse(name, *found, "an integer");
+      *value = static_cast<int>(InRange(name, number, range));
     }
   }
   void Flag(const char* name, bool* value, const char*) override {
-    if (const auto* found = Find(name)) {
-      if (!found->is_boolean()) Refuse(name, *found, "true or false");
-      found->get_to(*value);
-    }
+    const auto* found = Find(name, &nlohmann::json::is_boolean, "true or false");
+    if (found != nullptr) found->get_to(*value);
   }
   void Text(const char* name, std::string* value, const char*) override {
-    if (const auto* found = Find(name)) {
-      if (!found->is_string()) Refuse(name, *found, "a string");
-      found->get_to(*value);
-    }
+    const auto* found = Find(name, &nlohmann::json::is_string, "a string");
+    if (found != nullptr) found->get_to(*value);
   }
 
   void RefuseUnknown() const {
@@ -64,7 +58,7 @@ class Reader : public OptionVisitor {
  protected:
   void ChoiceIndex(const char* name, int* index, std::span<const char* const> names,
                    const char*) override {
-    if (const auto* found = Find(name)) {
+    if (const auto* found = Find(name, nullptr, "")) {
       const auto choice = std::ranges::find(names, *found);
       if (choice == names.end()) {
         Refuse(name, *found, fmt::format("one of {}", fmt::join(names, " | ")));
@@ -74,10 +68,15 @@ class Reader : public OptionVisitor {
   }
 
  private:
-  const nlohmann::json* Find(const char* name) {
+  using IsOfType = bool (nlohmann::json::*)() const noexcept;
+
+  // The value of an option, null if none is given. Refuses another type than the `expected` one.
+  const nlohmann::json* Find(const char* name, IsOfType is_of_type, const char* expected) {
     known_.insert(name);
     const auto found = values_.find(name);
-    return found == values_.end() ? nullptr : &*found;
+    if (found == values_.end()) return nullptr;
+    if (is_of_type != nullptr && !((*found).*is_of_type)()) Refuse(name, *found, expected);
+    return &*found;
   }
   [[noreturn]] void Refuse(const char* name, const nlohmann::json& found,
                            const std::string& expected) const {

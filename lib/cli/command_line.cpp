@@ -113,11 +113,6 @@ std::string OptionHelp(const OptionRow& row) {
                      only_where);
 }
 
-// A command wrapped over several lines such that a shell reads it as one.
-std::string ExampleHelp(const std::string& command) {
-  return ReplaceAll(Wrapped(command, kWidth - 8), "\n", " \\\n      ");
-}
-
 constexpr const char* kFailureRecord = "--failure_record";
 
 // Value of an option's text. A text that does not match the type stays a string, which
@@ -209,16 +204,6 @@ void AddCommon(const std::vector<OptionRow>& options, CLI::App* app, ParsedArgum
   AddHelpAndVersion(app);
 }
 
-std::vector<SettingsLayer> LayersOf(const ParsedArguments& parsed) {
-  std::vector<SettingsLayer> layers;
-  if (!parsed.settings_file.empty()) {
-    layers.push_back(
-        {parsed.settings_file, "settings file", ReadSettingsFile(parsed.settings_file)});
-  }
-  layers.push_back({"command line", "command line", parsed.options});
-  return layers;
-}
-
 // The current exception with an exit code and a message of one line.
 Error CurrentError() {
   try {
@@ -296,7 +281,12 @@ int RunRecorded(const ParsedArguments& parsed, const StageInfo& info,
   const int threads = parsed.threads > 0 ? parsed.threads : ThisMachine().cores;
   RunRecorder recorder(info, parsed.files, parsed.settings_file, threads);
   try {
-    const std::vector<SettingsLayer> layers = LayersOf(parsed);
+    std::vector<SettingsLayer> layers;
+    if (!parsed.settings_file.empty()) {
+      layers.push_back(
+          {parsed.settings_file, "settings file", ReadSettingsFile(parsed.settings_file)});
+    }
+    layers.push_back({"command line", "command line", parsed.options});
     const nlohmann::json resolved = body.resolve(layers);
     recorder.SetSettings(resolved, layers);
     WarnOfSettingsWithoutEffect(layers, options, resolved, info);
@@ -313,8 +303,9 @@ int ParseAndRun(int argc, const char* const* argv, const StageInfo& info, CLI::A
                 const std::vector<OptionRow>& options, const StageBody& body) {
   ParsedArguments parsed;
   app->formatter(std::make_shared<HelpFormatter>());
-  app->footer(
-      fmt::format("Example:\n  {}\n\n{}", ExampleHelp(info.example), ExitCodesHelp(info.findings)));
+  // Wrapped such that a shell reads it as one command.
+  const std::string example = ReplaceAll(Wrapped(info.example, kWidth - 8), "\n", " \\\n      ");
+  app->footer(fmt::format("Example:\n  {}\n\n{}", example, ExitCodesHelp(info.findings)));
   AddFiles(info.inputs, "Inputs", app, &parsed);
   AddFiles(info.outputs, "Outputs", app, &parsed);
   AddOptions(options, app, &parsed);

@@ -19,11 +19,6 @@ bool IsAbout(double value, double expected, double relative = 0.05) {
   return std::abs(value - expected) <= relative * std::abs(expected);
 }
 
-std::string InWords(const Camera& camera) {
-  return fmt::format("camera of {} x {} pixels with fx {:g}, fy {:g}, cx {:g}, cy {:g}",
-                     camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy);
-}
-
 // True if the principal point would be the image centre with width and height swapped.
 bool HasSwappedSides(const Camera& camera) {
   const bool is_off =
@@ -77,7 +72,8 @@ std::vector<Finding> CheckIntrinsics(const Camera& camera) {
   const bool is_impossible = !is_focal || !is_inside || HasSwappedSides(camera);
   const Advice advice = AdviceOnIntrinsics(camera);
   return {{"camera_intrinsics", is_impossible ? Severity::kError : Severity::kWarning,
-           InWords(camera),
+           fmt::format("camera of {} x {} pixels with fx {:g}, fy {:g}, cx {:g}, cy {:g}",
+                       camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy),
            "focal lengths of 0.2 to 10 times the width and a principal point near the middle",
            advice.cause, advice.remedy}};
 }

@@ -125,10 +125,10 @@ std::vector<Finding> CheckObjectAxes(const ImportView& view) {
   std::vector<double> angles;
   for (const Object& object : view.sequence.objects) {
     if (!object.ground_truth || object.plane_index == kNoPlane) continue;
-    const auto plane = static_cast<size_t>(object.plane_index);
     const Eigen::Vector3d z = object.ground_truth->landmark_in_world.frame_from_object.rotation *
                               Eigen::Vector3d::UnitZ();
-    const Eigen::Vector3d& normal = view.sequence.planes.at(plane).plane_in_world.normal;
+    const Eigen::Vector3d& normal =
+        view.sequence.planes.at(object.plane_index).plane_in_world.normal;
     angles.push_back(AngleBetweenDeg(z, normal));
   }
   if (angles.size() < kFewestObjects || *MedianOf(angles) <= kSteepestDeg) return {};

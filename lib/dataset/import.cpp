@@ -200,11 +200,6 @@ class Importer {
   bool planes_from_truth_;
 };
 
-OdometryWorld WorldOfOdometry(const ImportOptions& options) {
-  if (options.folder.odometry_has_own_scale) return OdometryWorld::kOwnWithScale;
-  return options.folder.align_odometry ? OdometryWorld::kOwn : OdometryWorld::kOfTruth;
-}
-
 // Drops objects without detections, in datasets in which each detection is a separate object; this
 // includes those of objects.json, whose detections are unknown.
 void DropUndetectedObjects(Sequence* sequence) {
@@ -258,7 +253,9 @@ Sequence ImportDataset(const std::filesystem::path& folder, const ImportOptions&
   for (TrueObject& object : sequence.true_objects) {
     object.is_ignored = !IsListed(object.label, options.labels);
   }
-  sequence.odometry_world = WorldOfOdometry(options);
+  sequence.odometry_world = options.folder.odometry_has_own_scale ? OdometryWorld::kOwnWithScale
+                            : options.folder.align_odometry       ? OdometryWorld::kOwn
+                                                                  : OdometryWorld::kOfTruth;
   Importer(content, options, &sequence).Import();
   sequence.findings = CheckDataset({folder, options, content, sequence});
   RefuseErrors(folder, sequence.findings);

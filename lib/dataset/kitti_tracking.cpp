@@ -57,15 +57,6 @@ bool IsStatic(const std::vector<Landmark>& landmarks, const Eigen::Vector3d& med
          static_cast<double>(near) >= options.static_share * views;
 }
 
-// Sets the truth of an object from its labelled landmarks, at least one, in temporal order: their
-// median, or the first if they say that it moves.
-void SetTruth(const std::vector<Landmark>& in_world, const KittiOptions& options, Object* object) {
-  Landmark& truth = object->ground_truth.emplace().landmark_in_world;
-  truth = MedianLandmark(in_world);
-  object->is_static = IsStatic(in_world, truth.Centre(), options);
-  if (!object->is_static) truth = in_world.front();
-}
-
 namespace fs = std::filesystem;
 
 constexpr int kIdsPerRecording = 10000;
@@ -169,7 +160,10 @@ class Recording {
       Object object;
       object.id = Id(track);
       object.label = LowerCase(labels.front()->type);
-      SetTruth(in_world, options_.kitti, &object);
+      const Landmark median = MedianLandmark(in_world);
+      object.is_static = IsStatic(in_world, median.Centre(), options_.kitti);
+      object.ground_truth.emplace().landmark_in_world =
+          object.is_static ? median : in_world.front();
       AddLabelledObject(std::move(object), number_, &content_->sequence);
     }
   }

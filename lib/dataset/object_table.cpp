@@ -15,21 +15,15 @@
 namespace soslam {
 namespace {
 
-// Number of images in which each id occurs more than once; without ids below 0.
-std::map<int, int> ImagesWithSeveral(const std::vector<LabelledBox>& boxes) {
+bool ZeroIsOfNoTrack(const std::vector<LabelledBox>& boxes) {
   std::map<std::pair<FrameKey, int>, int> counts;
-  std::map<int, int> images;
+  std::map<int, int> images;  // number of images in which an id occurs more than once
+  bool has_others = false;
   for (const LabelledBox& box : boxes) {
     if (!box.object_id || *box.object_id < 0) continue;
     if (++counts[{box.frame, *box.object_id}] == 2) ++images[*box.object_id];
+    has_others = has_others || *box.object_id > 0;
   }
-  return images;
-}
-
-bool ZeroIsOfNoTrack(const std::vector<LabelledBox>& boxes) {
-  const bool has_others = std::ranges::any_of(
-      boxes, [](const LabelledBox& box) { return box.object_id && *box.object_id > 0; });
-  const auto images = ImagesWithSeveral(boxes);
   return images.size() == 1 && images.contains(0) && images.at(0) >= (has_others ? 2 : 1);
 }
 
@@ -160,9 +154,8 @@ int PlaneIndex(const ListedObject& object, const std::vector<SupportPlane>& plan
                     "planes; or no planes.json, where they are to be estimated",
                     file, object.id, object.label, planes.size()));
   }
-  for (size_t i = 0; i < planes.size(); ++i) {
-    if (planes[i].id == *object.plane_id) return static_cast<int>(i);
-  }
+  const auto plane = std::ranges::find(planes, *object.plane_id, &SupportPlane::id);
+  if (plane != planes.end()) return static_cast<int>(plane - planes.begin());
   throw InputError(
       fmt::format("{}: support_plane of object {} is {}; expected an id of planes.json", file,
                   object.id, *object.plane_id));

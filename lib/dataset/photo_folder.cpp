@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <regex>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -45,29 +46,6 @@ bool HasNameOfOtherImage(const fs::path& path) {
 
 constexpr std::string_view kDigits = "0123456789";
 
-struct FilesOfFolder {
-  std::vector<fs::path> images;
-  std::vector<std::string> others;
-};
-
-FilesOfFolder PhotosAndOthersIn(const fs::path& folder) {
-  FilesOfFolder files;
-  for (const fs::path& path : FolderEntries(folder)) {
-    const std::string name = path.filename().string();
-    if (name.starts_with('.')) continue;
-    if (!(HasNameOfImage(path) || HasNameOfOtherImage(path)) || !IsFile(path)) {
-      files.others.push_back(name);
-    } else if (!IsUtf8(name)) {
-      throw InputError(fmt::format("{}: image '{}' has a name that is not UTF-8; rename it",
-                                   folder.string(), name));
-    } else {
-      files.images.push_back(path);
-    }
-  }
-  std::ranges::sort(files.images, {}, &OrderOfName);
-  return files;
-}
-
 bool HasHeader(const Photo& photo) { return photo.header.stored.width > 0; }
 
 bool IsDuplicate(const Photo& photo) { return !photo.original.empty(); }
@@ -93,15 +71,10 @@ void FindDuplicates(std::vector<Photo>* photos) {
   }
 }
 
-bool IsDigit(char c) { return kDigits.find(c) != kDigits.npos; }
-
 // The name without its extension, each number as a 0.
 std::string PatternOfName(const Photo& photo) {
-  std::string pattern = photo.path.stem().string();
-  std::ranges::replace_if(pattern, &IsDigit, '0');
-  const auto are_zeros = [](char one, char next) { return one == '0' && next == '0'; };
-  pattern.erase(std::unique(pattern.begin(), pattern.end(), are_zeros), pattern.end());
-  return pattern;
+  static const std::regex kNumber("[0-9]+");
+  return std::regex_replace(photo.path.stem().string(), kNumber, "0");
 }
 
 // The last number in the name; 0 if there is none.
@@ -181,20 +154,34 @@ std::vector<Photo> ListPhotos(const fs::path& folder) {
   if (!IsFolder(folder)) {
     throw InputError(folder.string() + ": no such folder; expected a folder of photos");
   }
-  const FilesOfFolder files = PhotosAndOthersIn(folder);
-  if (files.images.size() < 2) {
+  std::vector<fs::path> images;
+  std::vector<std::string> others;
+  for (const fs::path& path : FolderEntries(folder)) {
+    const std::string name = path.filename().string();
+    if (name.starts_with('.')) continue;
+    if (!(HasNameOfImage(path) || HasNameOfOtherImage(path)) || !IsFile(path)) {
+      others.push_back(name);
+    } else if (!IsUtf8(name)) {
+      throw InputError(fmt::format("{}: image '{}' has a name that is not UTF-8; rename it",
+                                   folder.string(), name));
+    } else {
+      images.push_back(path);
+    }
+  }
+  std::ranges::sort(images, {}, &OrderOfName);
+  if (images.size() < 2) {
     throw InputError(fmt::format(
         "{}: has {} image(s); expected at least 2 (JPEG, PNG, WebP, BMP or TIFF) of one scene, "
         "directly in this folder; a video is given itself{}{}",
-        folder.string(), files.images.size(), files.others.empty() ? "" : ". It also has ",
-        NamesInWords(files.others, 5)));
+        folder.string(), images.size(), others.empty() ? "" : ". It also has ",
+        NamesInWords(others, 5)));
   }
-  if (files.images.size() > kMaxPhotos) {
+  if (images.size() > kMaxPhotos) {
     throw InputError(fmt::format("{}: has {} images; expected at most {}: give a part of them",
-                                 folder.string(), files.images.size(), kMaxPhotos));
+                                 folder.string(), images.size(), kMaxPhotos));
   }
   std::vector<Photo> photos;
-  for (const fs::path& path : files.images) {
+  for (const fs::path& path : images) {
     photos.push_back({path, ReadImageHeader(path).value_or(ImageHeader()), IsRawPhoto(path)});
   }
   FindDuplicates(&photos);

@@ -24,8 +24,7 @@ std::map<int, std::vector<double>> HeightsByObject(const LandmarkEstimates& esti
   std::map<int, std::vector<double>> heights;
   for (const ObservationEstimate& observation : estimates.observations) {
     if (observation.hypotheses.empty()) continue;
-    const auto index = static_cast<size_t>(observation.detection_index);
-    heights[sequence.detections[index].object_index].push_back(
+    heights[sequence.detections[observation.detection_index].object_index].push_back(
         2.0 * observation.hypotheses.front().landmark_in_camera.half_axes.z());
   }
   for (const ObjectEstimate& object : estimates.objects) {
@@ -72,16 +71,15 @@ std::vector<Finding> CheckScale(const std::vector<RelativeHeight>& relative) {
                        std::sqrt(static_cast<double>(relative.size()));
   const double least = std::max(std::log(kSmallestFactor), kSigmas * sigma);
   if (std::abs(log_factor) <= least) return {};
-  return {
-      {"scale", Severity::kWarning,
-       fmt::format("{} objects are {:.3g} times as high as their labels' things (median)",
-                   relative.size(), std::exp(log_factor)),
-       fmt::format("a factor of {:.2f} to {:.2f}", std::exp(-least), std::exp(least)),
-       "a trajectory whose unit is not the metre, as of a single camera, or poses and planes that "
-       "contradict the boxes",
-       fmt::format("multiply the translations of the trajectory by about {:.3g}; all sizes and "
-                   "distances of the map are of the trajectory's unit",
-                   std::exp(-log_factor))}};
+  return {{"scale", Severity::kWarning,
+           fmt::format("{} objects are {:.3g} times as high as their labels' things (median)",
+                       relative.size(), std::exp(log_factor)),
+           fmt::format("a factor of {:.2f} to {:.2f}", std::exp(-least), std::exp(least)),
+           "a trajectory whose unit is not the metre, as of a single camera, or poses and planes "
+           "that contradict the boxes",
+           fmt::format("multiply the translations of the trajectory by about {:.3g}; all sizes and "
+                       "distances of the map are of the trajectory's unit",
+                       std::exp(-log_factor))}};
 }
 
 std::vector<Finding> CheckSingleSizes(const std::vector<RelativeHeight>& relative) {
@@ -97,14 +95,13 @@ std::vector<Finding> CheckSingleSizes(const std::vector<RelativeHeight>& relativ
   if (odd.empty()) return {};
   const size_t count = odd.size();
   if (count > kMostNames) odd.resize(kMostNames);
-  return {
-      {"object_size", Severity::kWarning,
-       fmt::format("{} of {} objects are not as high as their label's things: {}{}", count,
-                   relative.size(), fmt::join(odd, ", "), count > kMostNames ? ", ..." : ""),
-       "at most three times as high or low, or three standard deviations of the label",
-       "boxes of several things under one id, a wrong label, a wrong plane, or views that do not "
-       "tell the size",
-       "look at these objects' boxes: soslam-inspect, or the report page"}};
+  return {{"object_size", Severity::kWarning,
+           fmt::format("{} of {} objects are not as high as their label's things: {}{}", count,
+                       relative.size(), fmt::join(odd, ", "), count > kMostNames ? ", ..." : ""),
+           "at most three times as high or low, or three standard deviations of the label",
+           "boxes of several things under one id, a wrong label, a wrong plane, or views that do "
+           "not tell the size",
+           "look at these objects' boxes: soslam-inspect, or the report page"}};
 }
 
 // A warning on the landmarks with such half axes, if there are any; `finding` has what they are.
@@ -157,12 +154,6 @@ double Correction(const Sequence& sequence, const MapEstimate& map, const InputA
     largest = std::max(largest, ChangeOf(sequence, map, index, plane).Size());
   }
   return largest;
-}
-
-// The part of the gain that is left once what is given is corrected by the least that matters: the
-// cost is a parabola along the way to the minimum.
-double ShareOfGain(double correction) {
-  return correction > 1.0 ? std::pow(1.0 - 1.0 / correction, 2) : 0.0;
 }
 
 std::string FocalInWords(const Sequence& sequence, const InputAlternative& given,
@@ -294,8 +285,12 @@ std::vector<Finding> CheckInputs(const Sequence& sequence, const MapEstimate& ma
   const InputAlternative* best = &given;
   for (const InputAlternative& found : alternatives) {
     const double dispersion = std::max(1.0, found.box_cost / expected);
-    const double gain = (best->cost - found.cost) * ShareOfGain(Correction(sequence, map, found));
-    if (!(gain > 0.0) || dispersion > kFarAbove) continue;
+    const double correction = Correction(sequence, map, found);
+    if (correction <= 1.0 || dispersion > kFarAbove) continue;
+    // The gain that is left once what is given is corrected by the least that matters: the cost is
+    // a parabola along the way to the minimum.
+    const double gain = (best->cost - found.cost) * std::pow(1.0 - 1.0 / correction, 2);
+    if (!(gain > 0.0)) continue;
     if (const int degrees = found.degrees - best->degrees; degrees > 0) {
       const double ratio = 2.0 * gain / (degrees * dispersion);
       if (!(FisherTail(ratio, degrees, 2.0 * expected) < kChance / tries)) continue;
@@ -316,11 +311,10 @@ std::vector<Finding> CheckInputs(const Sequence& sequence, const MapEstimate& ma
                 : "planes of another world, unit or recording, or badly measured; objects that "
                   "stand on something else; or what looks alike: a trajectory of another scale, "
                   "a principal point that is far off",
-       is_focal
-           ? "calibrate the camera, or estimate it along with the poses (soslam-reconstruct)"
-           : "compare planes.json and its unit with the trajectory, and the objects' planes with "
-             "the images; or let planes be estimated: settings {\"planes\": {\"planes\": "
-             "\"estimated\"}}"}};
+       is_focal ? "calibrate the camera, or estimate it along with the poses (soslam-reconstruct)"
+                : "compare planes.json and its unit with the trajectory, and the objects' planes "
+                  "with the images; or let planes be estimated: settings {\"planes\": {\"planes\": "
+                  "\"estimated\"}}"}};
 }
 
 std::vector<Finding> CheckCost(const SolverSummary& solver) {
@@ -372,14 +366,13 @@ std::vector<Finding> CheckUp(CameraHolding holding, const std::vector<TriedHoldi
   for (const TriedHolding& tried : holdings) {
     ways.push_back(fmt::format("{} {:.2g}", NameOf(tried.holding), tried.probability));
   }
-  return {
-      {kUpDirectionCheck, Severity::kWarning,
-       fmt::format("cameras are taken to be held {}; probabilities: {}", NameOf(holding),
-                   fmt::join(ways, ", ")),
-       "one way to hold them that explains the boxes much better than others",
-       "few objects, or cameras that were rolled or look down",
-       "take images with the camera held level that show upright edges, such as door frames; or "
-       "give planes.json, where up in the world of the poses is known"}};
+  return {{kUpDirectionCheck, Severity::kWarning,
+           fmt::format("cameras are taken to be held {}; probabilities: {}", NameOf(holding),
+                       fmt::join(ways, ", ")),
+           "one way to hold them that explains the boxes much better than others",
+           "few objects, or cameras that were rolled or look down",
+           "take images with the camera held level that show upright edges, such as door frames; "
+           "or give planes.json, where up in the world of the poses is known"}};
 }
 
 std::vector<Finding> CheckPlaneCount(size_t planes, size_t objects) {

@@ -66,8 +66,7 @@ std::optional<double> MotionTracker::MedianDisplacement(const cv::Mat& small) co
   const Points returned = Track(small, small_, to, &is_returned);
   std::vector<double> displacements;
   for (int i = 0; i < from.rows; ++i) {
-    const auto index = static_cast<size_t>(i);
-    if (is_found[index] == 0 || is_returned[index] == 0) continue;
+    if (is_found[i] == 0 || is_returned[i] == 0) continue;
     if (cv::norm(returned(i) - from(i)) > kMaxReturnErrorPx) continue;
     displacements.push_back(cv::norm(to(i) - from(i)));
   }

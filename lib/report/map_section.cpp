@@ -193,7 +193,7 @@ class MapOfVariant {
     std::vector<Entry> entries;
     for (const ObjectEstimate* estimate : placed_) {
       if (entries.size() == kMaxPlaced) break;
-      const auto index = static_cast<size_t>(estimate->object_index);
+      const int index = estimate->object_index;
       const Object& object = sequence_.objects[index];
       Entry entry{fmt::format("picture-{}", entries.size()),
                   fmt::format("{} {}", object.label, object.id),
@@ -211,7 +211,7 @@ class MapOfVariant {
   // The outline of the body in place of the box, if the camera sees all of it.
   void DrawBody(const ObjectEstimate& estimate, Picture* picture) const {
     if (picture->part.empty()) return;
-    const auto frame = static_cast<size_t>(picture->frame_index);
+    const int frame = picture->frame_index;
     Polygon outline = OutlinePolygon(
         sequence_.CameraOf(sequence_.frames[frame]),
         Transform(map_.world_from_camera[frame].Inverse(), *estimate.landmark_in_world));
@@ -278,10 +278,9 @@ class MapOfVariant {
       return fmt::format("<span class=\"key\" style=\"background: var(--{})\"></span> {}", colour,
                          text);
     };
-    std::string caption = fmt::format("Seen from above. {}, {}.", key("estimate", "objects"),
-                                      key("detection",
-                                          "path of the camera from its first place "
-                                          "(dot)"));
+    std::string caption =
+        fmt::format("Seen from above. {}, {}.", key("estimate", "objects"),
+                    key("detection", "path of the camera from its first place (dot)"));
     if (std::ranges::any_of(plan.objects, &PlanObject::is_uncertain)) {
       caption +=
           " Dashed objects are uncertain: most images that should show them do not, or by their "

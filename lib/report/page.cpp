@@ -20,13 +20,6 @@ namespace {
 
 using nlohmann::json;
 
-void LeaveOutCurves(json* data) {
-  if (data->at("symmetries").empty()) return;
-  for (json& symmetry : data->at("symmetries")) symmetry["curves"] = json::array();
-  data->at("notes").push_back(
-      "For lack of room the cost over yaw of single observations is left out.");
-}
-
 void KeepNumbersOnly(json* variant) {
   for (const char* key :
        {"objects", "outlines", "trajectory", "solver", "planes", "grids", "points"}) {
@@ -54,7 +47,11 @@ std::vector<std::string> KeepNumbersOnlyOfSome(size_t max_bytes, const BytesOfPa
 
 void FitPageData(size_t max_bytes, const BytesOfPage& bytes_of, json* data) {
   if (bytes_of(*data) <= max_bytes) return;
-  LeaveOutCurves(data);
+  if (!data->at("symmetries").empty()) {
+    for (json& symmetry : data->at("symmetries")) symmetry["curves"] = json::array();
+    data->at("notes").push_back(
+        "For lack of room the cost over yaw of single observations is left out.");
+  }
   const auto reduced = KeepNumbersOnlyOfSome(max_bytes, bytes_of, data);
   if (reduced.empty()) return;
   data->at("notes").push_back(

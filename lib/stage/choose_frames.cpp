@@ -94,11 +94,6 @@ void MeasurePhoto(const Photo& photo, ImageOrientation read_as, SourceFrame* fra
   }
 }
 
-std::string ExtensionOf(const Photo& photo, const FrameOptions& options) {
-  if (!IsCopied(photo, options)) return ".jpg";
-  return LowerCase(photo.path.extension().string());
-}
-
 std::optional<FocalHint> HintOf(const CommonCamera& camera, const FramesRecord& record,
                                 const std::vector<Photo>& photos) {
   int count = 0;
@@ -122,23 +117,21 @@ std::vector<Finding> CheckVideo(const VideoReader& video, const FramesRecord& re
                         "copy it again"});
   }
   if (video.has_errors() || damaged > 0) {
-    findings.push_back(
-        {"video_damaged", Severity::kWarning,
-         fmt::format("{}: parts of it cannot be decoded, and {} of its {} frames are damaged, or "
-                     "predicted from damaged ones",
-                     record.name, damaged, record.frames.size()),
-         "a video without errors", "a file that was copied or recorded with errors",
-         "copy it again"});
+    findings.push_back({"video_damaged", Severity::kWarning,
+                        fmt::format("{}: parts of it cannot be decoded, and {} of its {} frames "
+                                    "are damaged, or predicted from damaged ones",
+                                    record.name, damaged, record.frames.size()),
+                        "a video without errors", "a file that was copied or recorded with errors",
+                        "copy it again"});
   }
   if (const std::string degrees = video.ignored_rotation(); !degrees.empty()) {
-    findings.push_back(
-        {"video_rotation", Severity::kWarning,
-         fmt::format("{}: its tag `rotate` is {}, and it has no display matrix", record.name,
-                     OneLine(degrees)),
-         "a display matrix, by which players turn videos",
-         "a copy by an old program that kept only the tag",
-         "if the images lie on their side, turn the video: ffmpeg -i VIDEO -vf transpose=1 -crf 15 "
-         "NEW.mp4"});
+    findings.push_back({"video_rotation", Severity::kWarning,
+                        fmt::format("{}: its tag `rotate` is {}, and it has no display matrix",
+                                    record.name, OneLine(degrees)),
+                        "a display matrix, by which players turn videos",
+                        "a copy by an old program that kept only the tag",
+                        "if the images lie on their side, turn the video: ffmpeg -i VIDEO -vf "
+                        "transpose=1 -crf 15 NEW.mp4"});
   }
   return findings;
 }
@@ -170,8 +163,7 @@ ChosenFrames ChoosePhotos(const FrameOptions& options, const fs::path& folder, i
   }
   RejectOtherCameras(*photos, camera, &frames);
   std::vector<FrameView> views(photos->size());
-  ParallelFor("photos", static_cast<int>(photos->size()), threads, [&](int index) {
-    const auto i = static_cast<size_t>(index);
+  ParallelFor("photos", static_cast<int>(photos->size()), threads, [&](int i) {
     if (IsLeftOut(frames[i])) return;
     MeasurePhoto((*photos)[i], options.image_orientation, &frames[i], &views[i]);
   });
@@ -186,7 +178,8 @@ ChosenFrames ChoosePhotos(const FrameOptions& options, const fs::path& folder, i
   chosen.record.focal_hint = HintOf(camera, chosen.record, *photos);
   std::vector<std::string> extensions;
   for (const Photo& photo : *photos) {
-    extensions.push_back(ExtensionOf(photo, options));
+    extensions.push_back(IsCopied(photo, options) ? LowerCase(photo.path.extension().string())
+                                                  : ".jpg");
   }
   NameImages(extensions, &frames);
   return chosen;

@@ -108,9 +108,7 @@ AllDetections DetectAll(const std::vector<fs::path>& images, const NetworkFile& 
   ParallelFor(workers, workers, [&](int worker) {
     YoloDetector detector(network, format, labels.groups, options);
     for (int i = worker; i < count; i += workers) {
-      const auto frame = static_cast<size_t>(i);
-      all.of_image[frame] =
-          detector.Detect(ReadImage(images[frame], cv::IMREAD_COLOR, orientation));
+      all.of_image[i] = detector.Detect(ReadImage(images[i], cv::IMREAD_COLOR, orientation));
       progress.Step();
     }
     tallies[worker] = detector.tally();
@@ -157,7 +155,7 @@ std::vector<LabelledBox> KeptBoxes(const std::vector<std::vector<YoloDetection>>
   std::vector<LabelledBox> boxes;
   for (size_t frame = 0; frame < detections.size(); ++frame) {
     for (const YoloDetection& detection : detections[frame]) {
-      const auto index = static_cast<size_t>(detection.class_index);
+      const int index = detection.class_index;
       if (!labels.are_kept[index]) continue;
       boxes.push_back(
           {"", static_cast<int>(frame), labels.names[index], detection.score, detection.box});
@@ -195,15 +193,6 @@ std::vector<std::string> NamesIn(const NetworkFile& network) {
   }
 }
 
-// The options with the format in place of "auto": with them the same comes out again.
-DetectorOptions WithFormat(DetectorOptions options, const YoloFormat& format) {
-  options.output_layout = format.layout;
-  options.pixel_values = format.pixel_values;
-  options.input_width = format.input.width;
-  options.input_height = format.input.height;
-  return options;
-}
-
 }  // namespace
 
 void RunDetect(const DetectorOptions& options, const StageFiles& files, int threads) {
@@ -239,8 +228,13 @@ void RunDetect(const DetectorOptions& options, const StageFiles& files, int thre
   std::vector<fs::path> inputs = images;
   inputs.insert(inputs.end(), {dataset / "rgb.txt", files.at("network")});
   if (files.contains("labels")) inputs.push_back(files.at("labels"));
-  WriteTextFile(files.at("output"), Comments({OptionsToJson(WithFormat(options, format)), inputs}) +
-                                        LabelledBoxesText(boxes));
+  DetectorOptions found = options;  // the format in place of "auto": the same comes out again
+  found.output_layout = format.layout;
+  found.pixel_values = format.pixel_values;
+  found.input_width = format.input.width;
+  found.input_height = format.input.height;
+  WriteTextFile(files.at("output"),
+                Comments({OptionsToJson(found), inputs}) + LabelledBoxesText(boxes));
   fmt::print("{}: {}\n{}: {} images, {} detections\n", network.name, format.Text(),
              dataset.string(), images.size(), boxes.size());
 }

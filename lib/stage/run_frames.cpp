@@ -177,8 +177,7 @@ void RunFrames(const FrameOptions& options, const StageFiles& files, int threads
   ReportFindings("frames", findings);
   fs::create_directory(output.Temporary() / "rgb");
   if (is_video) WriteVideoFrames(record, images, options.max_image_px, output);
-  ParallelFor("images", static_cast<int>(photos.size()), threads, [&](int index) {
-    const auto i = static_cast<size_t>(index);
+  ParallelFor("images", static_cast<int>(photos.size()), threads, [&](int i) {
     if (IsLeftOut(record.frames[i])) return;
     WritePhoto(photos[i], options, record.frames[i].image, output);
   });

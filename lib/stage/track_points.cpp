@@ -111,10 +111,8 @@ std::vector<MapPoint> PointsOf(const Sequence& sequence, const std::vector<Frame
                                const std::vector<FeatureTrack>& tracks, const TrackOptions& options,
                                int threads) {
   std::vector<std::optional<MapPoint>> found(tracks.size());
-  ParallelFor(static_cast<int>(tracks.size()), threads, [&](int i) {
-    const auto index = static_cast<size_t>(i);
-    found[index] = PointOf(sequence, images, tracks[index], options);
-  });
+  ParallelFor(static_cast<int>(tracks.size()), threads,
+              [&](int i) { found[i] = PointOf(sequence, images, tracks[i], options); });
   std::vector<MapPoint> points;
   for (auto& point : found) {
     if (point) points.push_back(std::move(*point));
