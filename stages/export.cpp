@@ -6,10 +6,9 @@ int main(int argc, char** argv) {
   return soslam::StageMain<soslam::ExportOptions>(
       argc, argv,
       {.name = "soslam-export",
-       .purpose =
-           "Writes a map, or the ground truth, in the formats of other programs. Segments of a "
-           "sequence have worlds of their own: of several, --trajectory, --ply and --gltf write a "
-           "file each, map-3.ply for segment 3 of map.ply.",
+       .purpose = "Writes a map, or the ground truth, in the formats of other programs. Segments "
+                  "of a sequence have worlds of their own: of several, --trajectory, --ply and "
+                  "--gltf write a file each, map-3.ply for segment 3 of map.ply.",
        .inputs = {{"sequence", "sequence.json that the map was made from"},
                   {"map",
                    "map.json of soslam-optimise; without it, --trajectory writes the "
@@ -20,9 +19,7 @@ int main(int argc, char** argv) {
                    "(.glb) say which landmarks are found, ignored or false, and why",
                    false}},
        .outputs = {{"trajectory",
-                    "camera poses to write, world_from_camera as TUM RGB-D has them "
-                    "(.txt)",
-                    false},
+                    "camera poses to write, world_from_camera as TUM RGB-D has them (.txt)", false},
                    {"ply", "bodies of the landmarks to write as one mesh (.ply)", false},
                    {"gltf", "landmarks and trajectory to write as a scene (.glb, or .gltf)", false},
                    {"coco", "boxes of the landmarks in each frame to write as COCO results (.json)",

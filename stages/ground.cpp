@@ -16,9 +16,8 @@ int main(int argc, char** argv) {
                    false}},
        .outputs = {{"output", "sequence.json to write: z up, in metres, with support planes"},
                    {"world", "world.json to write: what was found, how sure it is, and why"}},
-       .example =
-           "soslam-ground --ground estimated --sequence sequence.json --points points.h5 --table "
-           "pipelines/priors/semantic_table.json --dataset data/desk --output ground.json "
-           "--world world.json"},
+       .example = "soslam-ground --ground estimated --sequence sequence.json --points points.h5 "
+                  "--table pipelines/priors/semantic_table.json --dataset data/desk --output "
+                  "ground.json --world world.json"},
       &soslam::RunGround);
 }

@@ -60,11 +60,10 @@ CLI::Option* AddFiles(CLI::App* app, soslam::InspectRequest* request) {
                     "well its scale\nis known, and whether up is in doubt; reads sequence.json,\n"
                     "associations.json and world.json beside it");
   headline->option_text(" ")->group("Files");
-  CLI::Option* image = add(
-      "--image", &request->image,
-      "picture to write (.png): of sequence, landmarks and map\nthe boxes, landmarks and ground "
-      "truth "
-      "of a frame; of edges\nits maps; of symmetry the pairs of an observation");
+  CLI::Option* image =
+      add("--image", &request->image,
+          "picture to write (.png): of sequence, landmarks and map\nthe boxes, landmarks and "
+          "ground truth of a frame; of edges\nits maps; of symmetry the pairs of an observation");
   for (CLI::Option* option : {dataset, csv, image}) headline->excludes(option);
   return headline;
 }

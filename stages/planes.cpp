@@ -7,9 +7,8 @@ int main(int argc, char** argv) {
   return soslam::StageMain<soslam::PlanesOptions>(
       argc, argv,
       {.name = "soslam-planes",
-       .purpose =
-           "Estimates the planes that objects stand on or hang from, and which is on which, from "
-           "their boxes; or takes the ground from the height of the camera.",
+       .purpose = "Estimates the planes that objects stand on or hang from, and which is on which, "
+                  "from their boxes; or takes the ground from the height of the camera.",
        .inputs = {{"sequence", "sequence.json of soslam-import"},
                   {"table", "semantic table with the size ratio of each label"},
                   {"dataset", "dataset folder with the images, where verticals are looked for",

@@ -7,9 +7,8 @@ int main(int argc, char** argv) {
   return soslam::StageMain<soslam::OrientationOptions>(
       argc, argv,
       {.name = "soslam-refine",
-       .purpose =
-           "Refines each landmark: its yaw by the symmetry of its texture, or all of it by its "
-           "orientation profile.",
+       .purpose = "Refines each landmark: its yaw by the symmetry of its texture, or all of it by "
+                  "its orientation profile.",
        .inputs = {{"sequence", "sequence.json of soslam-import"},
                   {"table", "semantic table with the size ratio of each label"},
                   {"initial", "initial.json of soslam-initialise"},

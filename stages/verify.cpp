@@ -6,10 +6,9 @@ int main(int argc, char** argv) {
   return soslam::StageMain<soslam::NoOptions>(
       argc, argv,
       {.name = "soslam-verify",
-       .purpose =
-           "Compares the files of a results folder, and those that they were made from, with the "
-           "records of the runs (run.json): says what has changed since, is gone, failed or has no "
-           "record, and which variants that affects.",
+       .purpose = "Compares the files of a results folder, and those that they were made from, "
+                  "with the records of the runs (run.json): says what has changed since, is gone, "
+                  "failed or has no record, and which variants that affects.",
        .inputs = {{"results", "results folder, with <dataset>/<variant>/stages.txt"},
                   {"data_root", "folder of the datasets; without it they are where they were",
                    false}},

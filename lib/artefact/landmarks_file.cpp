@@ -49,8 +49,7 @@ std::vector<ObservationEstimate> ObservationsFromJson(const json& json, const Se
     const auto found = detection_indices.find(ids);
     if (found == detection_indices.end()) {
       throw InputError(
-          fmt::format("/observations/{}: the sequence has no detection of object {} "
-                      "in frame {}",
+          fmt::format("/observations/{}: the sequence has no detection of object {} in frame {}",
                       estimates.size(), ids.second, ids.first));
     }
     const auto hypotheses = ListFromJson(row, "hypotheses", [](const auto& hypothesis) {

@@ -239,15 +239,14 @@ std::vector<Finding> CheckClassNumbers(const ImportView& view) {
   for (const int shift : {-1, 1}) {
     const int shifted = CountKnown(view, known, shift);
     if (3 * shifted < 2 * all) continue;
-    return {
-        {"class_numbers", Severity::kWarning,
-         fmt::format("{} of {} detections have a label of objects.json, but {} if their classes "
-                     "are counted one {}",
-                     as_read, all, shifted, shift < 0 ? "lower" : "higher"),
-         "classes numbered as in the list of their names",
-         shift < 0 ? "classes counted from 1, or a name too many in front of the list"
-                   : "classes counted from 0, or a name missing in front of the list",
-         "give the list of names that the detector was trained with: class_names"}};
+    return {{"class_numbers", Severity::kWarning,
+             fmt::format("{} of {} detections have a label of objects.json, but {} if their "
+                         "classes are counted one {}",
+                         as_read, all, shifted, shift < 0 ? "lower" : "higher"),
+             "classes numbered as in the list of their names",
+             shift < 0 ? "classes counted from 1, or a name too many in front of the list"
+                       : "classes counted from 0, or a name missing in front of the list",
+             "give the list of names that the detector was trained with: class_names"}};
   }
   return {};
 }
@@ -264,14 +263,13 @@ std::vector<Finding> CheckBlankLines(const ImportView& view) {
     if (is_blank) ++blank;
   }
   if (between == 0) return {};
-  return {
-      {"class_names", Severity::kWarning,
-       fmt::format("{} has {} blank lines before or between its names", file->filename().string(),
-                   between),
-       "one name a line, as blank lines do not count as classes",
-       "a name that was deleted, which shifts all classes after it",
-       "put a name in each blank line, or take the line away where classes were numbered without "
-       "it"}};
+  return {{"class_names", Severity::kWarning,
+           fmt::format("{} has {} blank lines before or between its names",
+                       file->filename().string(), between),
+           "one name a line, as blank lines do not count as classes",
+           "a name that was deleted, which shifts all classes after it",
+           "put a name in each blank line, or take the line away where classes were numbered "
+           "without it"}};
 }
 
 }  // namespace soslam

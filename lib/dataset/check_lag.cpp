@@ -138,16 +138,15 @@ std::vector<Finding> CheckFrameNumbers(const ImportView& view,
     const double share = shift < 0 && is_first_empty ? kBetter : kClearlyBetter;
     if (!IsBetterOneWay(median_deg, median_at(-shift), as_read.median_deg, share)) continue;
     const bool is_late = shift < 0;
-    return {
-        {"frame_numbers", Severity::kWarning,
-         fmt::format("things are {:.2f} degrees from where they are seen (median), but {:.2f} if "
-                     "each box is of the image {} the one that it names",
-                     as_read.median_deg, median_deg, is_late ? "before" : "after"),
-         "frames that are rows of the list of images, from 0",
-         is_late ? "frames counted from 1, or poses that are one image early"
-                 : "frames that begin one image late, or poses that are one image late",
-         is_late ? "subtract 1 from the frames of the detections"
-                 : "add 1 to the frames of the detections"}};
+    return {{"frame_numbers", Severity::kWarning,
+             fmt::format("things are {:.2f} degrees from where they are seen (median), but {:.2f} "
+                         "if each box is of the image {} the one that it names",
+                         as_read.median_deg, median_deg, is_late ? "before" : "after"),
+             "frames that are rows of the list of images, from 0",
+             is_late ? "frames counted from 1, or poses that are one image early"
+                     : "frames that begin one image late, or poses that are one image late",
+             is_late ? "subtract 1 from the frames of the detections"
+                     : "add 1 to the frames of the detections"}};
   }
   return {};
 }

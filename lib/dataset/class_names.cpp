@@ -45,10 +45,9 @@ std::vector<std::string> NumberedNames(const NamedFields& fields, const std::str
   const auto numbered = std::ranges::count_if(
       fields, [](const auto& field) { return field.first.starts_with("names."); });
   if (static_cast<size_t>(numbered) != names.size()) {
-    throw InputError(
-        fmt::format("{}: names has {} entries, but none for class {}; expected one for "
-                    "each class from 0 on",
-                    place, numbered, names.size()));
+    throw InputError(fmt::format(
+        "{}: names has {} entries, but none for class {}; expected one for each class from 0 on",
+        place, numbered, names.size()));
   }
   return names;
 }

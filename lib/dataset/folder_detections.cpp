@@ -157,10 +157,9 @@ std::vector<DetectionRow> RowsOfBoxes(const std::vector<LabelledBox>& boxes,
   const size_t unlisted = boxes.size() - rows.size();
   if (unlisted == 0) return rows;
   if (rows.empty()) {
-    throw InputError(
-        fmt::format("{}: image '{}' is not listed, nor that of any other box; "
-                    "expected images of {}",
-                    boxes.front().place, std::get<std::string>(boxes.front().frame), list));
+    throw InputError(fmt::format(
+        "{}: image '{}' is not listed, nor that of any other box; expected images of {}",
+        boxes.front().place, std::get<std::string>(boxes.front().frame), list));
   }
   (*rejected)[RejectReasonName(RejectReason::kFrameNotListed)] += static_cast<int>(unlisted);
   fmt::print("{}: {} of {} detections are of listed images\n", files.detections.filename().string(),

@@ -40,10 +40,9 @@ std::vector<ListedImage> ImagesOfBoxes(const std::vector<LabelledBox>& boxes) {
   for (const LabelledBox& box : boxes) {
     const auto* name = std::get_if<std::string>(&box.frame);
     if (name == nullptr) {
-      throw InputError(
-          fmt::format("{}: image is row {} of a list; expected a list of images, or a "
-                      "name that is a timestamp",
-                      box.place, std::get<int>(box.frame)));
+      throw InputError(fmt::format(
+          "{}: image is row {} of a list; expected a list of images, or a name that is a timestamp",
+          box.place, std::get<int>(box.frame)));
     }
     const double timestamp = TimestampOf(*name, box.place);
     images.try_emplace(timestamp, ListedImage{timestamp, *name});

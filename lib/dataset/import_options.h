@@ -62,9 +62,8 @@ struct FolderOptions {
       visit.Text(
           "images", &images,
           "the list of images, lines \"timestamp filename\" (or EuRoC's, with a comma); of "
-          "tum_rgbd and "
-          "icl_nuim also pairs of colour and depth images; a *.json: nerfstudio's frames; empty: "
-          "the images are those that the detections name by their timestamps");
+          "tum_rgbd and icl_nuim also pairs of colour and depth images; a *.json: nerfstudio's "
+          "frames; empty: the images are those that the detections name by their timestamps");
       visit.Text("odometry", &odometry, "the file with the pose estimates");
       visit.Text("groundtruth", &groundtruth, "the file with the true poses");
       visit.Choice("trajectory_format", &trajectory_format,
@@ -85,21 +84,19 @@ struct FolderOptions {
     visit.OnlyWhere({{"format", {"soslam", "tum_rgbd", "icl_nuim"}}}, [&] {
       visit.Text("camera", &camera,
                  "\"width height fx fy cx cy\" in pixels; empty: the camera file says it");
-      visit.Text(
-          "camera_file", &camera_file,
-          "the file with the camera: camera.json, ROS', OpenCV's or Kalibr's calibration "
-          "(.yaml, .xml), COLMAP's cameras.txt or cameras.bin, nerfstudio's transforms.json; "
-          "empty: camera.json");
+      visit.Text("camera_file", &camera_file,
+                 "the file with the camera: camera.json, ROS', OpenCV's or Kalibr's calibration "
+                 "(.yaml, .xml), COLMAP's cameras.txt or cameras.bin, nerfstudio's "
+                 "transforms.json; empty: camera.json");
       visit.Text("distortion", &distortion,
                  "distortion of images and boxes by the lens: \"k1 k2 p1 p2 k3\" as OpenCV has "
                  "them, or 4, 8, 12 "
                  "or 14 of its coefficients; empty: the camera file says it, or nothing");
-      visit.Choice(
-          "detections_format", &detections_format, kDetectionsFormatNames,
-          "format of `detections`: detections.csv with or without object ids (csv); a "
-          "folder or archive of text files with fractions of the image (yolo) or pixels "
-          "from the upper left corner (yolo_pixels); COCO's results (coco); OA-SLAM's JSON "
-          "(oa_slam); <class>/<name>.txt, or a folder of such class folders (kitti)");
+      visit.Choice("detections_format", &detections_format, kDetectionsFormatNames,
+                   "format of `detections`: detections.csv with or without object ids (csv); a "
+                   "folder or archive of text files with fractions of the image (yolo) or pixels "
+                   "from the upper left corner (yolo_pixels); COCO's results (coco); OA-SLAM's "
+                   "JSON (oa_slam); <class>/<name>.txt, or a folder of such class folders (kitti)");
       visit.OnlyWhere({{"detections_format", {"yolo", "yolo_pixels", "oa_slam", "coco"}}}, [&] {
         visit.Text("class_names", &class_names,
                    "the file with the names of the classes, one a line; coco: the JSON file of the "
@@ -123,10 +120,9 @@ struct KittiOptions {
   void Describe(OptionVisitor& visit) {
     visit.Group("Recordings of KITTI and other problems");
     visit.OnlyWhere({{"format", {"kitti_tracking", "slam_synthetic"}}}, [&] {
-      visit.Text(
-          "sequences", &sequences,
-          "kitti_tracking: the recordings to read, as in \"0001 0003-0005\"; slam_synthetic: "
-          "the names of the problems; empty: all");
+      visit.Text("sequences", &sequences,
+                 "kitti_tracking: the recordings to read, as in \"0001 0003-0005\"; "
+                 "slam_synthetic: the names of the problems; empty: all");
     });
     visit.OnlyWhere({{"format", {"kitti_tracking"}}}, [&] {
       visit.Real("match_min_iou", &match_min_iou, {1e-6, 1},
@@ -226,10 +222,9 @@ struct ImportOptions {
     visit.Integer("min_observations", &min_observations, {1, 1000000},
                   "objects with fewer usable detections lose them all; of no effect where "
                   "detections do not say which object they are of");
-    visit.Real(
-        "hidden_edge_fraction", &hidden_edge_fraction, {0, 1},
-        "the share of a box's lower edge that must lie inside boxes of nearer objects for it "
-        "to be one-sided: the object may extend beyond it");
+    visit.Real("hidden_edge_fraction", &hidden_edge_fraction, {0, 1},
+               "the share of a box's lower edge that must lie inside boxes of nearer objects for "
+               "it to be one-sided: the object may extend beyond it");
     visit.Flag("scene_axes", &scene_axes,
                "the directions along which the straight edges of the images lie on the support "
                "planes are estimated, for later stages to prefer them for objects");

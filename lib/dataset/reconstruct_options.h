@@ -25,10 +25,9 @@ struct ReconstructOptions {
 
   void Describe(OptionVisitor& visit) {
     visit.Group("What is known");
-    visit.Choice(
-        "poses", &poses, kPoseChoiceNames,
-        "given: the poses of odometry.txt are kept, and points are triangulated from them; "
-        "estimated: COLMAP's, in a world and a unit of their own");
+    visit.Choice("poses", &poses, kPoseChoiceNames,
+                 "given: the poses of odometry.txt are kept, and points are triangulated from "
+                 "them; estimated: COLMAP's, in a world and a unit of their own");
     visit.Choice("calibration", &calibration, kCalibrationChoiceNames,
                  "the camera: that of camera.json as it is (given), or refined (initial); from the "
                  "images, which may state a focal length in EXIF, with one coefficient of "

@@ -150,10 +150,9 @@ class XmlReader {
       open_.push_back(name);
       if (open_.size() > kMaxFieldDepth) Refuse("is nested too deep");
       if (name.size() > kMaxFieldPath || Path().size() > kMaxFieldPath) {
-        Refuse(
-            fmt::format("has an element whose name, with those around it, has more than {} "
-                        "characters",
-                        kMaxFieldPath));
+        Refuse(fmt::format(
+            "has an element whose name, with those around it, has more than {} characters",
+            kMaxFieldPath));
       }
       if (open_.size() > 1 && !fields_.try_emplace(Path()).second) {
         Refuse(fmt::format("has <{}> twice; expected once", Path()));

@@ -132,11 +132,10 @@ void ReadPairs(const Rows& rows) {
     }
     if (other == nullptr) other = no_score != nullptr ? no_score : no_track;
   }
-  Refuse(*other,
-         fmt::format("has 7 numbers that end with {} {}; expected a confidence from 0 to 1 and the "
-                     "integer of a track, in one order in all files (polygons of segmentation "
-                     "labels are not read: save boxes)",
-                     other->extras[0], other->extras[1]));
+  Refuse(*other, fmt::format("has 7 numbers that end with {} {}; expected a confidence from 0 to 1 "
+                             "and the integer of a track, in one order in all files (polygons of "
+                             "segmentation labels are not read: save boxes)",
+                             other->extras[0], other->extras[1]));
 }
 
 void RefuseTracksTwice(const Rows& rows) {
@@ -225,12 +224,11 @@ YoloRow ParseLine(const TextLine& line, const std::string& image,
                   const ToBox& to_box) {
   const auto words = SplitWords(line.text);
   if (words.size() < 5 || words.size() > 7) {
-    throw InputError(fmt::format(
-        "{}: has {} numbers; expected class {} [score] [track]{}", line.place, words.size(),
-        fmt::join(names, " "),
-        words.size() > 7 ? ": labels of segmentation (polygons), poses and oriented boxes are not "
-                           "read, save boxes"
-                         : ""));
+    throw InputError(fmt::format("{}: has {} numbers; expected class {} [score] [track]{}",
+                                 line.place, words.size(), fmt::join(names, " "),
+                                 words.size() > 7 ? ": labels of segmentation (polygons), poses "
+                                                    "and oriented boxes are not read, save boxes"
+                                                  : ""));
   }
   const int index = ParseInteger(words[0], line.place, "class");
   if (index < 0 || index >= static_cast<int>(labels.size())) {

@@ -26,12 +26,11 @@ struct EvaluateOptions {
 
   void Describe(OptionVisitor& visit) {
     visit.Group("Comparison of maps");
-    visit.Choice(
-        "alignment", &alignment, kAlignmentKindNames,
-        "how a map is moved, for map_quality only, so that its camera centres fit the true "
-        "ones best: as a whole (rigid), also scaled (similarity), not at all (none); auto: "
-        "none where odometry and truth are in one world, rigid where the odometry has a "
-        "world of its own, similarity where it has a scale of its own");
+    visit.Choice("alignment", &alignment, kAlignmentKindNames,
+                 "how a map is moved, for map_quality only, so that its camera centres fit the "
+                 "true ones best: as a whole (rigid), also scaled (similarity), not at all (none); "
+                 "auto: none where odometry and truth are in one world, rigid where the odometry "
+                 "has a world of its own, similarity where it has a scale of its own");
   }
 };
 

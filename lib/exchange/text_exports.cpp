@@ -14,11 +14,10 @@ namespace soslam {
 namespace {
 
 constexpr const char* kHeader =
-    "id,label,segment,observations,centre_x,centre_y,centre_z,qx,qy,qz,qw,"
-    "half_axis_a,half_axis_b,half_axis_c,yaw_deg,shape_exponent,vertical_exponent,"
-    "sigma_centre_x,sigma_centre_y,sigma_centre_z,"
-    "sigma_half_axis_a,sigma_half_axis_b,sigma_half_axis_c,sigma_yaw_deg,"
-    "failure,fate,true_object,iou,reason";
+    "id,label,segment,observations,centre_x,centre_y,centre_z,qx,qy,qz,qw,half_axis_a,half_axis_b,"
+    "half_axis_c,yaw_deg,shape_exponent,vertical_exponent,sigma_centre_x,sigma_centre_y,sigma_"
+    "centre_z,sigma_half_axis_a,sigma_half_axis_b,sigma_half_axis_c,sigma_yaw_deg,failure,fate,"
+    "true_object,iou,reason";
 constexpr size_t kFailureColumn = 24;
 constexpr size_t kColumns = kFailureColumn + 5;
 

@@ -167,13 +167,12 @@ void CheckHolding(const GroundEstimate& estimate, std::vector<Finding>* findings
   if (holding == estimate.holding_of_boxes) return;
   findings->push_back(
       {kHoldingOfPlanesCheck, Severity::kWarning,
-       fmt::format(
-           "which way is up is not clear: objects look as if the camera was held {}, but "
-           "more than twice as many objects stand on flat surfaces if it was held {}, "
-           "which is assumed. If that is wrong, the map lies on its side or is upside down, and "
-           "heights and scale are wrong with it",
-           kHoldingWords.at(static_cast<size_t>(estimate.holding_of_boxes)),
-           kHoldingWords.at(static_cast<size_t>(holding))),
+       fmt::format("which way is up is not clear: objects look as if the camera was held {}, but "
+                   "more than twice as many objects stand on flat surfaces if it was held {}, "
+                   "which is assumed. If that is wrong, the map lies on its side or is upside "
+                   "down, and heights and scale are wrong with it",
+                   kHoldingWords.at(static_cast<size_t>(estimate.holding_of_boxes)),
+                   kHoldingWords.at(static_cast<size_t>(holding))),
        "objects and surfaces that agree on which way is up",
        "photos that were turned in different ways or look steeply down, few objects, or surfaces "
        "without texture",

@@ -38,10 +38,9 @@ struct GroundOptions {
                  "whether up, scale and support planes are those of the dataset, or this stage "
                  "finds them out; the stage runs only in the latter case");
     visit.Group("Scale");
-    visit.Real(
-        "scale", &scale, {0.0, 1e9},
-        "metres per unit of the input's world, where it is known; 0: unknown. It is combined "
-        "with the heights of objects");
+    visit.Real("scale", &scale, {0.0, 1e9},
+               "metres per unit of the input's world, where it is known; 0: unknown. It is "
+               "combined with the heights of objects");
     visit.Real("scale_log_sigma", &scale_log_sigma, {0.005, 10.0},
                "standard deviation of the logarithm of `scale`; 0.02 is 2 %");
     visit.Real("camera_height_m", &camera_height_m, {0.0, 1e3},
@@ -52,10 +51,9 @@ struct GroundOptions {
     visit.Real("wrong_height_probability", &wrong_height_probability, {1e-6, 0.5},
                "the share of objects whose height says nothing on the scale, because of a wrong "
                "label or box");
-    visit.Real(
-        "same_label_correlation", &same_label_correlation, {0.0, 1.0},
-        "correlation of the heights of objects of one label beyond that of the table: chairs "
-        "in one room are often of one model; 1: together they count as one object");
+    visit.Real("same_label_correlation", &same_label_correlation, {0.0, 1.0},
+               "correlation of the heights of objects of one label beyond that of the table: "
+               "chairs in one room are often of one model; 1: together they count as one object");
     visit.Text("moving_labels", &moving_labels,
                "labels of things that move, separated by commas; they are not used");
     visit.Group("Objects");

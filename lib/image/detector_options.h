@@ -24,11 +24,10 @@ struct DetectorOptions {
 
   void Describe(OptionVisitor& visit) {
     visit.Group("Network");
-    visit.Choice(
-        "output_layout", &output_layout, kYoloLayoutNames,
-        "the network's output: v5 [1, N, 5 + classes], v8 [1, 4 + classes, N], yolox (v5 with "
-        "boxes in cells of its grids, as YOLOX is published), end_to_end [1, N, 6]; auto: as the "
-        "file and the output say");
+    visit.Choice("output_layout", &output_layout, kYoloLayoutNames,
+                 "the network's output: v5 [1, N, 5 + classes], v8 [1, 4 + classes, N], yolox (v5 "
+                 "with boxes in cells of its grids, as YOLOX is published), end_to_end [1, N, 6]; "
+                 "auto: as the file and the output say");
     visit.Choice("pixel_values", &pixel_values, kPixelValuesNames,
                  "what the network takes: rgb_0_1 (Ultralytics) or bgr_0_255 (YOLOX); auto: as the "
                  "file and the output say");

@@ -24,10 +24,9 @@ struct FrameOptions {
     visit.Group("Choice");
     visit.Integer("max_frames", &max_frames, {2, 10000},
                   "frames to choose at most, spread over all that differ");
-    visit.Real(
-        "min_motion", &min_motion, {0, 1},
-        "median displacement of features since the chosen frame before, as a fraction of the "
-        "image's longer side, below which a frame is left out");
+    visit.Real("min_motion", &min_motion, {0, 1},
+               "median displacement of features since the chosen frame before, as a fraction of "
+               "the image's longer side, below which a frame is left out");
     visit.Real("min_sharpness", &min_sharpness, {0, 1},
                "sharpness (variance of the Laplacian) relative to the median of the frames before "
                "and after, below which a frame is left out as blurred");

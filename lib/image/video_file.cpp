@@ -209,10 +209,9 @@ bool VideoReader::Next() {
     note_error(avcodec_send_packet(decoder_->codec, packet) < 0);
   }
   if (++frames_ > kMaxFrames) {
-    throw InputError(
-        fmt::format("{}: has more than {} frames; expected a shorter one, or one with fewer frames "
-                    "per second",
-                    path_.string(), kMaxFrames));
+    throw InputError(fmt::format(
+        "{}: has more than {} frames; expected a shorter one, or one with fewer frames per second",
+        path_.string(), kMaxFrames));
   }
   const bool is_predicted =
       frame.pict_type == AV_PICTURE_TYPE_P || frame.pict_type == AV_PICTURE_TYPE_B;

@@ -78,10 +78,9 @@ struct RefineOptions {
                  "grid of the cost over yaw, over half a turn");
       visit.Real("yaw_range_deg", &yaw_range_deg, {0.0, 90.0},
                  "how far from a yaw that explains the box the refinement looks; 90: all around");
-      visit.Real(
-          "tie_edge_px", &tie_edge_px, {0.0, 1000.0},
-          "all hypotheses whose outline fits the box as well as the first one's, to this rms edge "
-          "distance, are tried; the texture decides");
+      visit.Real("tie_edge_px", &tie_edge_px, {0.0, 1000.0},
+                 "all hypotheses whose outline fits the box as well as the first one's, to this "
+                 "rms edge distance, are tried; the texture decides");
       visit.Real("yaw_resolution_deg", &yaw_resolution_deg, {0.001, 45.0},
                  "grid of the search around the best yaw of the coarse grid");
     });

@@ -217,15 +217,12 @@ std::vector<Table> QualityTables(const DatasetResult& dataset) {
   quality.notes = {
       "True objects (detectable ones), landmarks (ignored ones), recall of the detectable at IoU "
       "0.25. Landmarks that match a true object with an IoU of so much or more: how many are "
-      "right, "
-      "precision, recall, F1, mean IoU.",
+      "right, precision, recall, F1, mean IoU.",
       OdometryNote(maps)};
   errors.notes = {
       "Means of absolute values; logarithms are of estimate over truth. Yaw of body: modulo a "
-      "quarter "
-      "turn, as a body with permuted axes is the same. Labels and ids: how many "
-      "agree. IoU in the frames that saw what is right or wrong in part, and of the same in the "
-      "world."};
+      "quarter turn, as a body with permuted axes is the same. Labels and ids: how many agree. IoU "
+      "in the frames that saw what is right or wrong in part, and of the same in the world."};
   return {quality, errors};
 }
 

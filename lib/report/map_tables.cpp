@@ -103,9 +103,8 @@ Table LostTable(const std::vector<DatasetResult>& datasets,
       {"dataset", "variant", "mistake", "reason", "objects"},
       {},
       5,
-      {"At IoU 0.25, with their ids, those of false landmarks in the map. The landmark of "
-       "a missed object is not listed again. soslam-inspect metrics.json says more of "
-       "each."}};
+      {"At IoU 0.25, with their ids, those of false landmarks in the map. The landmark of a missed "
+       "object is not listed again. soslam-inspect metrics.json says more of each."}};
   for (const EvaluatedMap& map : MapsOf(datasets, variants)) {
     NamesByKey missed, false_ones;  // by reason
     std::set<json> missed_ids;

@@ -125,10 +125,9 @@ Table TimeTable(const std::vector<DatasetResult>& datasets, const Published& pub
   for (const char* name : kKnownVariants) table.header.emplace_back(name);
   for (const DatasetResult& dataset : datasets) AddMeasuredTimes(dataset, &table);
   if (table.rows.empty()) return table;
-  table.notes = {
-      MachineNote(datasets),
-      "Edges, tracks, initialisation and refinement per landmark, of which single-frame variants "
-      "have one per observation; of maps the back end alone, per object."};
+  table.notes = {MachineNote(datasets),
+                 "Edges, tracks, initialisation and refinement per landmark, of which single-frame "
+                 "variants have one per observation; of maps the back end alone, per object."};
   AddPublishedTimes(published.times, &table);
   return table;
 }

@@ -134,10 +134,9 @@ std::map<std::string, StagesUnderWay> ReadStagesUnderWay(const fs::path& file) {
     words >> dataset >> id >> state;
     const bool is_running = state == NameOf(StageState::kRunning);
     if ((!is_running && state != NameOf(StageState::kQueued)) || words >> more) {
-      throw InputError(
-          fmt::format("{}: a line is '{}'; expected '<dataset> <stage run> queued' or "
-                      "'... running'",
-                      file.string(), line));
+      throw InputError(fmt::format(
+          "{}: a line is '{}'; expected '<dataset> <stage run> queued' or '... running'",
+          file.string(), line));
     }
     const auto known = under_way[dataset].try_emplace(id, StageState::kQueued).first;
     if (is_running) known->second = StageState::kRunning;
