@@ -67,7 +67,7 @@ void ValidateAgainstSchema(const json& document, const std::string& kind, const 
 namespace {
 
 // [major, minor] of all schemas. A reader refuses newer ones, and files that lack what is required.
-const std::vector<int> kSchemaVersion = {1, 9};
+const std::vector<int> kSchemaVersion = {1, 10};
 
 // Parser callback that rejects duplicate keys, of which nlohmann silently keeps the last, and deep
 // nesting, which would exhaust the stack in recursive code.

@@ -5,9 +5,10 @@
 
 namespace soslam {
 
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(WhatIf, yaw, quarter_turn, place, size)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MetricsSummary, objects, observations, iou_mean, iou_median,
                                    rotation_deg_mean, rotation_deg_median, yaw_error_deg_mean,
-                                   yaw_error_deg_median)
+                                   yaw_error_deg_median, what_if)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrajectoryMetrics, ate_rmse_m, odometry_ate_rmse_m)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FoundSummary, iou_mean, centre_m_mean, centre_relative_mean,
                                    log_size_mean, log_size_abs_mean, log_scale_mean,
@@ -18,11 +19,11 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MapScore, min_iou, true_objects, detectable, 
                                    found, found_detectable, precision, recall, f1,
                                    recall_of_detectable, f1_of_detectable, of_found)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DriftSummary, landmarks, iou_mean, iou_mean_in_world,
-                                   centre_m_median, centre_m_median_in_world)
+                                   centre_m_median, centre_m_median_in_world, what_if)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HeldOutObject, in_sight, in_sight_matched, matched, iou_mean)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HeldOutMetrics, frames, detections, detections_matched, in_sight,
                                    in_sight_matched, iou_mean, iou_median, iou_mean_of_detections)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(InFrames, observations, iou_mean, centre_m_mean)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(InFrames, observations, iou_mean, centre_m_mean, what_if)
 
 namespace {
 
@@ -84,14 +85,9 @@ json LandmarkRowToJson(const LandmarkRow& row, const Sequence& sequence) {
                  {"plane_tilt_deg", row.plane ? json(row.plane->tilt_deg) : json()},
                  {"label_agrees", row.errors ? json(row.label_agrees) : json()},
                  {"id_agrees", row.id_agrees},
-                 {"wrong_part", json()},
                  {"in_frames", row.in_frames}};
   if (row.true_index) {
     fields["true_object"] = sequence.true_objects[*row.true_index].id;
-  }
-  if (row.wrong) {
-    fields["wrong_part"] = {{"part", kBodyPartNames[static_cast<size_t>(row.wrong->part)]},
-                            {"iou_corrected", row.wrong->iou}};
   }
   AddExplanation(row.why_false, &fields);
   return fields;
@@ -126,7 +122,8 @@ json ObjectMetricsToJson(const ObjectMetrics& metrics, const Sequence& sequence)
           {"centre_m", metrics.centre_m},
           {"rotation_deg", metrics.rotation_deg},
           {"yaw_error_deg", metrics.yaw_deg},
-          {"attitude_error_deg", metrics.attitude_deg}};
+          {"attitude_error_deg", metrics.attitude_deg},
+          {"what_if", metrics.what_if}};
 }
 
 json HeldOutMetricsToJson(const HeldOutMetrics& metrics, const Sequence& sequence) {

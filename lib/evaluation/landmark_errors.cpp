@@ -182,6 +182,26 @@ BodyErrors CompareBodies(const Landmark& estimate, const GroundTruth& truth,
   return errors;
 }
 
+LandmarkErrors CompareInCamera(const Landmark& estimate, const GroundTruth& truth,
+                               const Landmark& truth_in_camera) {
+  const auto iou = [&](const Landmark& corrected) {
+    return CompareLandmarks(corrected, truth, truth_in_camera).iou;
+  };
+  LandmarkErrors errors = CompareLandmarks(estimate, truth, truth_in_camera);
+  const Landmark named = NamedLike(estimate, truth_in_camera);
+  Landmark placed = estimate, sized = named;
+  placed.frame_from_object.translation = truth_in_camera.Centre();
+  sized.half_axes = truth_in_camera.half_axes;
+  errors.what_if = {errors.iou, errors.iou, iou(placed), iou(sized)};
+  if (truth.rotationally_symmetric) return errors;
+  errors.what_if->yaw =
+      std::max(iou(WithYawOf(truth_in_camera, estimate)), iou(WithYawOf(truth_in_camera, named)));
+  // Boxes are symmetric to half turns, which leaves two of the four.
+  errors.what_if->quarter_turn =
+      std::max(errors.iou, iou(RotatedAboutZ(named, 0.5 * std::numbers::pi)));
+  return errors;
+}
+
 PlaneErrors ComparePlane(const Plane& plane, const Landmark& truth) {
   return {-plane.SignedDistance(Foot(truth)), AngleBetweenDeg(plane.normal, Up(truth))};
 }

@@ -3,8 +3,10 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <functional>
 #include <optional>
 
+#include "evaluation/statistics.h"
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
 #include "model/sequence.h"
@@ -26,6 +28,15 @@ double YawError(const Eigen::Quaterniond& frame_from_estimate,
 // rest on another face.
 double AttitudeError(const Landmark& estimate, const Landmark& truth_in_frame);
 
+// The IoU of a landmark with one thing of it replaced by the true one. The yaw of rotationally
+// symmetric objects has no meaning: nothing is turned then.
+struct WhatIf {
+  double yaw = 0.0;           // of the object or, if IoU is higher, of the body as in BodyErrors
+  double quarter_turn = 0.0;  // the best of four quarter turns about its own vertical axis
+  double place = 0.0;         // the centre
+  double size = 0.0;          // the half axes, along the axes that are nearest the true ones
+};
+
 // Errors of one landmark. Angles are absent for rotationally symmetric objects, whose yaw has no
 // meaning; for IoU the truth is then rotated to the estimate's yaw.
 struct LandmarkErrors {
@@ -34,10 +45,29 @@ struct LandmarkErrors {
   std::optional<double> rotation_deg;  // RotationError
   std::optional<double> yaw_deg;       // YawError
   std::optional<double> attitude_deg;  // AttitudeError
+  std::optional<WhatIf> what_if;       // by CompareInCamera only
 };
 
 LandmarkErrors CompareLandmarks(const Landmark& estimate, const GroundTruth& truth,
                                 const Landmark& truth_in_frame);
+// The same with `what_if`: in the frame of a camera, where errors of its pose do not count.
+LandmarkErrors CompareInCamera(const Landmark& estimate, const GroundTruth& truth,
+                               const Landmark& truth_in_camera);
+
+// Means over the items that have a WhatIf: `what_if_of` is a member or function.
+template <typename Items, typename WhatIfOf>
+std::optional<WhatIf> MeanWhatIf(const Items& items, const WhatIfOf& what_if_of) {
+  WhatIf mean;
+  for (const auto iou : {&WhatIf::yaw, &WhatIf::quarter_turn, &WhatIf::place, &WhatIf::size}) {
+    const auto value = MeanOf(ValuesOf(items, [&](const auto& item) {
+      const std::optional<WhatIf> what_if = std::invoke(what_if_of, item);
+      return what_if ? std::optional((*what_if).*iou) : std::nullopt;
+    }));
+    if (!value) return std::nullopt;
+    mean.*iou = *value;
+  }
+  return mean;
+}
 
 // Differences between a landmark and the true one as solids: the estimate's axes are renamed to be
 // nearest the true ones, so that a body with other names for its axes is the same. Logarithms are

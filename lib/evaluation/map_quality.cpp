@@ -41,7 +41,6 @@ class RowMaker {
     row.true_index = true_index;
     CompareInWorld(landmark, &row);
     CompareInFrames(landmark, &row);
-    row.wrong = DominantError(sequence_, map_, static_cast<int>(landmark), true_index);
     row.id_agrees = MostIdsAgree(row);
     return row;
   }
@@ -79,20 +78,20 @@ class RowMaker {
   void CompareInFrames(size_t landmark, LandmarkRow* row) const {
     const int true_index = row->true_index.value();
     const TrueObject& object = sequence_.true_objects[true_index];
-    std::vector<double> ious, centres;
+    std::vector<LandmarkErrors> errors;
     for (const int index : detections_[row->object_index]) {
       const int frame = sequence_.detections[index].frame_index;
       const auto truth_in_camera = views_.KnownInCamera(frame, true_index);
       if (!truth_in_camera) continue;
       const Landmark estimate_in_camera = Transform(map_.world_from_camera[frame].Inverse(),
                                                     map_.landmarks[landmark].landmark_in_world);
-      const LandmarkErrors errors =
-          CompareLandmarks(estimate_in_camera, object.truth, *truth_in_camera);
-      ious.push_back(errors.iou);
-      centres.push_back(errors.centre_m);
+      errors.push_back(CompareInCamera(estimate_in_camera, object.truth, *truth_in_camera));
     }
-    if (ious.empty()) return;
-    row->in_frames = InFrames{static_cast<int>(ious.size()), *MeanOf(ious), *MeanOf(centres)};
+    if (errors.empty()) return;
+    row->in_frames =
+        InFrames{static_cast<int>(errors.size()), *MeanOf(ValuesOf(errors, &LandmarkErrors::iou)),
+                 *MeanOf(ValuesOf(errors, &LandmarkErrors::centre_m)),
+                 *MeanWhatIf(errors, &LandmarkErrors::what_if)};
   }
 
   // True if most of the boxes with a true object id in the dataset have that of the row's true
@@ -200,16 +199,19 @@ MapScore Score(double min_iou, const std::vector<TrueObjectRow>& objects,
 }
 
 DriftSummary SummariseInFrames(const std::vector<LandmarkRow>& rows) {
-  std::vector<double> ious, ious_in_world, centres, centres_in_world;
+  std::vector<InFrames> in_frames;
+  std::vector<BodyErrors> in_world;
   for (const LandmarkRow& row : rows) {
     if (!row.in_frames) continue;
-    ious.push_back(row.in_frames->iou_mean);
-    ious_in_world.push_back(row.errors->iou);
-    centres.push_back(row.in_frames->centre_m_mean);
-    centres_in_world.push_back(row.errors->centre_m);
+    in_frames.push_back(*row.in_frames);
+    in_world.push_back(*row.errors);
   }
-  return {static_cast<int>(ious.size()), MeanOf(ious), MeanOf(ious_in_world), MedianOf(centres),
-          MedianOf(centres_in_world)};
+  return {static_cast<int>(in_frames.size()),
+          MeanOf(ValuesOf(in_frames, &InFrames::iou_mean)),
+          MeanOf(ValuesOf(in_world, &BodyErrors::iou)),
+          MedianOf(ValuesOf(in_frames, &InFrames::centre_m_mean)),
+          MedianOf(ValuesOf(in_world, &BodyErrors::centre_m)),
+          MeanWhatIf(in_frames, &InFrames::what_if)};
 }
 
 void ExplainMisses(const ReasonInput& input, MapQuality* quality) {

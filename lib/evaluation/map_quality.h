@@ -23,6 +23,7 @@ struct InFrames {
   int observations = 0;
   double iou_mean = 0.0;
   double centre_m_mean = 0.0;
+  WhatIf what_if = {};
 };
 
 // A true object that the map should contain: it stands still, and its label is one of those asked
@@ -42,7 +43,6 @@ struct LandmarkRow {
   std::optional<int> true_index =
       std::nullopt;  // for found ones; for false ones the most likely one
   std::optional<BodyErrors> errors = std::nullopt;  // against that object
-  std::optional<WrongPart> wrong = std::nullopt;    // for found ones only
   std::optional<PlaneErrors> plane = std::nullopt;  // if there are planes
   bool label_agrees = false;
   std::optional<bool> id_agrees = std::nullopt;  // by most of its boxes; none if they have no ids
@@ -84,6 +84,7 @@ struct DriftSummary {
   int landmarks = 0;
   std::optional<double> iou_mean, iou_mean_in_world;
   std::optional<double> centre_m_median, centre_m_median_in_world;
+  std::optional<WhatIf> what_if = {};
 };
 
 struct MapQuality {

@@ -145,10 +145,24 @@ MapReason ReasonOf(BodyPart part, const Landmark& landmark, const std::optional<
   }
 }
 
+// The mean place of the cameras that observed an object.
+Eigen::Vector3d MeanViewpoint(const ReasonInput& input, int object_index) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  int views = 0;
+  for (const Detection& detection : input.sequence.detections) {
+    if (detection.object_index != object_index) continue;
+    sum += input.map.world_from_camera[detection.frame_index].translation;
+    ++views;
+  }
+  return sum / std::max(views, 1);
+}
+
 Explanation ExplainWrong(const ReasonInput& input, int landmark, int true_index) {
-  const auto wrong = DominantError(input.sequence, input.map, landmark, true_index);
   const GroundTruth& truth = input.sequence.true_objects[true_index].truth;
   const Landmark& estimate = input.map.landmarks[landmark].landmark_in_world;
+  const auto wrong =
+      FindDominantError(estimate, truth, truth.landmark_in_world,
+                        MeanViewpoint(input, input.map.landmarks[landmark].object_index));
   const auto& plane = input.map.landmarks[landmark].plane_in_world;
   const BodyErrors errors = CompareBodies(estimate, truth, truth.landmark_in_world);
   std::optional<PlaneErrors> plane_errors;
@@ -209,21 +223,6 @@ std::string FailureOf(const std::vector<ObjectEstimate>& estimates, int object_i
 
 bool IsWrong(MapReason reason) {
   return reason >= MapReason::kWrongPlane && reason <= MapReason::kWrongInSeveral;
-}
-
-std::optional<WrongPart> DominantError(const Sequence& sequence, const AlignedMap& map,
-                                       int landmark, int true_index) {
-  const AlignedLandmark& estimate = map.landmarks[landmark];
-  const TrueObject& object = sequence.true_objects[true_index];
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  int views = 0;
-  for (const Detection& detection : sequence.detections) {
-    if (detection.object_index != estimate.object_index) continue;
-    sum += map.world_from_camera[detection.frame_index].translation;
-    ++views;
-  }
-  return FindDominantError(estimate.landmark_in_world, object.truth, object.truth.landmark_in_world,
-                           sum / std::max(views, 1));
 }
 
 Explanation ExplainMiss(const ReasonInput& input, int true_index) {

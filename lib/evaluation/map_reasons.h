@@ -81,8 +81,4 @@ Explanation ExplainMiss(const ReasonInput& input, int true_index);
 // Reason for a landmark, which is not ignored, without a matching true object.
 Explanation ExplainFalse(const ReasonInput& input, int landmark);
 
-// FindDominantError of a landmark and a true object of its segment.
-std::optional<WrongPart> DominantError(const Sequence& sequence, const AlignedMap& map,
-                                       int landmark, int true_index);
-
 }  // namespace soslam

@@ -21,6 +21,9 @@ ObjectMetrics Average(int object_index, int observations,
   metrics.estimates = static_cast<int>(known.size());
   const auto iou = [](const auto& error) { return error ? error->iou : 0.0; };
   metrics.iou = MeanOf(ValuesOf(errors, iou)).value_or(0.0);
+  metrics.what_if = MeanWhatIf(errors, [](const auto& error) {
+    return error ? error->what_if : std::optional<WhatIf>(WhatIf());
+  });
   metrics.centre_m = MeanOf(ValuesOf(known, &LandmarkErrors::centre_m));
   metrics.rotation_deg = MeanOf(ValuesOf(known, &LandmarkErrors::rotation_deg));
   metrics.yaw_deg = MeanOf(ValuesOf(known, &LandmarkErrors::yaw_deg));
@@ -42,6 +45,7 @@ MetricsSummary Summarise(std::vector<ObjectMetrics> objects) {
   summary.rotation_deg_median = MedianOf(rotations);
   summary.yaw_error_deg_mean = MeanOf(yaws);
   summary.yaw_error_deg_median = MedianOf(yaws);
+  summary.what_if = MeanWhatIf(objects, &ObjectMetrics::what_if);
   return summary;
 }
 
@@ -58,8 +62,8 @@ ErrorsByObject ObservationErrors(const Sequence& sequence, const LandmarkEstimat
       of_object.emplace_back();
       continue;
     }
-    of_object.push_back(CompareLandmarks(observation.hypotheses.front().landmark_in_camera, *truth,
-                                         *TrueLandmarkInCamera(sequence, detection)));
+    of_object.push_back(CompareInCamera(observation.hypotheses.front().landmark_in_camera, *truth,
+                                        *TrueLandmarkInCamera(sequence, detection)));
   }
   return errors;
 }

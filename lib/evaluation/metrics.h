@@ -23,6 +23,7 @@ struct ObjectMetrics {
   std::optional<double> rotation_deg;
   std::optional<double> yaw_deg;
   std::optional<double> attitude_deg = {};
+  std::optional<WhatIf> what_if = {};  // of single-frame estimates only; 0 without estimate
 };
 
 // Summary over objects. Angles: over the objects that have them.
@@ -32,6 +33,7 @@ struct MetricsSummary {
   std::optional<double> iou_mean, iou_median;
   std::optional<double> rotation_deg_mean, rotation_deg_median;
   std::optional<double> yaw_error_deg_mean, yaw_error_deg_median;
+  std::optional<WhatIf> what_if = {};
 };
 
 struct TrajectoryMetrics {

@@ -35,7 +35,9 @@ constexpr const char* kOfFound =
     "{of_found/ids_known} ids agree, {of_found/quarter_turned} turned by a quarter";
 constexpr const char* kInFrames =
     "{landmarks} landmarks: mean IoU {iou_mean:.3f}, in the world {iou_mean_in_world:.3f}; median "
-    "centre {centre_m_median:.3f} m, in the world {centre_m_median_in_world:.3f} m";
+    "centre {centre_m_median:.3f} m, in the world {centre_m_median_in_world:.3f} m; mean IoU with "
+    "the true yaw {what_if/yaw:.3f}, the best quarter turn {what_if/quarter_turn:.3f}, the true "
+    "place {what_if/place:.3f}, the true size {what_if/size:.3f}";
 constexpr const char* kSummary =
     "IoU {iou_mean:.3f} (median {iou_median:.3f}), rotation error {rotation_deg_mean:.2f} (median "
     "{rotation_deg_median:.2f}) deg, yaw error {yaw_error_deg_mean:.2f} (median "
@@ -107,7 +109,10 @@ ValueTable MapQualityTable(const json& quality) {
                   {"plane_offset", "m", 3, "plane_offset_m"},
                   {"plane_tilt", "deg", 2, "plane_tilt_deg"},
                   {"iou_in_frames", "", 3, "in_frames/iou_mean"},
-                  {"wrong_part", "", 2, "wrong_part/part"},
+                  {"with_true_yaw", "", 3, "in_frames/what_if/yaw"},
+                  {"with_quarter_turn", "", 3, "in_frames/what_if/quarter_turn"},
+                  {"with_true_place", "", 3, "in_frames/what_if/place"},
+                  {"with_true_size", "", 3, "in_frames/what_if/size"},
                   {"reason"}},
                  quality.at("landmarks"));
 }

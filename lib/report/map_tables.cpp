@@ -63,16 +63,32 @@ void AddOrJoin(const std::vector<Cell>& row, Table* table) {
   }
 }
 
+const std::vector<std::string> kWhatIfHeader = {"IoU in frames", "true yaw", "quarter turn",
+                                                "true place", "true size"};
+constexpr const char* kWhatIfNote =
+    "IoU in the frames of the cameras, and what it would be with one thing of each landmark "
+    "replaced by the true one. Yaw: of the object or of the body, whichever fits better. Quarter "
+    "turn: the best of four about the landmark's own vertical axis.";
+
+// The cells of kWhatIfHeader. `in_frames`: what has iou_mean and what_if, or null.
+std::vector<Cell> WhatIfCells(const json& in_frames) {
+  std::vector<Cell> cells;
+  for (const char* text : {"{iou_mean:.3f}", "{what_if/yaw:.3f}", "{what_if/quarter_turn:.3f}",
+                           "{what_if/place:.3f}", "{what_if/size:.3f}"}) {
+    cells.emplace_back(in_frames.is_null() ? kNoValue : FillIn(text, in_frames));
+  }
+  return cells;
+}
+
 std::vector<Cell> LimitsRow(const json& landmark) {
   const json& errors = landmark.at("errors");
-  const json& wrong = landmark.at("wrong_part");
-  return {ObjectName(landmark, "true_object"),
-          wrong.is_null() ? kNoValue : WithBlanks(wrong.at("part")),
-          FillIn("{iou:.3f}", errors),
-          wrong.is_null() ? kNoValue : FillIn("{iou_corrected:.3f}", wrong),
-          FillIn("{centre_m:.3f}", errors),
-          FillIn("{log_size/0:.2f}, {log_size/1:.2f}, {log_size/2:.2f}", errors),
-          FillIn("{yaw_error_deg:.1f}", errors)};
+  std::vector<Cell> row = WhatIfCells(landmark.at("in_frames"));
+  row.insert(row.begin(), {ObjectName(landmark, "true_object"), FillIn("{iou:.3f}", errors)});
+  for (const char* text : {"{centre_m:.3f}", "{log_size/0:.2f}, {log_size/1:.2f}, {log_size/2:.2f}",
+                           "{yaw_error_deg:.1f}"}) {
+    row.emplace_back(FillIn(text, errors));
+  }
+  return row;
 }
 
 }  // namespace
@@ -133,13 +149,14 @@ Table LimitsTable(const std::vector<DatasetResult>& datasets,
                   const std::vector<std::string>& variants) {
   Table table = {"limits",
                  "What limits the found objects",
-                 {"dataset", "variant", "object", "part", "IoU", "corrected", "centre m",
-                  "log size x, y, z", "yaw of body deg"},
+                 {"dataset", "variant", "object", "IoU"},
                  {},
-                 4,
-                 {"The part of the landmark (plane, size, yaw, place) that gains most if it is "
-                  "replaced by the true one, and the IoU then. Logarithms are of estimate over "
-                  "truth, along the true axes. Yaw of body: modulo a quarter turn."}};
+                 3,
+                 {kWhatIfNote,
+                  "Logarithms are of estimate over truth, along the true axes. Yaw of body: modulo "
+                  "a quarter turn."}};
+  table.header.insert(table.header.end(), kWhatIfHeader.begin(), kWhatIfHeader.end());
+  table.header.insert(table.header.end(), {"centre m", "log size x, y, z", "yaw of body deg"});
   for (const EvaluatedMap& map : MapsOf(datasets, variants)) {
     for (const json& landmark : map.quality.at("landmarks")) {
       if (landmark.at("fate") == "found") table.rows.push_back(WithMap(map, LimitsRow(landmark)));

@@ -38,8 +38,7 @@ Table MapsTable(const std::vector<DatasetResult>& datasets,
 Table LostTable(const std::vector<DatasetResult>& datasets,
                 const std::vector<std::string>& variants);
 
-// The found objects of each map, each with the part of its landmark whose correction would gain
-// most.
+// The found objects of each map, each with its errors and WhatIf.
 Table LimitsTable(const std::vector<DatasetResult>& datasets,
                   const std::vector<std::string>& variants);
 

@@ -110,6 +110,77 @@ TEST_F(BodyErrorsTest, APlaneThatIsTooLowIsSeenInDistanceAndSize) {
   EXPECT_NEAR(wrong->iou, 1.0, 1e-9);
 }
 
+// The true body is 0.8 m by 0.4 m, all of the same height.
+class WhatIfTest : public BodyErrorsTest {
+ protected:
+  // The errors of an estimate, seen by a camera anywhere.
+  LandmarkErrors Errors(const Landmark& estimate) const {
+    const Rigid3d camera_from_world = RandomRigid();
+    return CompareInCamera(Transform(camera_from_world, estimate), truth_,
+                           Transform(camera_from_world, truth_.landmark_in_world));
+  }
+  void ExpectIous(const Landmark& estimate, double iou, const WhatIf& expected) const {
+    const LandmarkErrors errors = Errors(estimate);
+    EXPECT_NEAR(errors.iou, iou, 1e-9);
+    EXPECT_NEAR(errors.what_if->yaw, expected.yaw, 1e-9);
+    EXPECT_NEAR(errors.what_if->quarter_turn, expected.quarter_turn, 1e-9);
+    EXPECT_NEAR(errors.what_if->place, expected.place, 1e-9);
+    EXPECT_NEAR(errors.what_if->size, expected.size, 1e-9);
+  }
+  // The true body, moved along its own x axis.
+  Landmark MovedAlongX(double distance) const {
+    Landmark moved = truth_.landmark_in_world;
+    moved.frame_from_object.translation +=
+        moved.frame_from_object.rotation * Eigen::Vector3d(distance, 0.0, 0.0);
+    return moved;
+  }
+};
+
+TEST_F(WhatIfTest, OneThingAloneMakesItRight) {
+  ExpectIous(truth_.landmark_in_world, 1.0, {1.0, 1.0, 1.0, 1.0});
+  ExpectIous(MovedAlongX(0.2), 0.6, {0.6, 0.6, 1.0, 0.6});
+  Landmark large = truth_.landmark_in_world;
+  large.half_axes.x() *= 2.0;
+  ExpectIous(large, 0.5, {0.5, 0.5, 0.5, 1.0});
+  const double turned = Errors(Standing(1.0, 2.0, 50.0, {0.4, 0.2, 0.3})).iou;
+  ExpectIous(Standing(1.0, 2.0, 50.0, {0.4, 0.2, 0.3}), turned, {1.0, turned, turned, turned});
+}
+
+// A body that is turned by more than half a quarter is one of another size as well.
+TEST_F(WhatIfTest, AQuarterTurnIsOneOfYawOrSize) {
+  ExpectIous(Standing(1.0, 2.0, 110.0, {0.4, 0.2, 0.3}), 1.0 / 3.0, {1.0, 1.0, 1.0 / 3.0, 1.0});
+  ExpectIous(Standing(1.0, 2.0, 110.0, {0.2, 0.4, 0.3}), 1.0, {1.0, 1.0, 1.0, 1.0});
+  const double by_20 = Errors(Standing(1.0, 2.0, 40.0, {0.4, 0.2, 0.3})).iou;
+  const Landmark by_70 = Standing(1.0, 2.0, 90.0, {0.4, 0.2, 0.3});
+  const double by_70_iou = Errors(by_70).iou;
+  ExpectIous(by_70, by_70_iou, {1.0, by_20, by_70_iou, by_20});
+}
+
+// To turn the estimate, and the true box with it, would change the IoU, as the centre is wrong.
+TEST_F(WhatIfTest, NothingTurnsARoundObject) {
+  truth_.landmark_in_world = Standing(1.0, 2.0, 20.0, {0.2, 0.2, 0.3});
+  truth_.rotationally_symmetric = true;
+  const LandmarkErrors errors = Errors(Standing(1.1, 2.0, 65.0, {0.4, 0.2, 0.3}));
+  EXPECT_EQ(errors.what_if->yaw, errors.iou);
+  EXPECT_EQ(errors.what_if->quarter_turn, errors.iou);
+  EXPECT_NEAR(errors.what_if->place, 0.5, 1e-9);
+}
+
+TEST_F(WhatIfTest, NamesOfAxesDoNotMatter) {
+  for (int i = 0; i < 20; ++i) {
+    const Eigen::Vector3d half_axes = RandomVector(0.1, 0.5);
+    const double x = RandomUniform(0.8, 1.2), yaw_deg = RandomUniform(-25.0, 65.0);
+    const LandmarkErrors one = Errors(Standing(x, 2.1, yaw_deg, half_axes));
+    const LandmarkErrors renamed =
+        Errors(Standing(x, 2.1, yaw_deg + 90.0, {half_axes.y(), half_axes.x(), half_axes.z()}));
+    EXPECT_NEAR(one.iou, renamed.iou, 1e-9);
+    EXPECT_NEAR(one.what_if->quarter_turn, renamed.what_if->quarter_turn, 1e-9);
+    EXPECT_NEAR(one.what_if->place, renamed.what_if->place, 1e-9);
+    EXPECT_NEAR(one.what_if->size, renamed.what_if->size, 1e-9);
+    EXPECT_LE(one.what_if->yaw, renamed.what_if->yaw + 1e-9);
+  }
+}
+
 TEST(RotationError, HidesTheRotationsOfTheCube) {
   const Eigen::Quaterniond truth = RandomRotation();
   for (int x = 0; x < 4; ++x) {

@@ -33,11 +33,30 @@ TEST_F(MapQualityTest, DriftCountsInTheWorldAndNotInFrames) {
   EXPECT_EQ(quality.landmarks[0].in_frames->observations, kFrames);
 }
 
+TEST_F(MapQualityTest, WhatIfIsOfFramesAndAMeanOfLandmarks) {
+  AddFound();
+  const int half = AddTruth();
+  Detect(half, AddLandmark(Shifted(half, {0.2, 0, 0})));
+  Move({AlignmentKind::kRigid,
+        CameraPath::kGeneral,
+        1.0,
+        {ExpRotation({0, 0, 0.02}), {-0.03, 0, 0}}});
+  const MapQuality quality = Evaluate(AlignmentKind::kNone);
+  const WhatIf shifted = quality.landmarks[1].in_frames.value().what_if;
+  EXPECT_NEAR(shifted.place, 1.0, 1e-9);
+  for (const double iou : {shifted.yaw, shifted.quarter_turn, shifted.size}) {
+    EXPECT_NEAR(iou, 1.0 / 3.0, 1e-9);
+  }
+  EXPECT_NEAR(quality.in_frames.what_if->place, 1.0, 1e-9);
+  EXPECT_NEAR(quality.in_frames.what_if->yaw, 2.0 / 3.0, 1e-9);
+}
+
 // Without true poses, with the truth of each frame, as KITTI has it.
 TEST_F(MapQualityTest, TheTruthOfAFrameGoesBeforeThatOfTheWorld) {
   const int truth = AddFound();
   for (Frame& frame : sequence_.frames) frame.true_world_from_camera.reset();
   EXPECT_EQ(Evaluate().in_frames.landmarks, 0);
+  EXPECT_FALSE(Evaluate().in_frames.what_if);
   SayInFrames(truth, Shifted(truth, {0.2, 0, 0}));
   const MapQuality quality = Evaluate();
   EXPECT_NEAR(quality.in_frames.iou_mean.value(), 1.0 / 3.0, 1e-9);

@@ -55,6 +55,7 @@ TEST(Metrics, AverageOverObservationsThenObjects) {
   const Metrics metrics = EvaluateLandmarks(sequence, estimates);
   EXPECT_EQ(metrics.summary.objects, 4);
   EXPECT_NEAR(*metrics.summary.iou_mean, 0.75, 1e-6);  // no estimate: IoU 0
+  EXPECT_NEAR(metrics.summary.what_if.value().size, 0.75, 1e-6);
   EXPECT_NEAR(*metrics.summary.iou_median, 1.0, 1e-6);
   EXPECT_NEAR(*metrics.summary.rotation_deg_mean, 0.0, 1e-4);  // over those that have one
 }

@@ -138,14 +138,20 @@ using testing::IsEmpty;
 
 const json kExact = json::array({Alignment("none", 1.0, 3, 0.0)});
 
-json FoundLandmark(int true_object, const json& wrong_part) {
+json InFrames(double place) {
+  return {{"landmarks", 3},
+          {"iou_mean", 0.625},
+          {"what_if", {{"yaw", 0.75}, {"quarter_turn", 0.625}, {"place", place}, {"size", 1.0}}}};
+}
+
+json FoundLandmark(int true_object, const json& in_frames) {
   return {{"object", 5},
           {"label", "bowl"},
           {"fate", "found"},
           {"true_object", true_object},
           {"reason", nullptr},
           {"detail", nullptr},
-          {"wrong_part", wrong_part},
+          {"in_frames", in_frames},
           {"errors",
            {{"iou", 0.5},
             {"centre_m", 0.25},
@@ -181,12 +187,14 @@ TEST(LostTable, JoinsTheObjectsOfAReason) {
 
 TEST(LimitsTable, HasTheFoundLandmarks) {
   json metrics = MapMetrics(kExact);
-  metrics["map_quality"]["landmarks"].push_back(
-      FoundLandmark(8, {{"part", "size"}, {"iou_corrected", 0.75}}));
+  metrics["map_quality"]["landmarks"].push_back(FoundLandmark(8, InFrames(0.875)));
   metrics["map_quality"]["landmarks"].push_back(FoundLandmark(6, nullptr));
-  EXPECT_THAT(CellTexts(LimitsTable(OneMap(metrics), {"OursS"})),
-              ElementsAre("room OursS bowl 8 size 0.500 0.750 0.250 0.50, -0.25, 0.00 -",
-                          "room OursS bowl 6 - 0.500 - 0.250 0.50, -0.25, 0.00 -"));
+  const Table table = LimitsTable(OneMap(metrics), {"OursS"});
+  EXPECT_THAT(
+      CellTexts(table),
+      ElementsAre("room OursS bowl 8 0.500 0.625 0.750 0.625 0.875 1.000 0.250 0.50, -0.25, 0.00 -",
+                  "room OursS bowl 6 0.500 - - - - - 0.250 0.50, -0.25, 0.00 -"));
+  EXPECT_EQ(table.header.size(), table.rows.front().size());
 }
 
 TEST(QualityTables, HaveARowForEachMap) {
