@@ -165,4 +165,30 @@ Table LimitsTable(const std::vector<DatasetResult>& datasets,
   return table;
 }
 
+Table WhatIfTable(const std::vector<DatasetResult>& datasets,
+                  const std::vector<std::string>& variants) {
+  Table table = {"what_if",
+                 "With one thing replaced by the truth",
+                 {"dataset", "variant", "landmarks"},
+                 {},
+                 2,
+                 {kWhatIfNote, "Single frames: means over the observations of each object first."}};
+  table.header.insert(table.header.end(), kWhatIfHeader.begin(), kWhatIfHeader.end());
+  for (const DatasetResult& dataset : datasets) {
+    for (const std::string& name : variants) {
+      const VariantResult* const variant = dataset.Evaluated(name);
+      if (!variant) continue;
+      const bool is_map = variant->metrics.contains("map_quality");
+      const json& in_frames =
+          is_map ? variant->metrics["map_quality"].at("in_frames") : variant->metrics.at("summary");
+      if (in_frames.at("what_if").is_null()) continue;
+      std::vector<Cell> row = WhatIfCells(in_frames);
+      row.insert(row.begin(), {dataset.name, variant->name,
+                               FillIn(is_map ? "{landmarks}" : "{objects}", in_frames)});
+      table.rows.push_back(std::move(row));
+    }
+  }
+  return table;
+}
+
 }  // namespace soslam

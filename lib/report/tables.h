@@ -42,6 +42,10 @@ Table LostTable(const std::vector<DatasetResult>& datasets,
 Table LimitsTable(const std::vector<DatasetResult>& datasets,
                   const std::vector<std::string>& variants);
 
+// IoU in frames and the means of WhatIf, also of single-frame estimates.
+Table WhatIfTable(const std::vector<DatasetResult>& datasets,
+                  const std::vector<std::string>& variants);
+
 // Means over the objects of one dataset, as the paper prints them.
 struct PublishedRow {
   std::string dataset = "average";

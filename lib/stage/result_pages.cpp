@@ -61,7 +61,8 @@ std::string WriteTables(const std::vector<Table>& tables, const fs::path& markdo
 // datasets.
 std::vector<Table> AllTables(const std::vector<DatasetResult>& datasets, const Published& published,
                              const std::vector<Comparison>& comparisons,
-                             const std::vector<std::string>& maps) {
+                             const std::vector<std::string>& maps,
+                             const std::vector<std::string>& what_if) {
   std::vector<Table> tables = {SequencesTable(datasets)};
   std::ranges::move(PaperTables(datasets, published), std::back_inserter(tables));
   tables.push_back(TimeTable(datasets, published));
@@ -72,6 +73,7 @@ std::vector<Table> AllTables(const std::vector<DatasetResult>& datasets, const P
   tables.push_back(MapsTable(datasets, maps));
   tables.push_back(LostTable(datasets, maps));
   tables.push_back(LimitsTable(datasets, maps));
+  tables.push_back(WhatIfTable(datasets, what_if));
   for (const DatasetResult& dataset : datasets) {
     tables.push_back(DatasetTable(dataset));
     std::ranges::move(QualityTables(dataset), std::back_inserter(tables));
@@ -96,7 +98,8 @@ void RunReport(const ReportOptions& options, const StageFiles& files, int /*thre
   const std::vector<DatasetResult> datasets = ReadEvaluated(
       files.at("results"), files.contains("datasets") ? files.at("datasets") : fs::path());
   const std::vector<Table> tables =
-      AllTables(datasets, published, comparisons, SplitAtSpaces(options.maps));
+      AllTables(datasets, published, comparisons, SplitAtSpaces(options.maps),
+                SplitAtSpaces(options.what_if));
   fmt::print("{}", WriteTables(tables, files.at("output")));
   if (files.contains("page")) {
     const fs::path& page = files.at("page");

@@ -180,6 +180,7 @@ struct ReportOptions {
       "InitP InitS, InitPT InitSTE, InitS InitST InitSTE InitSTEP, OursP OursS, OursPT OursSTE, "
       "OursS OursST OursSTE OursSTEP";
   std::string maps = "OursS OursSTE OursS-raw OursSTE-raw OursS-raw-planes OursSTE-raw-planes";
+  std::string what_if = "InitSTE MultiView OursS OursSTE";
 
   void Describe(OptionVisitor& visit) {
     visit.Group("Tables");
@@ -189,6 +190,9 @@ struct ReportOptions {
     visit.Text("maps", &maps,
                "variants whose maps are compared with all true objects in tables over all "
                "datasets: what is right, what is missed or false and why, what limits the rest");
+    visit.Text("what_if", &what_if,
+               "variants in the table of what IoU would be with one thing of each landmark "
+               "replaced by the true one");
   }
 };
 

@@ -197,6 +197,20 @@ TEST(LimitsTable, HasTheFoundLandmarks) {
   EXPECT_EQ(table.header.size(), table.rows.front().size());
 }
 
+TEST(WhatIfTable, HasMapsAndSingleFrames) {
+  json map = MapMetrics(kExact);
+  map["map_quality"]["in_frames"] = InFrames(0.875);
+  json single_frames = {{"summary", InFrames(0.5)}};
+  single_frames["summary"]["objects"] = 2;
+  json without = {{"summary", {{"what_if", nullptr}}}};
+  const Table table = WhatIfTable(
+      {{"room", {{"OursS", {}, map}, {"InitSTE", {}, single_frames}, {"SVD", {}, without}}}},
+      {"SVD", "InitSTE", "OursS", "OursSTE"});
+  EXPECT_THAT(CellTexts(table), ElementsAre("room InitSTE 2 0.625 0.750 0.625 0.500 1.000",
+                                            "room OursS 3 0.625 0.750 0.625 0.875 1.000"));
+  EXPECT_EQ(table.header.size(), table.rows.front().size());
+}
+
 TEST(QualityTables, HaveARowForEachMap) {
   const auto tables =
       QualityTables({"room",
