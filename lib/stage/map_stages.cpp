@@ -161,7 +161,7 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
 }
 
 int RunCheckMinima(const NoOptions& /*options*/, const StageFiles& files, int threads) {
-  const std::filesystem::path path = std::filesystem::canonical(files.at("map"));
+  const std::filesystem::path path = std::filesystem::weakly_canonical(files.at("map"));
   const RunRecord record = ReadRun(path.parent_path() / "run.json");
   StageFiles inputs;
   for (const RunFile& file : record.inputs) {

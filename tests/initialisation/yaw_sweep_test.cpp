@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "initialisation/yaw_sweep.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <numbers>
 
-#include "initialisation/yaw_sweep.h"
 #include "support/level_sequence.h"
 #include "support/scene.h"
 #include "support/shape_exponents.h"

@@ -8,6 +8,7 @@
 #include "evaluation/metrics.h"
 #include "evaluation/result_checks.h"
 #include "geometry/angles.h"
+#include "initialisation/multi_view.h"
 #include "mapping/initial_landmarks.h"
 #include "support/cuboid_map.h"
 #include "support/random.h"
@@ -52,6 +53,29 @@ TEST(TangencyBackEnd, PlanesThatAreGivenOrNotToBeRefinedStayAsTheyAre) {
   EXPECT_NE(OptimiseMap(TruthInput(sequence), options).planes_in_world[0].offset, before.offset);
   sequence.planes[0].attitude_information.reset();
   EXPECT_EQ(OptimiseMap(TruthInput(sequence), options).planes_in_world[0].normal, before.normal);
+}
+
+// With constant poses, boxes, ratios and planes have the same cost in both.
+TEST(TangencyBackEnd, StaysWhereTheFitOfAllViewsEnded) {
+  const Sequence sequence = WithBoxNoise(CuboidSequence(4, 12), 3.0);
+  BackEndInput input = TruthInput(sequence, 0.1);
+  OptimiseOptions options;
+  options.detection_model = DetectionModel::kTangency;
+  options.hold_poses = true;
+  const LandmarkEstimates fitted = InitialiseMultiView(sequence, input.priors, UprightOptions(),
+                                                       options.view_correlation_deg, 1);
+  for (size_t i = 0; i < fitted.objects.size(); ++i) {
+    input.initial_landmarks[i] = fitted.objects[i].landmark_in_world;
+  }
+  const MapEstimate map = OptimiseMap(input, options);
+  EXPECT_NEAR(map.solver.final_cost, map.solver.initial_cost, 0.02 * map.solver.initial_cost);
+  for (size_t i = 0; i < fitted.objects.size(); ++i) {
+    const Landmark& before = *input.initial_landmarks[i];
+    const Landmark& after = *map.objects[i].landmark_in_world;
+    const double size_m = MeanHalfAxis(before);
+    EXPECT_LT((after.Centre() - before.Centre()).norm(), 0.02 * size_m) << i;
+    EXPECT_LT((after.half_axes - before.half_axes).norm(), 0.02 * size_m) << i;
+  }
 }
 
 TEST(TangencyBackEnd, HeldPosesStayAsTheyAre) {
