@@ -95,9 +95,11 @@ void RunRecorder::RecordFailure(const Error& error) {
   if (!folder_) return;
   record_.exit_code = static_cast<int>(error.exit_code());
   record_.error = error.what();
+  const fs::path path = *folder_ / "run.json";
   try {
+    if (fs::exists(path)) ReadRun(path);  // a file of others stays
     Finish();
-    WriteRun(*folder_ / "run.json", record_);
+    WriteRun(path, record_);
   } catch (const std::exception&) {
     return;  // the failure itself is more important
   }

@@ -145,8 +145,9 @@ std::vector<Finding> CheckFrameNumbers(const ImportView& view,
              "frames that are rows of the list of images, from 0",
              is_late ? "frames counted from 1, or poses that are one image early"
                      : "frames that begin one image late, or poses that are one image late",
-             is_late ? "subtract 1 from the frames of the detections"
-                     : "add 1 to the frames of the detections"}};
+             fmt::format("{} the frames of the detections; if the boxes are on their things in the "
+                         "images, {} the time stamps of the poses by the time between two images",
+                         is_late ? "subtract 1 from" : "add 1 to", is_late ? "raise" : "lower")}};
   }
   return {};
 }

@@ -220,6 +220,27 @@ std::vector<Finding> CheckFailures(const LandmarkEstimates& estimates) {
        "look at the findings of the import, then at boxes and planes in an image: soslam-inspect"}};
 }
 
+std::vector<Finding> CheckObjectIds(const Sequence& sequence) {
+  constexpr size_t kLeastBoxes = 10;
+  constexpr size_t kLeastImages = 3;
+  std::map<int, std::set<int>> images_of_segment;
+  for (const Detection& detection : sequence.detections) {
+    images_of_segment[sequence.FrameOf(detection).segment].insert(detection.frame_index);
+  }
+  const bool has_images = std::ranges::any_of(
+      images_of_segment, [](const auto& segment) { return segment.second.size() >= kLeastImages; });
+  const bool is_shared =
+      std::ranges::any_of(DetectionsByObject(sequence),
+                          [](const std::vector<int>& of_object) { return of_object.size() > 1; });
+  if (!has_images || is_shared || sequence.detections.size() < kLeastBoxes) return {};
+  return {
+      {"object_ids", Severity::kWarning,
+       fmt::format("none of {} objects has a second box", sequence.detections.size()),
+       "boxes of the same object in several images, with one id",
+       "boxes of a detector, which have no ids, or a column of another name than object_id",
+       "set association = estimated in section associate of the settings, or rename the column"}};
+}
+
 std::vector<Finding> CheckLabels(const Sequence& sequence, const SemanticTable& table,
                                  const std::string& table_file) {
   std::set<std::string> all;

@@ -19,6 +19,10 @@ namespace soslam {
 // out.
 std::vector<Finding> CheckFailures(const LandmarkEstimates& estimates);
 
+// Boxes without ids that the images share: each would be an object of its own. At least ten boxes
+// in three images of a segment, where single images have no objects in common.
+std::vector<Finding> CheckObjectIds(const Sequence& sequence);
+
 // Labels of detections that are not in the semantic table, if they are a third of all or more, with
 // the names of the table that they probably misspell.
 std::vector<Finding> CheckLabels(const Sequence& sequence, const SemanticTable& table,

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "geometry/triangulation.h"
+#include "initialisation/estimates_of_sequence.h"
 
 namespace soslam {
 namespace {

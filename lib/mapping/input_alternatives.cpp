@@ -54,6 +54,10 @@ std::vector<InputAlternative> FindInputAlternatives(const Sequence& sequence,
            problem->problem().IsParameterBlockConstant(block);
   };
   if (!is_given(variables.LogFocal())) return {};  // there are no boxes
+  const bool has_views =
+      std::ranges::any_of(DetectionsByObject(sequence),
+                          [](const std::vector<int>& of_object) { return of_object.size() > 1; });
+  if (!has_views) return {};  // the priors alone would tell
   std::vector<int> given_planes;
   for (size_t i = 0; i < sequence.planes.size(); ++i) {
     const bool is_estimated = sequence.planes[i].attitude_information.has_value();

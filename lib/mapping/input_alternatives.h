@@ -12,7 +12,8 @@ namespace soslam {
 // The cost of a solved problem of bodies of any shape, without images and points, as it is, then
 // what it would be if something constant in it were free: the focal length; the heights of all
 // planes; their normals and heights; one of several planes alone. Alternatives whose first step
-// promises hardly more than chance gives are left out. The variables stay as they are.
+// promises hardly more than chance gives are left out, and all where no object has two boxes. The
+// variables stay as they are.
 std::vector<InputAlternative> FindInputAlternatives(const Sequence& sequence,
                                                     BackEndProblem* problem);
 

@@ -132,7 +132,8 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
                                          files.at("sequence").string(), tried,
                                          CountsInWords(failures)));
   }
-  std::vector<Finding> findings = CheckFailures(estimates);
+  std::vector<Finding> findings = CheckObjectIds(sequence);
+  std::ranges::move(CheckFailures(estimates), std::back_inserter(findings));
   std::ranges::move(options.method == InitialisationMethod::kSvd
                         ? CheckDegenerate(estimates)
                         : CheckSizes(estimates, sequence, table),

@@ -37,7 +37,9 @@ OptionVisitor::Conditions UnmetConditionsOf(const PipelineStage& stage, const st
 
 void CheckUnusedSettings(const SettingsOfFile& layer, const StageOptions& alone, bool is_of_dataset,
                          VariantSettings* settings) {
-  for (const auto& [key, values] : layer.settings.items()) {
+  for (const auto& section : layer.settings.items()) {
+    const std::string& key = section.key();
+    const json& values = section.value();
     const PipelineStage* stage = FindStage(key);
     if (stage == nullptr || !values.is_object()) continue;
     for (const auto& [name, value] : values.items()) {

@@ -77,6 +77,30 @@ TEST_F(ResultChecksTest, AThirdOfTheLabelsWithoutEntry) {
               HasSubstr("crat (crate?); its default is used"));
 }
 
+// A box of another object in each of ten images; single images have no objects in common.
+TEST(CheckObjectIdsTest, BoxesWithoutIds) {
+  Sequence sequence;
+  for (int i = 0; i < 10; ++i) {
+    Frame frame;
+    frame.id = i;
+    sequence.frames.push_back(frame);
+    Object object;
+    object.id = i;
+    sequence.objects.push_back(object);
+    Detection detection;
+    detection.frame_index = detection.object_index = i;
+    sequence.detections.push_back(detection);
+  }
+  const auto findings = CheckObjectIds(sequence);
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_THAT(findings[0].found, HasSubstr("none of 10 objects"));
+  Sequence apart = sequence;
+  for (Frame& frame : apart.frames) frame.segment = static_cast<int>(frame.id);
+  EXPECT_THAT(CheckObjectIds(apart), IsEmpty());
+  sequence.detections[7].object_index = 3;
+  EXPECT_THAT(CheckObjectIds(sequence), IsEmpty());
+}
+
 TEST_F(ResultChecksTest, SizesWithinTheirLabelsSpread) {
   EXPECT_THAT(SizeFindings({0.4, 0.5, 0.6, 0.45, 0.7}), IsEmpty());
 }
