@@ -97,8 +97,8 @@ void RunRecorder::RecordFailure(const Error& error) {
   record_.error = error.what();
   const fs::path path = *folder_ / "run.json";
   try {
-    if (fs::exists(path)) ReadRun(path);  // a file of others stays
     Finish();
+    if (fs::exists(path)) ReadRun(path);  // a file of others stays
     WriteRun(path, record_);
   } catch (const std::exception&) {
     return;  // the failure itself is more important
