@@ -12,8 +12,7 @@
 namespace soslam {
 namespace {
 
-// The parameters of UprightVector and the height of the foot over the plane (m), which is
-// free without a plane.
+// The parameters of UprightVector, the last of which, the height, is free without a plane.
 constexpr int kMaxParameters = 7;
 using Information =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxParameters, kMaxParameters>;
