@@ -123,39 +123,6 @@ std::vector<Finding> CheckHalfAxes(const LandmarkEstimates& estimates, const IsB
 // given ids, and below 9 with raw detections, some of whose tracks are of several things.
 constexpr double kFarAbove = 10.0;
 
-// How a plane differs from the given one where objects stand on it (median).
-struct PlaneChange {
-  double height_m;
-  double tilt_rad;
-
-  // In units of the least that matters: 2 cm, 1 degree.
-  double Size() const { return std::max(std::abs(height_m) / 0.02, tilt_rad / kRadPerDeg); }
-};
-
-PlaneChange ChangeOf(const Sequence& sequence, const MapEstimate& map, int plane_index,
-                     const Plane& found) {
-  const Plane& given = sequence.planes[static_cast<size_t>(plane_index)].plane_in_world;
-  std::vector<double> heights;
-  for (const ObjectEstimate& object : map.objects) {
-    const bool is_on_it =
-        sequence.objects[static_cast<size_t>(object.object_index)].plane_index == plane_index;
-    if (!object.landmark_in_world || !is_on_it) continue;
-    const Eigen::Vector3d centre = object.landmark_in_world->Centre();
-    heights.push_back(-found.SignedDistance(centre - given.SignedDistance(centre) * given.normal));
-  }
-  return {MedianOf(heights).value_or(0.0), AngleBetween(given.normal, found.normal)};
-}
-
-// The largest of an alternative's corrections, in units of the least that matters: 2 % of the focal
-// length, or that of a plane.
-double Correction(const Sequence& sequence, const MapEstimate& map, const InputAlternative& found) {
-  double largest = std::abs(std::log(found.focal_factor)) / 0.02;
-  for (const auto& [index, plane] : found.planes_in_world) {
-    largest = std::max(largest, ChangeOf(sequence, map, index, plane).Size());
-  }
-  return largest;
-}
-
 std::string FocalInWords(const Sequence& sequence, const InputAlternative& given,
                          const InputAlternative& found, double expected) {
   const double dispersion = std::max(1.0, found.box_cost / expected);
@@ -168,24 +135,23 @@ std::string FocalInWords(const Sequence& sequence, const InputAlternative& given
       found.focal_factor, found.focal_factor * fx, fx, found.focal_factor * fx * log_sigma);
 }
 
-std::string PlanesInWords(const Sequence& sequence, const MapEstimate& map,
-                          const InputAlternative& found) {
+std::string PlanesInWords(const Sequence& sequence, const InputAlternative& found) {
   constexpr size_t kMostPlanes = 5;
   std::vector<std::string> planes;
-  for (const auto& [index, plane] : found.planes_in_world) {
+  for (const auto& [index, plane] : found.planes) {
     const SupportPlane& given = sequence.planes[static_cast<size_t>(index)];
-    const PlaneChange change = ChangeOf(sequence, map, index, plane);
-    if (change.Size() < 1.0) continue;
-    const Eigen::Vector3d& normal = plane.normal;
+    if (plane.Correction() < 1.0) continue;
+    const Eigen::Vector3d& normal = plane.plane_in_world.normal;
+    const double offset = plane.plane_in_world.offset;
     planes.push_back(
         normal == given.plane_in_world.normal
-            ? fmt::format("plane {} {:.3f} m {}, d = {:.3f}", given.id, std::abs(change.height_m),
-                          change.height_m < 0.0 ? "against its normal" : "along its normal",
-                          plane.offset)
+            ? fmt::format(
+                  "plane {} {:.3f} m {}, d = {:.3f}", given.id, std::abs(plane.height_change_m),
+                  plane.height_change_m < 0.0 ? "against its normal" : "along its normal", offset)
             : fmt::format("plane {} turned by {:.1f} degrees, to the normal ({:.3f}, {:.3f}, "
                           "{:.3f}) and d = {:.3f}",
-                          given.id, change.tilt_rad * kDegPerRad, normal.x(), normal.y(),
-                          normal.z(), plane.offset));
+                          given.id, plane.tilt_rad * kDegPerRad, normal.x(), normal.y(), normal.z(),
+                          offset));
   }
   const size_t count = planes.size();
   if (count > kMostPlanes) planes.resize(kMostPlanes);
@@ -297,36 +263,55 @@ std::vector<Finding> CheckCollapsed(const LandmarkEstimates& estimates) {
 
 std::vector<Finding> CheckInputs(const Sequence& sequence, const MapEstimate& map) {
   constexpr double kChance = 1e-3;
+  constexpr double kLeastProbability = 0.05;
   if (map.input_alternatives.empty()) return {};
-  std::vector<InputAlternative> alternatives = map.input_alternatives;
-  std::ranges::stable_sort(alternatives, {}, &InputAlternative::degrees);
-  const InputAlternative& given = alternatives.front();
+  const InputAlternative& given = map.input_alternatives.front();
   const double expected = map.solver.expected_box_cost;
   const auto tries = static_cast<double>(1 + 2 * (sequence.planes.size() + 1));
-  const InputAlternative* best = &given;
-  for (const InputAlternative& found : alternatives) {
+  std::vector<const InputAlternative*> better;
+  for (const InputAlternative& found : map.input_alternatives) {
     const double dispersion = std::max(1.0, found.box_cost / expected);
-    const double correction = Correction(sequence, map, found);
+    const double correction = found.Correction();
     if (correction <= 1.0 || dispersion > kFarAbove) continue;
     // The gain that is left once what is given is corrected by the least that matters: the cost is
     // a parabola along the way to the minimum.
-    const double gain = (best->cost - found.cost) * std::pow(1.0 - 1.0 / correction, 2);
-    if (!(gain > 0.0)) continue;
-    if (const int degrees = found.degrees - best->degrees; degrees > 0) {
-      const double ratio = 2.0 * gain / (degrees * dispersion);
-      if (!(FisherTail(ratio, degrees, 2.0 * expected) < kChance / tries)) continue;
-    }
-    best = &found;
+    const double gain = (given.cost - found.cost) * std::pow(1.0 - 1.0 / correction, 2);
+    const double ratio = 2.0 * gain / (found.degrees * dispersion);
+    const bool is_chance =
+        !(gain > 0.0) || FisherTail(ratio, found.degrees, 2.0 * expected) > kChance / tries;
+    if (!is_chance) better.push_back(&found);
   }
-  if (best == &given) return {};
-  const bool is_focal = best->planes_in_world.empty();
+  if (better.empty()) return {};
+  const InputAlternative& lowest = **std::ranges::min_element(
+      better, {}, [](const InputAlternative* found) { return found->cost; });
+  const double dispersion = std::max(1.0, lowest.box_cost / expected);
+  // Schwarz's approximation of how probable the alternatives are against each other.
+  const auto log_weight = [&](const InputAlternative* found) {
+    return (lowest.cost - found->cost) / dispersion -
+           0.5 * found->degrees * std::log(2.0 * expected);
+  };
+  std::ranges::stable_sort(better, std::greater(), log_weight);
+  const InputAlternative& best = *better.front();
+  double weights = 0.0;
+  for (const InputAlternative* found : better) {
+    weights += std::exp(log_weight(found) - log_weight(&best));
+  }
+  const auto in_words = [&](const InputAlternative& found) {
+    return found.planes.empty() ? FocalInWords(sequence, given, found, expected)
+                                : PlanesInWords(sequence, found);
+  };
+  std::string others;
+  for (const InputAlternative* found : better) {
+    const double probability = std::exp(log_weight(found) - log_weight(&best)) / weights;
+    if (found == &best || probability < kLeastProbability) continue;
+    others += fmt::format("; or (probability {:.2f}) with {}", probability, in_words(*found));
+  }
+  const bool is_focal = best.planes.empty();
   return {
       {is_focal ? "focal_length" : "support_planes", Severity::kWarning,
        fmt::format("the boxes fit best with {}: they cost {:.3g} times what their noise gives "
-                   "by chance in place of {:.3g} times",
-                   is_focal ? FocalInWords(sequence, given, *best, expected)
-                            : PlanesInWords(sequence, map, *best),
-                   best->box_cost / expected, given.box_cost / expected),
+                   "by chance in place of {:.3g} times{}",
+                   in_words(best), best.box_cost / expected, given.box_cost / expected, others),
        fmt::format("no better fit than chance gives once in {:g} maps", 1.0 / kChance),
        is_focal ? "intrinsics of another camera, of another image size or of cropped images"
                 : "planes of another world, unit or recording, or badly measured; objects that "

@@ -41,9 +41,9 @@ std::vector<Finding> CheckDegenerate(const LandmarkEstimates& estimates);
 std::vector<Finding> CheckCollapsed(const LandmarkEstimates& estimates);
 
 // Another focal length or other planes that lower the cost more than chance does in one map of 1000
-// where what is given is right. One with more degrees of freedom has to lower it as clearly below
-// that of the best with fewer. Corrections that are too small to matter count as none, and so do
-// those that leave the cost far above what noise gives.
+// where what is given is right: the most probable, and the others that are nearly as probable.
+// Corrections that are too small to matter count as none, and so do those that leave the cost far
+// above what noise gives.
 std::vector<Finding> CheckInputs(const Sequence& sequence, const MapEstimate& map);
 
 // Final cost of boxes whose edges have a standard deviation, against the cost expected by chance.

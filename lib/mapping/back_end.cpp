@@ -112,7 +112,7 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
   bool has_converged = true;
   if (options.detection_model == DetectionModel::kTangency) {
     if (problem.summary().converged) {
-      map.input_alternatives = FindInputAlternatives(input.sequence, &problem);
+      map.input_alternatives = FindInputAlternatives(input, options, problem.variables());
     }
     if (!input.symmetry_images.empty() || !input.edge_images.empty() || !input.points.empty()) {
       has_converged = SolveWithImages(&problem);

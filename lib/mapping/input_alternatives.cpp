@@ -2,77 +2,128 @@
 #include "mapping/input_alternatives.h"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <set>
+#include <string>
+
+#include "geometry/angles.h"
 
 namespace soslam {
 namespace {
 
-// Noise alone makes each degree of freedom gain half the over-dispersion of the boxes on average,
-// and twice as much once in six times.
-constexpr double kPromisingMultiple = 2.0;
 constexpr int kMaxIterations = 50;
 constexpr size_t kMostPlanesAlone = 10;
 
-// Adds the alternative with these blocks free, if it is promising. Returns whether it is.
-bool Add(const std::set<double*>& blocks, const std::vector<int>& planes, BackEndProblem* problem,
-         std::vector<InputAlternative>* alternatives) {
-  const InputAlternative& given = alternatives->front();
-  const double expected = problem->summary().expected_box_cost;
-  BackEndVariables& variables = problem->variables();
-  const std::vector<double> before = variables.values();
+// The priors with their standard deviations multiplied by the root of how many objects have the
+// label.
+std::vector<std::optional<ShapePrior>> PriorsOfLabels(const BackEndInput& input) {
+  std::map<std::string, int> objects_of_label;
+  for (size_t i = 0; i < input.priors.size(); ++i) {
+    if (input.initial_landmarks[i]) ++objects_of_label[input.sequence.objects[i].label];
+  }
+  std::vector<std::optional<ShapePrior>> priors = input.priors;
+  for (size_t i = 0; i < priors.size(); ++i) {
+    if (!priors[i] || !input.initial_landmarks[i]) continue;
+    priors[i]->log_sigma *= std::sqrt(objects_of_label[input.sequence.objects[i].label]);
+  }
+  return priors;
+}
+
+PlaneAlternative PlaneFound(const Sequence& sequence, const BackEndVariables& variables,
+                            int plane_index) {
+  const Plane& given = sequence.planes[static_cast<size_t>(plane_index)].plane_in_world;
+  const Plane found = variables.PlaneValue(static_cast<size_t>(plane_index));
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  int count = 0;
+  const auto landmarks = variables.LandmarkValues();
+  for (size_t i = 0; i < landmarks.size(); ++i) {
+    if (!landmarks[i] || sequence.objects[i].plane_index != plane_index) continue;
+    sum += landmarks[i]->Centre();
+    ++count;
+  }
+  const Eigen::Vector3d centre = sum / std::max(1, count);
+  const Eigen::Vector3d on_given = centre - given.SignedDistance(centre) * given.normal;
+  return {found, -found.SignedDistance(on_given), AngleBetween(given.normal, found.normal)};
+}
+
+// The problem at the present values of its variables.
+InputAlternative AlternativeAt(const Sequence& sequence, const std::vector<int>& planes,
+                               BackEndProblem* problem) {
   InputAlternative found;
+  problem->problem().Evaluate({}, &found.cost, nullptr, nullptr, nullptr);
+  found.box_cost = problem->BoxCost();
+  found.focal_factor = problem->variables().FocalFactor();
+  for (const int plane : planes) {
+    found.planes[plane] = PlaneFound(sequence, problem->variables(), plane);
+  }
+  return found;
+}
+
+// Adds the alternative with these blocks free, if it is promising. Returns whether it is.
+bool Add(const Sequence& sequence, const std::set<double*>& blocks, const std::vector<int>& planes,
+         BackEndProblem* problem, std::vector<InputAlternative>* alternatives) {
+  // What chance exceeds once in twenty times, for one degree of freedom.
+  constexpr double kPromisingRatio = 3.84;
+  // The first step to a far minimum may be half as long as the way.
+  constexpr double kPromisingCorrection = 0.5;
+  const std::vector<double> before = problem->variables().values();
+  int degrees = 0;
   for (double* block : blocks) {
     problem->problem().SetParameterBlockVariable(block);
-    found.degrees += problem->problem().ParameterBlockTangentSize(block);
+    degrees += problem->problem().ParameterBlockTangentSize(block);
   }
   const double gain = problem->Step();
-  const double dispersion = std::max(1.0, (given.box_cost - gain) / expected);
-  const bool is_promising = 2.0 * gain > kPromisingMultiple * found.degrees * dispersion;
-  ceres::Solver::Summary solution;
-  if (is_promising) solution = problem->Minimise(kMaxIterations);
-  if (is_promising && solution.IsSolutionUsable()) {
-    found.cost = solution.final_cost;
-    found.box_cost = problem->BoxCost();
-    found.focal_factor = variables.FocalFactor();
-    for (const int plane : planes) {
-      found.planes_in_world[plane] = variables.PlaneValue(static_cast<size_t>(plane));
-    }
-    alternatives->push_back(found);
+  const double dispersion =
+      std::max(1.0, (alternatives->front().box_cost - gain) / problem->summary().expected_box_cost);
+  const bool is_refused = problem->variables().values() == before;
+  const bool is_promising =
+      2.0 * gain > kPromisingRatio * dispersion &&
+      (is_refused || AlternativeAt(sequence, planes, problem).Correction() > kPromisingCorrection);
+  if (is_promising && problem->Minimise(kMaxIterations).IsSolutionUsable()) {
+    alternatives->push_back(AlternativeAt(sequence, planes, problem));
+    alternatives->back().degrees = degrees;
   }
-  variables.SetValues(before);
+  problem->variables().SetValues(before);
   for (double* block : blocks) problem->problem().SetParameterBlockConstant(block);
   return is_promising;
 }
 
 }  // namespace
 
-std::vector<InputAlternative> FindInputAlternatives(const Sequence& sequence,
-                                                    BackEndProblem* problem) {
-  BackEndVariables& variables = problem->variables();
-  const auto is_given = [&](const double* block) {
-    return problem->problem().HasParameterBlock(block) &&
-           problem->problem().IsParameterBlockConstant(block);
-  };
-  if (!is_given(variables.LogFocal())) return {};  // there are no boxes
+std::vector<InputAlternative> FindInputAlternatives(const BackEndInput& map_input,
+                                                    const OptimiseOptions& options,
+                                                    const BackEndVariables& solution) {
+  const Sequence& sequence = map_input.sequence;
   const bool has_views =
       std::ranges::any_of(DetectionsByObject(sequence),
                           [](const std::vector<int>& of_object) { return of_object.size() > 1; });
   if (!has_views) return {};  // the priors alone would tell
+  const BackEndInput input{
+      sequence, map_input.initial_landmarks, PriorsOfLabels(map_input), {}, {}};
+  BackEndProblem problem(input, options);
+  BackEndVariables& variables = problem.variables();
+  variables.SetValues(solution.values());
+  const auto is_given = [&](const double* block) {
+    return problem.problem().HasParameterBlock(block) &&
+           problem.problem().IsParameterBlockConstant(block);
+  };
+  if (!is_given(variables.LogFocal())) return {};  // there are no boxes
   std::vector<int> given_planes;
   for (size_t i = 0; i < sequence.planes.size(); ++i) {
     const bool is_estimated = sequence.planes[i].attitude_information.has_value();
     if (!is_estimated && is_given(variables.Offset(i))) given_planes.push_back(static_cast<int>(i));
   }
-  std::vector<InputAlternative> alternatives = {
-      {.cost = problem->summary().final_cost, .box_cost = problem->summary().box_cost}};
-  Add({variables.LogFocal()}, {}, problem, &alternatives);
+  if (!problem.Minimise(kMaxIterations).IsSolutionUsable()) return {};
+  std::vector<InputAlternative> alternatives = {AlternativeAt(sequence, {}, &problem)};
+  Add(sequence, {variables.LogFocal()}, {}, &problem, &alternatives);
   const auto add_planes = [&](const std::vector<int>& planes, bool normals) {
     std::set<double*> blocks;
     for (const int plane : planes) {
       blocks.insert(variables.Offset(static_cast<size_t>(plane)));
       if (normals) blocks.insert(variables.Normal(static_cast<size_t>(plane)));
     }
-    return Add(blocks, planes, problem, &alternatives);
+    return Add(sequence, blocks, planes, &problem, &alternatives);
   };
   for (const bool normals : {false, true}) {
     if (given_planes.empty() || !add_planes(given_planes, normals)) continue;

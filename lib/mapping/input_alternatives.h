@@ -5,16 +5,19 @@
 
 #include "mapping/back_end_problem.h"
 #include "model/estimates.h"
-#include "model/sequence.h"
 
 namespace soslam {
 
-// The cost of a solved problem of bodies of any shape, without images and points, as it is, then
-// what it would be if something constant in it were free: the focal length; the heights of all
-// planes; their normals and heights; one of several planes alone. Alternatives whose first step
-// promises hardly more than chance gives are left out, and all where no object has two boxes. The
-// variables stay as they are.
-std::vector<InputAlternative> FindInputAlternatives(const Sequence& sequence,
-                                                    BackEndProblem* problem);
+// The cost of a map, with bodies of any shape, without images and points, as it is, then what it
+// would be if something constant in it were free: the focal length; the heights of all planes;
+// their normals and heights; one of several planes alone. `solution` is where the back end ended
+// with that input. Things of one label in one place resemble each other, so the priors of all count
+// as much as that of one.
+//
+// Alternatives whose first step promises hardly more than chance gives, or a correction that does
+// not matter, are left out, and all where no object has two boxes.
+std::vector<InputAlternative> FindInputAlternatives(const BackEndInput& input,
+                                                    const OptimiseOptions& options,
+                                                    const BackEndVariables& solution);
 
 }  // namespace soslam

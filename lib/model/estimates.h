@@ -2,13 +2,16 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "geometry/angles.h"
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
 #include "geometry/rigid3.h"
@@ -81,14 +84,34 @@ struct SolverSummary {
   std::array<double, 4> detector_bias_px{};
 };
 
+// A support plane that is free, and how it differs from the given one where objects stand on it.
+struct PlaneAlternative {
+  Plane plane_in_world;
+  double height_change_m = 0.0;  // along the given normal
+  double tilt_rad = 0.0;
+
+  // In units of the least that matters: 2 cm, 1 degree.
+  double Correction() const {
+    return std::max(std::abs(height_change_m) / 0.02, tilt_rad / kRadPerDeg);
+  }
+};
+
 // How well the back end explains the boxes, without images and points, if some of what is given to
 // it is free.
 struct InputAlternative {
-  int degrees = 0;                            // degrees of freedom of what is free
-  double cost = 0.0;                          // the whole cost at its minimum
-  double box_cost = 0.0;                      // part of the boxes in it
-  double focal_factor = 1.0;                  // of fx and fy of all cameras
-  std::map<int, Plane> planes_in_world = {};  // those that are free, by index in Sequence::planes
+  int degrees = 0;                              // degrees of freedom of what is free
+  double cost = 0.0;                            // the whole cost at its minimum
+  double box_cost = 0.0;                        // part of the boxes in it
+  double focal_factor = 1.0;                    // of fx and fy of all cameras
+  std::map<int, PlaneAlternative> planes = {};  // those that are free, by index in Sequence::planes
+
+  // The largest correction, in units of the least that matters: 2 % of the focal length, or that of
+  // a plane.
+  double Correction() const {
+    double largest = std::abs(std::log(focal_factor)) / 0.02;
+    for (const auto& [index, plane] : planes) largest = std::max(largest, plane.Correction());
+    return largest;
+  }
 };
 
 // The result of the back end.

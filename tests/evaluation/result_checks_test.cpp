@@ -207,20 +207,29 @@ TEST_F(CheckInputsTest, WhatStillFitsBadlyIsNoExplanation) {
   EXPECT_THAT(CheckInputs(sequence, map), IsEmpty());
 }
 
-TEST_F(CheckInputsTest, TheCheapestUnlessMoreDegreesOfFreedomGainClearlyMore) {
-  const Plane lower{Eigen::Vector3d::UnitZ(), 0.3};
+TEST_F(CheckInputsTest, TheMostProbableAndWhatIsNearlyAsProbable) {
+  const PlaneAlternative lower{.plane_in_world = {Eigen::Vector3d::UnitZ(), 0.3},
+                               .height_change_m = -0.3};
   const double angle = 10.0 * kRadPerDeg;
-  const Plane turned{{0.0, std::sin(angle), std::cos(angle)}, 0.3};
+  const PlaneAlternative turned{.plane_in_world = {{0.0, std::sin(angle), std::cos(angle)}, 0.3},
+                                .tilt_rad = angle};
   map.input_alternatives.push_back(
       {.degrees = 1, .cost = 35.0, .box_cost = 35.0, .focal_factor = 0.7});
   map.input_alternatives.push_back(
-      {.degrees = 1, .cost = 26.0, .box_cost = 26.0, .planes_in_world = {{0, lower}}});
+      {.degrees = 1, .cost = 26.0, .box_cost = 26.0, .planes = {{0, lower}}});
   map.input_alternatives.push_back(
-      {.degrees = 3, .cost = 25.5, .box_cost = 25.5, .planes_in_world = {{0, turned}}});
+      {.degrees = 3, .cost = 25.5, .box_cost = 25.5, .planes = {{0, turned}}});
+  // The dispersion is 25.5 / 20, and two further degrees cost log(40).
   const Finding finding = Only(CheckInputs(sequence, map));
   EXPECT_EQ(finding.check, "support_planes");
   EXPECT_THAT(finding.found, HasSubstr("with plane 3 0.300 m against its normal, d = 0.300:"));
-  map.input_alternatives.back().cost = 5.0;
+  EXPECT_THAT(finding.found, Not(HasSubstr("; or")));
+  // log(40) - 3.5 * 20 / 22.5 = 0.58, a probability of 1 / (1 + exp(0.58)) = 0.36.
+  map.input_alternatives.back().cost = map.input_alternatives.back().box_cost = 22.5;
+  EXPECT_THAT(Only(CheckInputs(sequence, map)).found,
+              AllOf(HasSubstr("fit best with plane 3 0.300 m against its normal"),
+                    HasSubstr("; or (probability 0.36) with plane 3 turned by 10.0 degrees")));
+  map.input_alternatives.back().cost = map.input_alternatives.back().box_cost = 5.0;
   EXPECT_THAT(Only(CheckInputs(sequence, map)).found,
               HasSubstr("turned by 10.0 degrees, to the normal (0.000, 0.174, 0.985) and d = 0.3"));
 }

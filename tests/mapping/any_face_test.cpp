@@ -100,7 +100,7 @@ Eigen::Vector3d RandomHalfAxes() {
   }
 }
 
-TEST(AnyFace, SameShapesHoweverTheyAreLaid) {
+TEST(SlowAnyFace, SameShapesHoweverTheyAreLaid) {
   for (int i = 0; i < 10; ++i) {
     const Eigen::Vector3d half_axes = RandomHalfAxes();
     const double yaw = RandomUniform(-3.0, 3.0);
@@ -115,7 +115,7 @@ TEST(AnyFace, SameShapesHoweverTheyAreLaid) {
   }
 }
 
-TEST(AnyFace, SeveralViewsAloneTellTheFace) {
+TEST(SlowAnyFace, SeveralViewsAloneTellTheFace) {
   for (int i = 0; i < 6; ++i) {
     const Eigen::Vector3d half_axes = RandomHalfAxes();
     const RestingFace face = kRestingFaces[static_cast<size_t>(i) % 3];
@@ -134,7 +134,7 @@ TEST(AnyFace, SeveralViewsAloneTellTheFace) {
   }
 }
 
-TEST(AnyFace, LeaningBodiesAreFound) {
+TEST(SlowAnyFace, LeaningBodiesAreFound) {
   for (int i = 0; i < 10; ++i) {
     const Eigen::Vector3d half_axes = RandomHalfAxes();
     const Landmark truth =

@@ -217,7 +217,7 @@ TEST(Calibration, IsCautiousWhereErrorsAreIndependentButTakenForShared) {
   }
 }
 
-TEST(Calibration, IsOverconfidentForAWrongShapeButLessWithSharedErrors) {
+TEST(SlowCalibration, IsOverconfidentForAWrongShapeButLessWithSharedErrors) {
   Case c;
   c.shape_exponents = 1.3;  // and taken for a cuboid
   const Nees independent = MeanNees(c);
@@ -229,7 +229,7 @@ TEST(Calibration, IsOverconfidentForAWrongShapeButLessWithSharedErrors) {
   EXPECT_LT(shared.centre, 0.6 * independent.centre);
 }
 
-TEST(Calibration, IsOverconfidentOfTheYawOfARoundBody) {
+TEST(SlowCalibration, IsOverconfidentOfTheYawOfARoundBody) {
   Case c;
   c.shape_exponents = c.assumed_exponent = kEllipsoidExponent;
   c.ratio_range = {0.9, 1.1, 0.9, 1.1};
@@ -300,7 +300,7 @@ double PerimeterPerPiece() {
   return perimeters / pieces;
 }
 
-TEST(EdgeCalibration, CovariancesAreHonestWherePiecesOfEdgesErrIndependently) {
+TEST(SlowEdgeCalibration, CovariancesAreHonestWherePiecesOfEdgesErrIndependently) {
   Case c;
   c.scenes = 100;
   c.edge_images = DisplacedEdgesOfAllViews;
