@@ -112,7 +112,7 @@ std::vector<Finding> CheckTrueSizes(const ImportView& view) {
            fmt::format("true objects look {:.2g} times as high as their boxes (median)", factor),
            "true objects as large as their boxes",
            is_of_unit ? "half_axes in another unit than metres, as centimetres"
-                      : "full sizes in place of half_axes, or the reverse",
+                      : "full sizes in place of half_axes, or the reverse, or another focal length",
            "give half of the object's depth, width and height in metres as half_axes"}};
 }
 

@@ -63,8 +63,6 @@ InputAlternative AlternativeAt(const Sequence& sequence, const std::vector<int>&
 // Adds the alternative with these blocks free, if it is promising. Returns whether it is.
 bool Add(const Sequence& sequence, const std::set<double*>& blocks, const std::vector<int>& planes,
          BackEndProblem* problem, std::vector<InputAlternative>* alternatives) {
-  // What chance exceeds once in twenty times, for one degree of freedom.
-  constexpr double kPromisingRatio = 3.84;
   // The first step to a far minimum may be half as long as the way.
   constexpr double kPromisingCorrection = 0.5;
   const std::vector<double> before = problem->variables().values();
@@ -76,9 +74,11 @@ bool Add(const Sequence& sequence, const std::set<double*>& blocks, const std::v
   const double gain = problem->Step();
   const double dispersion =
       std::max(1.0, (alternatives->front().box_cost - gain) / problem->summary().expected_box_cost);
+  // Mean and two standard deviations of chi-square.
+  const double twice_by_chance = degrees + 2.0 * std::sqrt(2.0 * degrees);
   const bool is_refused = problem->variables().values() == before;
   const bool is_promising =
-      2.0 * gain > kPromisingRatio * dispersion &&
+      2.0 * gain > twice_by_chance * dispersion &&
       (is_refused || AlternativeAt(sequence, planes, problem).Correction() > kPromisingCorrection);
   if (is_promising && problem->Minimise(kMaxIterations).IsSolutionUsable()) {
     alternatives->push_back(AlternativeAt(sequence, planes, problem));
