@@ -109,6 +109,7 @@ json EstimateToJson(const ObjectEstimate& estimate, const Sequence& sequence) {
               {"proper_ellipsoid", estimate.proper_ellipsoid}};
   if (!object.labels.empty()) row["labels"] = object.labels;
   if (!estimate.points.empty()) row["points"] = estimate.points;
+  if (estimate.quarter_turn) row["quarter_turn"] = *estimate.quarter_turn;
   return row;
 }
 
@@ -127,6 +128,7 @@ ObjectEstimate ObjectEstimateFromJson(const json& row) {
   row.at("failure").get_to(estimate.failure);
   row.at("proper_ellipsoid").get_to(estimate.proper_ellipsoid);
   estimate.points = row.value("points", std::vector<PointPosterior>());
+  if (row.contains("quarter_turn")) row["quarter_turn"].get_to(estimate.quarter_turn);
   return estimate;
 }
 

@@ -40,6 +40,7 @@ std::vector<ValueColumn> EstimateColumns() {
           {"rests_on"},
           {"sigma_centre", "m", 3},
           {"sigma_yaw", "deg", 2},
+          {"quarter_turn", "", 2},
           {"sigma_size", "%", 1},
           {"cost"},
           {"hypotheses"},
@@ -119,6 +120,7 @@ json ObjectRow(const json& fields) {
   if (estimate.covariance) {
     row.update(SigmasOf(*estimate.covariance, *estimate.landmark_in_world));
   }
+  if (estimate.quarter_turn) row["quarter_turn"] = *estimate.quarter_turn;
   if (!estimate.proper_ellipsoid) row["failure"] = "not an ellipsoid";
   return row;
 }

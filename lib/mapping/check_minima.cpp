@@ -2,8 +2,10 @@
 #include "mapping/check_minima.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -26,24 +28,40 @@ Landmark ScaledAndTurned(const Landmark& body, double scale, double turn) {
 struct Solved {
   Landmark landmark_in_world;
   double cost;
+  double cost_of_start;  // without images
 };
 
 // The minimum near a start, and its cost with residuals made for it. None where there is none.
 std::optional<Solved> SolveFrom(BackEndInput input, size_t index, const Landmark& start,
-                                const OptimiseOptions& options) {
+                                const OptimiseOptions& options, int rounds = 2) {
   std::ranges::fill(input.initial_landmarks, std::nullopt);
-  Solved at{start, 0.0};
-  for (int round = 0; round < 2; ++round) {
+  Solved at{start, 0.0, 0.0};
+  for (int round = 0; round < rounds; ++round) {
     input.initial_landmarks[index] = at.landmark_in_world;
     try {
       const MapEstimate map = OptimiseMap(input, options);
       if (!map.objects[index].landmark_in_world) return std::nullopt;
-      at = {*map.objects[index].landmark_in_world, map.solver.final_cost};
+      at = {*map.objects[index].landmark_in_world, map.solver.final_cost, map.solver.initial_cost};
     } catch (const NumericalError&) {
       return std::nullopt;
     }
   }
   return at;
+}
+
+// Whether the x axes are more than an eighth of a turn apart, modulo half a turn.
+bool IsTurned(const Landmark& body, const Landmark& other) {
+  const auto x_axis = [](const Landmark& landmark) -> Eigen::Vector3d {
+    return landmark.frame_from_object.rotation * Eigen::Vector3d::UnitX();
+  };
+  return std::abs(x_axis(body).dot(x_axis(other))) < std::numbers::sqrt2 / 2.0;
+}
+
+OptimiseOptions AloneOptions(OptimiseOptions options) {
+  options.hold_poses = true;
+  options.refine_planes = false;
+  options.covariances = false;
+  return options;
 }
 
 }  // namespace
@@ -54,10 +72,7 @@ bool ObjectMinimum::IsAboveLowest() const {
 
 std::vector<ObjectMinimum> CheckMinima(const BackEndInput& input, const OptimiseOptions& options,
                                        int threads) {
-  OptimiseOptions alone = options;
-  alone.hold_poses = true;
-  alone.refine_planes = false;
-  alone.covariances = false;
+  const OptimiseOptions alone = AloneOptions(options);
   std::vector<std::optional<ObjectMinimum>> minima(input.initial_landmarks.size());
   ParallelFor("objects", static_cast<int>(minima.size()), threads, [&](int index) {
     const auto i = static_cast<size_t>(index);
@@ -81,6 +96,30 @@ std::vector<ObjectMinimum> CheckMinima(const BackEndInput& input, const Optimise
     if (minimum) found.push_back(*minimum);
   }
   return found;
+}
+
+std::vector<std::optional<double>> QuarterTurnProbabilities(const BackEndInput& input,
+                                                            const OptimiseOptions& options,
+                                                            double dispersion, int threads) {
+  const OptimiseOptions alone = AloneOptions(options);
+  std::vector<std::optional<double>> probabilities(input.initial_landmarks.size());
+  ParallelFor("quarter turns", static_cast<int>(probabilities.size()), threads, [&](int index) {
+    const auto i = static_cast<size_t>(index);
+    if (!input.initial_landmarks[i]) return;
+    const Landmark& in_map = *input.initial_landmarks[i];
+    Landmark turned = RotatedAboutZ(in_map, 0.5 * std::numbers::pi);
+    std::swap(turned.half_axes.x(), turned.half_axes.y());
+    const auto as_in_map = SolveFrom(input, i, in_map, alone, 1);
+    const auto as_turned = SolveFrom(input, i, turned, alone, 1);
+    if (!as_in_map) return;
+    probabilities[i] = 0.0;
+    if (!as_turned) return;
+    const bool is_minimum = IsTurned(as_in_map->landmark_in_world, as_turned->landmark_in_world);
+    const double gain = is_minimum ? as_in_map->cost - as_turned->cost
+                                   : as_in_map->cost_of_start - as_turned->cost_of_start;
+    probabilities[i] = 1.0 / (1.0 + std::exp(-gain / std::max(1.0, dispersion)));
+  });
+  return probabilities;
 }
 
 }  // namespace soslam

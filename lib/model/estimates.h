@@ -56,6 +56,8 @@ struct ObjectEstimate {
   std::string failure;                      // reason when there is no landmark
   bool proper_ellipsoid = true;             // false: see LandmarkFromDualQuadric
   std::vector<PointPosterior> points = {};  // evidence for the landmark, beside the detections
+  // Probability that its x axis, modulo half a turn, is rather a quarter turn on, if it was asked.
+  std::optional<double> quarter_turn = {};
 };
 
 // The landmarks that a stage found: per observation, per object, or both.

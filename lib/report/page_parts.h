@@ -195,7 +195,8 @@ Rigid3d CameraAbovePlane(const Sequence& sequence, const Detection& detection);
 //   metrics: metrics.json without its header and findings
 //   objects, one per object of the sequence: landmark in the world (of kind "frames" that of its
 //     first observation) or null, failure, observations; with a covariance also centre_covariance
-//     (3 x 3, m^2), sigma_centre (m), sigma_log_half_axes, sigma_yaw_deg (about the landmark's z)
+//     (3 x 3, m^2), sigma_centre (m), sigma_log_half_axes, sigma_yaw_deg (about the landmark's z);
+//     quarter_turn: ObjectEstimate::quarter_turn, where known
 //   outlines, one per detection that is selected: see PageOutline, or null
 //   trajectory: poses of the map for the selected frames; solver: iterations, costs, and the counts
 //     of residuals used and left out

@@ -49,6 +49,7 @@ json PageObjectEstimate(const ObjectEstimate& estimate) {
   if (!estimate.landmark_in_world) return object;
   object["landmark"] = PageLandmark(*estimate.landmark_in_world);
   object["points"] = PagePointCounts(estimate);
+  if (estimate.quarter_turn) object["quarter_turn"] = PageNumber(*estimate.quarter_turn);
   if (estimate.covariance) {
     AddCovariance(*estimate.covariance, *estimate.landmark_in_world, &object);
   }

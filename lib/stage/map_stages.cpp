@@ -117,6 +117,25 @@ BackEndInput ReadInput(const Sequence& sequence, const OptimiseOptions& options,
   return input;
 }
 
+// The sequence with the poses and planes of a map.
+Sequence AsInMap(Sequence sequence, const MapEstimate& map) {
+  for (size_t i = 0; i < sequence.frames.size(); ++i) {
+    sequence.frames[i].world_from_camera = map.world_from_camera[i];
+  }
+  for (size_t i = 0; i < sequence.planes.size(); ++i) {
+    sequence.planes[i].plane_in_world = map.planes_in_world[i];
+  }
+  return sequence;
+}
+
+std::vector<std::optional<Landmark>> LandmarksOf(const MapEstimate& map, const Sequence& sequence) {
+  std::vector<std::optional<Landmark>> landmarks(sequence.objects.size());
+  for (const ObjectEstimate& object : map.objects) {
+    landmarks[static_cast<size_t>(object.object_index)] = object.landmark_in_world;
+  }
+  return landmarks;
+}
+
 }  // namespace
 
 void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int threads) {
@@ -137,7 +156,17 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
                        {files.at("sequence"), files.at("landmarks"), files.at("table")}};
   if (UsesEdges(options)) info.inputs.push_back(files.at("edges"));
   if (options.points.point_evidence) info.inputs.push_back(files.at("points"));
-  const MapEstimate map = OptimiseMap(input, options, threads);
+  MapEstimate map = OptimiseMap(input, options, threads);
+  if (options.detection_model == DetectionModel::kTangency) {
+    const Sequence in_map = AsInMap(sequence, map);
+    const auto quarter_turns = QuarterTurnProbabilities(
+        {in_map, LandmarksOf(map, sequence), input.priors, input.symmetry_images, input.edge_images,
+         input.points},
+        options, map.solver.box_cost / map.solver.expected_box_cost, threads);
+    for (ObjectEstimate& object : map.objects) {
+      object.quarter_turn = quarter_turns[static_cast<size_t>(object.object_index)];
+    }
+  }
   const LandmarkEstimates found = {{}, map.objects};
   info.findings = CheckInputs(sequence, map);
   const bool is_explained = !info.findings.empty();
@@ -173,19 +202,11 @@ int RunCheckMinima(const NoOptions& /*options*/, const StageFiles& files, int th
   for (const auto& [name, setting] : record.settings.value()) {
     OptionsFromJson({{name, setting.value}}, path.string(), &options);
   }
-  Sequence sequence = ReadSequence(inputs.at("sequence"));
-  const MapEstimate map = ReadMap(path, sequence);
+  const Sequence imported = ReadSequence(inputs.at("sequence"));
+  const MapEstimate map = ReadMap(path, imported);
+  const Sequence sequence = AsInMap(imported, map);
   BackEndInput input = ReadInput(sequence, options, inputs, threads);
-  for (size_t i = 0; i < sequence.frames.size(); ++i) {
-    sequence.frames[i].world_from_camera = map.world_from_camera[i];
-  }
-  for (size_t i = 0; i < sequence.planes.size(); ++i) {
-    sequence.planes[i].plane_in_world = map.planes_in_world[i];
-  }
-  input.initial_landmarks.resize(sequence.objects.size());
-  for (const ObjectEstimate& object : map.objects) {
-    input.initial_landmarks[static_cast<size_t>(object.object_index)] = object.landmark_in_world;
-  }
+  input.initial_landmarks = LandmarksOf(map, sequence);
   int above = 0;
   const auto minima = CheckMinima(input, options, threads);
   for (const ObjectMinimum& minimum : minima) {
