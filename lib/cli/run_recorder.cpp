@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "cli/run_recorder.h"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <algorithm>
 
 #include "artefact/atomic_file.h"
+#include "artefact/json_file.h"
 #include "base/paths.h"
 #include "base/process.h"
 #include "dataset/image_path.h"
@@ -26,6 +28,26 @@ std::optional<fs::path> RecordFolder(const StageInfo& info, const StageFiles& fi
     return file->second.has_parent_path() ? file->second.parent_path() : fs::path(".");
   }
   return std::nullopt;
+}
+
+// The files of a record, with a field that each has.
+constexpr std::pair<const char*, const char*> kRecordFiles[] = {{"run.json", "called_in"},
+                                                                {"timing.json", "wall_s"}};
+
+// Throws SettingsError for files of others that the record would replace.
+void RefuseFilesOfOthers(const fs::path& folder) {
+  for (const auto& [name, field] : kRecordFiles) {
+    const fs::path file = folder / name;
+    if (!IsFile(file)) continue;
+    try {
+      if (ParseJsonFile(file).contains(field)) continue;
+    } catch (const InputError&) {
+    }
+    throw SettingsError(fmt::format(
+        "{}: is no record of soslam, and one of this run would replace it; expected an output in "
+        "another folder, or that file under another name",
+        file.string()));
+  }
 }
 
 // Argument name of a file: "sequence" also for the second file of --sequence, see RepeatedName.
@@ -52,6 +74,7 @@ RunRecorder::RunRecorder(const StageInfo& info, const StageFiles& files,
                          const fs::path& settings_file, int threads)
     : folder_(RecordFolder(info, files)), files_(files), threads_(threads) {
   if (!folder_) return;
+  RefuseFilesOfOthers(*folder_);
   if (!settings_file.empty()) files_["settings"] = settings_file;
   record_.stage = info.name;
   record_.software = ThisSoftware();
@@ -95,11 +118,9 @@ void RunRecorder::RecordFailure(const Error& error) {
   if (!folder_) return;
   record_.exit_code = static_cast<int>(error.exit_code());
   record_.error = error.what();
-  const fs::path path = *folder_ / "run.json";
   try {
     Finish();
-    if (fs::exists(path)) ReadRun(path);  // a file of others stays
-    WriteRun(path, record_);
+    WriteRun(*folder_ / "run.json", record_);
   } catch (const std::exception&) {
     return;  // the failure itself is more important
   }

@@ -19,6 +19,7 @@ namespace soslam::internal {
 class RunRecorder {
  public:
   // Starts the record; the files given to the stage count as read. `settings_file`: empty for none.
+  // Throws SettingsError for a file of others with the name of one of the record's.
   RunRecorder(const StageInfo& info, const StageFiles& files,
               const std::filesystem::path& settings_file, int threads);
 

@@ -185,6 +185,25 @@ TEST_F(RunRecorderTest, ARecordThatCannotBeWrittenFailsTheRun) {
   EXPECT_EQ(Record().outputs.size(), 1u);
 }
 
+TEST_F(RunRecorderTest, FilesOfOthersAreNotReplaced) {
+  const auto never = [] { ADD_FAILURE() << "the stage has run"; };
+  for (const char* name : {"run.json", "timing.json"}) {
+    const std::string file = std::string("results/two/") + name;
+    for (const char* text : {"{\"runs\": 3}", "[1]", "walk 3", ""}) {
+      SCOPED_TRACE(file + text);
+      Write(file, text);
+      before_writing = never;
+      EXPECT_EQ(Run(), 2);
+      EXPECT_THAT(errors_, HasSubstr(file + ": is no record of soslam"));
+      EXPECT_EQ(FileBytes(folder_ / file), text);
+    }
+    fs::remove(folder_ / file);
+    before_writing = [] {};
+    EXPECT_EQ(Run(), 0) << errors_;
+    EXPECT_EQ(Run(), 0) << errors_;
+  }
+}
+
 TEST_F(RunRecorderTest, PathsThatTheFileSystemRefusesAreBadInput) {
   fs::remove(folder_ / "results/one/sequence.json");
   fs::create_symlink("sequence.json", folder_ / "results/one/sequence.json");  // to itself
