@@ -128,7 +128,21 @@ std::optional<std::string> OtherFormat(std::string_view bytes) {
   return std::nullopt;
 }
 
+std::string HowToJoin(const fs::path& network) {
+  return fmt::format(
+      "export it with external_data=False, or join them with python3 -c \"import "
+      "onnx; onnx.save(onnx.load('{}'), 'one_file.onnx')\"",
+      network.string());
+}
+
 void RefuseOtherFormats(const NetworkFile& file) {
+  for (const std::string_view ending : {".data", "_data"}) {
+    fs::path network = fs::path(file.name).filename();
+    if (!file.name.ends_with(fmt::format(".onnx{}", ending))) continue;
+    network = network.string().substr(0, network.string().size() - ending.size());
+    throw InputError(fmt::format("{}: has the weights of {}; expected one file with both: {}",
+                                 file.name, network.string(), HowToJoin(network)));
+  }
   const auto format = OtherFormat(file.bytes);
   if (!format) return;
   throw InputError(fmt::format(
@@ -143,12 +157,9 @@ void RefuseExternalWeights(const NetworkFile& file) {
   const fs::path path = file.name;
   const std::string& weights = *file.header.files_of_weights.begin();
   throw InputError(fmt::format(
-      "{}: its weights are in {}{}; expected one file with all of them: export it with "
-      "external_data=False, or join them with python3 -c \"import onnx; onnx.save(onnx.load('{}'), "
-      "'one_file.onnx')\"",
-      file.name, weights,
+      "{}: its weights are in {}{}; expected one file with all of them: {}", file.name, weights,
       IsFile(path.parent_path() / weights) ? "" : ", which is not beside it (copy that, too)",
-      path.filename().string()));
+      HowToJoin(path.filename())));
 }
 
 // Throws InputError for a network that is none of those that detect objects in one image.

@@ -165,6 +165,10 @@ TEST_F(YoloDetectorTest, ExternalWeightsAreNamed) {
   ExpectError<InputError>(read, {path.string(), "net.onnx.data, which is not beside it"});
   Write("net.onnx.data", "weights");
   ExpectError<InputError>(read, {"weights are in net.onnx.data;", "external_data=False"});
+  for (const char* name : {"net.onnx.data", "net.onnx_data"}) {
+    ExpectError<InputError>([&] { ReadNetworkFile(Write(name, "weights")); },
+                            {name, "has the weights of net.onnx;", "onnx.load('net.onnx')"});
+  }
 }
 
 }  // namespace
