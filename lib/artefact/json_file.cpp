@@ -139,7 +139,12 @@ json ParseJsonText(std::istream& text, const std::string& name) {
     std::string begin(kFileKindSize, '\0');
     text.clear();
     text.seekg(0).read(begin.data(), static_cast<std::streamsize>(begin.size()));
-    CheckIsText(begin.substr(0, static_cast<size_t>(text.gcount())), name, "JSON in UTF-8");
+    begin.resize(static_cast<size_t>(text.gcount()));
+    const std::string kind = FileKind(begin);
+    if (kind != "JSON") {
+      throw InputError(fmt::format("{}: {}; expected JSON in UTF-8", name,
+                                   kind.empty() ? "begins with neither { nor [" : "is " + kind));
+    }
     const std::string message = error.what();  // "[json.exception.parse_error.101] parse error ..."
     throw InputError(name + ": " + message.substr(message.find("] ") + 2));
   }

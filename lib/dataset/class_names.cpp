@@ -12,6 +12,7 @@
 #include "base/paths.h"
 #include "dataset/text_file.h"
 #include "dataset/yaml_fields.h"
+#include "image/file_kind.h"
 #include "model/label_groups.h"
 
 namespace soslam {
@@ -69,6 +70,17 @@ std::vector<std::string> LineNames(const std::vector<TextLine>& lines) {
   return names;
 }
 
+// The names in a text; none where it has none.
+std::vector<std::string> NamesIn(const std::string& text, const std::string& name) {
+  if (IsYaml(name)) return YamlNames(YamlFields(text, name), name);
+  if (const std::string kind = FileKind(text); !kind.empty()) {
+    throw InputError(fmt::format(
+        "{}: is {}; expected the names of the classes, one a line, or data.yaml of YOLO", name,
+        kind));
+  }
+  return LineNames(TextLines(text, name));
+}
+
 }  // namespace
 
 std::vector<std::string> ReadLabelFile(const fs::path& path) {
@@ -76,24 +88,61 @@ std::vector<std::string> ReadLabelFile(const fs::path& path) {
 }
 
 std::vector<std::string> ParseLabels(const std::string& text, const std::string& name) {
-  std::vector<std::string> names = FindLabels(text, name).names;
+  std::vector<std::string> names = NamesIn(text, name);
   if (names.empty()) throw InputError(name + ": has no label; expected the names of the classes");
   return names;
 }
 
-ClassNames FindLabels(const std::string& text, const std::string& name) {
-  return {name, IsYaml(name) ? YamlNames(YamlFields(text, name), name)
-                             : LineNames(TextLines(text, name))};
+ClassNames FindLabels(const fs::path& place, const std::function<std::string()>& read) {
+  try {
+    return {place, NamesIn(read(), place.string())};
+  } catch (const InputError& error) {
+    return {place, {}, error.what()};
+  }
 }
 
-void CheckSameNames(const ClassNames& one, const ClassNames& other) {
+namespace {
+
+auto Depth(const ClassNames& list) { return std::distance(list.place.begin(), list.place.end()); }
+
+// The first class with different names.
+std::optional<std::string> Contradiction(const ClassNames& one, const ClassNames& other) {
   for (size_t i = 0; i < std::min(one.names.size(), other.names.size()); ++i) {
     if (AreSameLabel(one.names[i], other.names[i])) continue;
-    throw InputError(fmt::format(
-        "{}: class {} is '{}', but '{}' in {}; expected the same names: remove the file that is "
-        "not of these boxes, or name the right one as class_names",
-        one.place, i, one.names[i], other.names[i], other.place));
+    return fmt::format("{}: class {} is '{}', but '{}' in {}", one.place.string(), i, one.names[i],
+                       other.names[i], other.place.string());
   }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<ClassNames> NearestNames(std::vector<ClassNames> lists,
+                                       std::vector<Finding>* findings) {
+  std::erase_if(lists, [](const ClassNames& list) { return list.names.empty() && !list.error; });
+  if (lists.empty()) return std::nullopt;
+  std::ranges::stable_sort(lists, std::ranges::greater(), Depth);
+  const auto nearest =
+      std::ranges::find_if(lists, [](const ClassNames& list) { return !list.error; });
+  if (nearest == lists.end() || Depth(*nearest) < Depth(lists.front())) {
+    throw InputError(*lists.front().error);
+  }
+  for (const ClassNames& other : lists) {
+    const auto contradiction = Contradiction(*nearest, other);
+    if (contradiction && Depth(*nearest) == Depth(other)) {
+      throw InputError(*contradiction +
+                       "; expected the same names: remove the file that is not of these boxes, or "
+                       "name the right one as class_names");
+    }
+    if (!contradiction && !other.error) continue;
+    findings->push_back({"class_names", Severity::kWarning,
+                         contradiction ? *contradiction : *other.error,
+                         fmt::format("the names in {}, which is used as the nearest to the boxes",
+                                     nearest->place.string()),
+                         "a list of other boxes, or of another program",
+                         "name the right list as class_names, or remove the other"});
+  }
+  return *nearest;
 }
 
 bool IsListed(const std::string& label, const std::string& list) {

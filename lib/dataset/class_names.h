@@ -2,9 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "model/finding.h"
 
 namespace soslam {
 
@@ -20,18 +23,22 @@ std::vector<std::string> ParseLabels(const std::string& text, const std::string&
 // True if the list, labels separated by commas, has the label or is empty.
 bool IsListed(const std::string& label, const std::string& list);
 
-// Class names and their place, for messages.
+// A list of class names that was found.
 struct ClassNames {
-  std::string place;
-  std::vector<std::string> names;
+  std::filesystem::path place;                      // the file, also in an archive
+  std::vector<std::string> names;                   // none where the text has none
+  std::optional<std::string> error = std::nullopt;  // why the text cannot be read
 };
 
-// The class names in a text, as ParseLabels, but none where it has none.
-ClassNames FindLabels(const std::string& text, const std::string& name);
+// The class names in a text that `read` returns, as ParseLabels.
+ClassNames FindLabels(const std::filesystem::path& place, const std::function<std::string()>& read);
 
-// Throws InputError if two lists, neither of which is said to be the right one, give a class
-// different names.
-void CheckSameNames(const ClassNames& one, const ClassNames& other);
+// The list nearest to the labels. `lists` with errors, and those that give a class another name,
+// are findings, as they may be of other boxes. Throws InputError if one of these contradicts the
+// nearest list in the same folder, or cannot be read and is nearer than all others. None without
+// names.
+std::optional<ClassNames> NearestNames(std::vector<ClassNames> lists,
+                                       std::vector<Finding>* findings);
 
 // True if files of this name hold the class names in folders and archives of YOLO's labels.
 bool IsLabelFile(const std::filesystem::path& name);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
-#include <stdexcept>
+#include <set>
 #include <utility>
 #include <variant>
 
@@ -39,11 +39,25 @@ std::vector<LabelledBox> ReadKittiClasses(const fs::path& path) {
   return boxes;
 }
 
+// Prints that class numbers without names are taken as COCO's, with the labels that this gives.
+void PrintAssumedLabels(const std::vector<LabelledBox>& boxes, const fs::path& file) {
+  if (boxes.empty()) return;
+  std::set<std::string> labels;
+  for (const LabelledBox& box : boxes) labels.insert(box.label);
+  fmt::print(
+      "{}: has no names of its classes; takes COCO's 80, of which {} occur, {}; class_names gives "
+      "others\n",
+      file.filename().string(), labels.size(), fmt::join(labels, ", "));
+}
+
 FolderBoxes ReadCocoBoxes(const DatasetFiles& files) {
   CocoBoxes read = ReadCocoResults(files.detections, files.class_names);
-  FolderBoxes boxes{std::move(read.boxes),
-                    files.class_names ? std::vector<std::string>() : CocoLabels()};
+  FolderBoxes boxes{std::move(read.boxes)};
   boxes.left_out = std::move(read.left_out);
+  if (!read.has_categories) {
+    boxes.class_names = CocoLabels();
+    PrintAssumedLabels(boxes.boxes, files.detections);
+  }
   const std::string file = files.detections.filename().string();
   if (read.enlarged > 0) {
     boxes.findings.push_back(
@@ -57,21 +71,18 @@ FolderBoxes ReadCocoBoxes(const DatasetFiles& files) {
   return boxes;
 }
 
-// Class names from the options, otherwise from the files among the labels or beside them, which
-// must not contradict each other, otherwise COCO's.
+// The class names among the labels or around them; none where there are none.
 std::vector<std::string> YoloLabels(const YoloTexts& texts, const fs::path& folder,
-                                    DatasetFiles* files) {
-  if (files->class_names) return ReadLabelFile(*files->class_names);
-  std::vector<ClassNames> found = texts.names;
+                                    DatasetFiles* files, std::vector<Finding>* findings) {
+  std::vector<ClassNames> lists = texts.names;
   for (const fs::path& file : FindLabelFiles(files->detections, folder)) {
-    found.push_back(FindLabels(ReadWholeFile(file), file.string()));
+    lists.push_back(FindLabels(file, [&] { return ReadWholeFile(file); }));
   }
-  std::erase_if(found, [](const ClassNames& list) { return list.names.empty(); });
-  if (found.empty()) return CocoLabels();
-  for (const ClassNames& other : found) CheckSameNames(found.front(), other);
-  const auto& [place, names] = found.front();
+  const auto nearest = NearestNames(std::move(lists), findings);
+  if (!nearest) return {};
+  const auto& [place, names, error] = *nearest;
   if (IsFile(place)) files->class_names = place;
-  fmt::print("{}: names of {} classes, {}\n", place, names.size(), fmt::join(names, ", "));
+  fmt::print("{}: names of {} classes, {}\n", place.string(), names.size(), fmt::join(names, ", "));
   return names;
 }
 
@@ -80,31 +91,30 @@ std::vector<std::string> YoloLabels(const YoloTexts& texts, const fs::path& fold
 FolderBoxes ReadFolderBoxes(const fs::path& folder, const ImportOptions& options,
                             const Camera& camera, DatasetFiles* files) {
   const fs::path& path = files->detections;
-  switch (options.folder.detections_format) {
-    case DetectionsFormat::kCsv:
-      return {ReadDetectionsCsv(path)};
-    case DetectionsFormat::kCoco:
-      return ReadCocoBoxes(*files);
-    case DetectionsFormat::kKitti:
-      return {ReadKittiClasses(path)};
-    case DetectionsFormat::kOaSlam: {
-      const auto names = files->class_names ? ReadLabelFile(*files->class_names) : CocoLabels();
-      return {ReadOaSlamBoxes(path, names), names};
-    }
-    case DetectionsFormat::kYolo:
-    case DetectionsFormat::kYoloPixels: {
-      const YoloTexts texts = ReadYoloTexts(path);
-      const auto names = YoloLabels(texts, folder, files);
-      const bool has_pixels = options.folder.detections_format == DetectionsFormat::kYoloPixels;
-      FolderBoxes read;
-      read.class_names = names;
-      read.boxes = has_pixels ? ReadPixelYoloBoxes(texts, names)
-                              : ReadNormalisedYoloBoxes(texts, names, camera.width, camera.height,
-                                                        &read.corrected);
-      return read;
-    }
+  const DetectionsFormat format = options.folder.detections_format;
+  if (format == DetectionsFormat::kCsv) return {ReadDetectionsCsv(path)};
+  if (format == DetectionsFormat::kKitti) return {ReadKittiClasses(path)};
+  if (format == DetectionsFormat::kCoco) return ReadCocoBoxes(*files);
+  FolderBoxes read;
+  const bool is_oa_slam = format == DetectionsFormat::kOaSlam;
+  const YoloTexts texts = is_oa_slam ? YoloTexts() : ReadYoloTexts(path);
+  if (files->class_names) {
+    read.class_names = ReadLabelFile(*files->class_names);
+  } else if (!is_oa_slam) {
+    read.class_names = YoloLabels(texts, folder, files, &read.findings);
   }
-  throw std::logic_error("format without a reader");
+  const bool has_names = !read.class_names.empty();
+  if (!has_names) read.class_names = CocoLabels();
+  if (is_oa_slam) {
+    read.boxes = ReadOaSlamBoxes(path, read.class_names);
+  } else if (format == DetectionsFormat::kYoloPixels) {
+    read.boxes = ReadPixelYoloBoxes(texts, read.class_names);
+  } else {
+    read.boxes = ReadNormalisedYoloBoxes(texts, read.class_names, camera.width, camera.height,
+                                         &read.corrected);
+  }
+  if (!has_names) PrintAssumedLabels(read.boxes, path);
+  return read;
 }
 
 std::vector<DetectionRow> RowsWithoutObject(const std::vector<LabelledBox>& boxes,
@@ -117,6 +127,21 @@ std::vector<DetectionRow> RowsWithoutObject(const std::vector<LabelledBox>& boxe
   }
   return rows;
 }
+
+namespace {
+
+// What the numbers of images may be in place of rows, as the end of a message.
+std::string LikelyNumbers(const std::vector<LabelledBox>& boxes, const fs::path& file, int images) {
+  const bool count_from_one = std::ranges::all_of(boxes, [&](const LabelledBox& box) {
+    const int* number = std::get_if<int>(&box.frame);
+    return number == nullptr || (*number >= 1 && *number <= images);
+  });
+  const bool is_coco = file.extension() == ".json";
+  return fmt::format("{}{}", count_from_one ? ": are images counted from 1? Subtract 1" : "",
+                     is_coco ? "; ids of a COCO file are read with that file as class_names" : "");
+}
+
+}  // namespace
 
 std::vector<DetectionRow> RowsOfBoxes(const std::vector<LabelledBox>& boxes,
                                       const DatasetFiles& files,
@@ -138,8 +163,10 @@ std::vector<DetectionRow> RowsOfBoxes(const std::vector<LabelledBox>& boxes,
     const LabelledBox& box = boxes[i];
     const auto frame = lookup.Find(box.frame, box.place);
     if (const int* row = std::get_if<int>(&box.frame); row != nullptr && !frame) {
-      throw InputError(fmt::format("{}: frame is {}; expected a row of {}, 0 to {}", box.place,
-                                   *row, list, images.size() - 1));
+      throw InputError(
+          fmt::format("{}: frame is {}; expected a row of {}, 0 to {}{}", box.place, *row, list,
+                      images.size() - 1,
+                      LikelyNumbers(boxes, files.detections, static_cast<int>(images.size()))));
     }
     if (!frame) continue;
     const int object_id = box.object_id

@@ -135,7 +135,8 @@ std::optional<int> FrameLookup::Find(const FrameKey& key, const std::string& pla
   if (const int* row = std::get_if<int>(&key)) {
     return *row >= 0 && *row < std::ssize(folders_) ? std::optional(*row) : std::nullopt;
   }
-  const std::string& name = std::get<std::string>(key);
+  std::string name = std::get<std::string>(key);
+  if (!rows_by_name_.contains(name)) std::ranges::replace(name, '\\', '/');  // Windows' paths
   auto found = rows_by_name_.find(name);
   const std::string file_name = fs::path(name).filename().string();
   if (found == rows_by_name_.end()) found = rows_by_name_.find(file_name);

@@ -32,12 +32,12 @@ class FrameLookup {
  public:
   explicit FrameLookup(const std::vector<ListedImage>& images);
 
-  // The 0-based row; none when the list has no such image. A name is the path in the list, or the
-  // file name without folder, or that without extension; all of them also as Roboflow
-  // (a_jpg.rf.0123abcd.jpg) and Label Studio (0123abcd-a.jpg) write the name of a copy. A folder
-  // may have another name than in the list, but not that of another camera (cam0 and cam1, left and
-  // right). Throws InputError, naming `place`, for a name shared by several images, for names with
-  // several folders of one image, and for several copies of one image.
+  // The 0-based row; none when the list has no such image. A name is the path in the list, also
+  // with backslashes, or the file name without folder, or that without extension; all of them also
+  // as Roboflow (a_jpg.rf.0123abcd.jpg) and Label Studio (0123abcd-a.jpg) write the name of a copy.
+  // A folder may have another name than in the list, but not that of another camera (cam0 and cam1,
+  // left and right). Throws InputError, naming `place`, for a name shared by several images, for
+  // names with several folders of one image, and for several copies of one image.
   std::optional<int> Find(const FrameKey& key, const std::string& place);
 
   // Number of images found by the name of a copy.

@@ -34,12 +34,39 @@ constexpr const char* kUprightBoxes = "no angle: oriented boxes are not read, sa
 constexpr std::pair<const char*, const char*> kOtherNames[] = {
     {"confidence", "score"}, {"conf", "score"}, {"track_id", kIdColumn}, {"track", kIdColumn}};
 
+// Required columns, and their names in other programs.
+const std::pair<const char*, std::vector<const char*>> kLikelyNames[] = {
+    {"frame", {"frame_id", "frame_index", "frame_number", "image_id"}},
+    {"label", {"class", "class_name", "category", "name"}},
+    {"x1", {"xmin", "x_min", "left"}},
+    {"y1", {"ymin", "y_min", "top"}},
+    {"x2", {"xmax", "x_max", "right"}},
+    {"y2", {"ymax", "y_max", "bottom"}}};
+constexpr std::array kSizes = {"w", "width", "bb_width"};
+
+constexpr const char* kTracks =
+    "rows of MOTChallenge and trackers (frame from 1, id, left, top, width, height, score) have no "
+    "labels: docs/detections.md has the command that converts them";
+
+// What a table without all columns is likely to be, as the end of a message.
+std::string LikelyTable(const std::vector<std::string>& header) {
+  const auto has = [&](const char* name) { return std::ranges::count(header, name) > 0; };
+  if (std::ranges::any_of(kSizes, has)) return fmt::format("; {}", kTracks);
+  std::vector<std::string> likely;
+  for (const auto& [name, others] : kLikelyNames) {
+    const auto other = std::ranges::find_if(others, has);
+    if (other != others.end() && !has(name))
+      likely.push_back(fmt::format("{} for {}", *other, name));
+  }
+  return likely.empty() ? "" : fmt::format("; it may have {}", fmt::join(likely, ", "));
+}
+
 CsvColumns ColumnsOfBoxes() {
   CsvColumns columns{{"frame", "label", "x1", "y1", "x2", "y2"},
                      {"score", kIdColumn},
-                     "; rows of MOTChallenge and trackers (frame from 1, id, left, top, width, "
-                     "height, score) have no labels: docs/detections.md has the command that "
-                     "converts them"};
+                     fmt::format("; {}", kTracks),
+                     &LikelyTable,
+                     ": detections_format of soslam-import reads others"};
   columns.optional.insert(columns.optional.end(), kAngles.begin(), kAngles.end());
   for (const auto& [other, name] : kOtherNames) columns.optional.emplace_back(other);
   return columns;
@@ -134,36 +161,57 @@ std::map<int, ImageSize> ReadImageSizes(const JsonEntry& document) {
   return sizes;
 }
 
+bool HasValue(const JsonEntry& entry, const char* name) {
+  return entry.Has(name) && !entry.Field(name).is_null();
+}
+
 CocoNames NamesOf(const json& document, const fs::path& path) {
   const JsonEntry entry(document, path.string());
-  return {ReadNames(entry, "images", "file_name"), ReadNames(entry, "categories", "name"),
-          ReadImageSizes(entry)};
+  CocoNames names;
+  if (HasValue(entry, "images")) {
+    names.images = ReadNames(entry, "images", "file_name");
+    names.image_sizes = ReadImageSizes(entry);
+  }
+  if (HasValue(entry, "categories")) names.categories = ReadNames(entry, "categories", "name");
+  return names;
 }
 
 const std::string& NameOf(const std::map<int, std::string>& names, const JsonEntry& entry,
-                          const char* field) {
+                          const char* field, const char* list) {
   const auto found = names.find(entry.Integer(field));
-  if (found == names.end()) entry.Refuse(field, "an id of the dataset's JSON file");
+  if (found == names.end()) {
+    entry.Refuse(field, fmt::format("an id of \"{}\" in the JSON file of the data set{}", list,
+                                    names.empty() ? ", which has none" : ""));
+  }
   return found->second;
 }
 
 FrameKey ParseFrame(const JsonEntry& entry, const std::optional<CocoNames>& names) {
   if (entry.Field("image_id").is_string()) return entry.Text("image_id");
-  if (names) return NameOf(names->images, entry, "image_id");
+  if (names) return NameOf(names->images, entry, "image_id", "images");
   return entry.Integer("image_id");
 }
 
 std::string ParseLabel(const JsonEntry& entry, const std::optional<CocoNames>& names) {
-  if (names) return NameOf(names->categories, entry, "category_id");
+  if (names) return NameOf(names->categories, entry, "category_id", "categories");
   const auto index = CocoClassIndex(entry.Integer("category_id"));
   if (!index) entry.Refuse("category_id", "a category of COCO, 1 to 90");
   return CocoLabels()[*index];
 }
 
+// The number of a field, also as text; none for words and without a value, as attributes have any
+// names.
+std::optional<double> NumberOf(const JsonEntry& entry, const char* name) {
+  if (!entry.Has(name)) return std::nullopt;
+  const json& value = entry.Field(name);
+  if (value.is_string()) return ParseNumber(value.get<std::string>());
+  return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
+}
+
 // The four numbers of a box, which has no angle. Throws InputError naming what was `expected`.
 Eigen::Vector4d BoxNumbers(const JsonEntry& entry, const char* expected) {
   for (const char* angle : kAngles) {
-    if (entry.Has(angle) && entry.Real(angle) != 0.0) entry.Refuse(angle, kUprightBoxes);
+    if (NumberOf(entry, angle).value_or(0.0) != 0.0) entry.Refuse(angle, kUprightBoxes);
   }
   const json& bbox = entry.Field("bbox");
   if (bbox.is_array() && bbox.size() == 5) {
@@ -175,7 +223,7 @@ Eigen::Vector4d BoxNumbers(const JsonEntry& entry, const char* expected) {
 Box ParseBox(const JsonEntry& entry) {
   constexpr const char* kNumbers = "[x, y, width, height]";
   constexpr const char* kMode = "bbox_mode";  // of detectron2
-  if (entry.Has(kMode) && entry.Field(kMode) != 1) entry.Refuse(kMode, "1, XYWH_ABS");
+  if (HasValue(entry, kMode) && entry.Field(kMode) != 1) entry.Refuse(kMode, "1, XYWH_ABS");
   const Eigen::Vector4d xywh = BoxNumbers(entry, kNumbers);
   if (xywh[2] < 0.0 || xywh[3] < 0.0) entry.Refuse("bbox", kNumbers);
   return FromCornerOrigin({xywh[0], xywh[1], xywh[0] + xywh[2], xywh[1] + xywh[3]});
@@ -202,9 +250,9 @@ bool IsEnlarged(const Box& around, const Box& box, double angle_deg) {
 
 // The score under this name; 1 without one. Throws InputError for a score under another name.
 double ScoreOf(const JsonEntry& entry, const char* name) {
-  if (entry.Has(name)) return entry.Real(name);
+  if (HasValue(entry, name)) return entry.Real(name);
   for (const char* other : {"score", "confidence", "conf"}) {
-    if (entry.Has(other)) entry.Refuse(other, fmt::format("the score as {}", name));
+    if (HasValue(entry, other)) entry.Refuse(other, fmt::format("the score as {}", name));
   }
   return 1.0;
 }
@@ -216,21 +264,29 @@ std::optional<JsonEntry> AttributesOf(const JsonEntry& entry) {
 }
 
 std::optional<int> ParseTrack(const JsonEntry& entry, const std::optional<JsonEntry>& attributes) {
-  if (entry.Has("track_id")) return entry.Integer("track_id");
-  if (!attributes || !attributes->Has("track_id")) return std::nullopt;
-  return attributes->Integer("track_id");
+  if (HasValue(entry, "track_id")) return entry.Integer("track_id");
+  if (!attributes || !HasValue(*attributes, "track_id")) return std::nullopt;
+  const json& track = attributes->Field("track_id");
+  if (!track.is_string()) return attributes->Integer("track_id");
+  if (track == "") return std::nullopt;
+  return ParseInteger(track.get<std::string>(), attributes->place(), "track_id");
+}
+
+bool IsTrue(const JsonEntry& entry, const char* name) {
+  if (!entry.Has(name)) return false;
+  const json& value = entry.Field(name);
+  if (!value.is_string()) return value == true || value == 1;
+  const std::string word = LowerCase(value.get<std::string>());
+  return word == "true" || word == "1";
 }
 
 // The reason to leave out an entry that is not of one object in the image.
 std::optional<RejectReason> ReasonToLeaveOut(const JsonEntry& entry,
                                              const std::optional<JsonEntry>& attributes) {
   for (const char* name : {"iscrowd", "ignore"}) {
-    if (entry.Has(name) && (entry.Field(name) == 1 || entry.Field(name) == true)) {
-      return RejectReason::kCrowd;
-    }
+    if (IsTrue(entry, name)) return RejectReason::kCrowd;
   }
-  if (attributes && attributes->Has("outside") && attributes->Field("outside") == true)
-    return RejectReason::kOutOfView;
+  if (attributes && IsTrue(*attributes, "outside")) return RejectReason::kOutOfView;
   return std::nullopt;
 }
 
@@ -246,13 +302,6 @@ void CheckSameCategories(const CocoNames& names, const fs::path& file, const Coc
   }
 }
 
-// False for words, as attributes have any names.
-bool HasNumber(const JsonEntry& attributes, const char* name) {
-  if (!attributes.Has(name)) return false;
-  const json& value = attributes.Field(name);
-  return value.is_number() || (value.is_string() && ParseNumber(value.get<std::string>()));
-}
-
 void ReadEntry(const JsonEntry& entry, const std::optional<CocoNames>& names, CocoBoxes* read) {
   const auto attributes = AttributesOf(entry);
   if (const auto reason = ReasonToLeaveOut(entry, attributes)) {
@@ -265,32 +314,55 @@ void ReadEntry(const JsonEntry& entry, const std::optional<CocoNames>& names, Co
     const auto size = names->image_sizes.find(entry.Integer("image_id"));
     if (size != names->image_sizes.end()) box.image_size = size->second;
   }
-  if (attributes && HasNumber(*attributes, "rotation")) {
-    const double angle_deg = attributes->Real("rotation");
+  if (const double angle_deg = attributes ? NumberOf(*attributes, "rotation").value_or(0.0) : 0.0;
+      angle_deg != 0.0) {
     const Box around = BoxAround(box.box, angle_deg);
     if (IsEnlarged(around, box.box, angle_deg)) ++read->enlarged;
-    if (angle_deg != 0.0) box.box = around;
+    box.box = around;
   }
   read->boxes.push_back(std::move(box));
+}
+
+json ParseDatasetFile(const fs::path& path) {
+  try {
+    return ParseJsonFile(path);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format(
+        "{}: class_names of COCO's results is the file with their \"images\" and \"categories\"",
+        error.what()));
+  }
 }
 
 }  // namespace
 
 CocoBoxes ReadCocoResults(const fs::path& results, const std::optional<fs::path>& dataset) {
   const json document = ParseJsonFile(results);
-  auto names = dataset ? std::optional(NamesOf(ParseJsonFile(*dataset), *dataset)) : std::nullopt;
+  auto names =
+      dataset ? std::optional(NamesOf(ParseDatasetFile(*dataset), *dataset)) : std::nullopt;
   const bool is_list = document.is_array();
   if (!is_list && (!document.is_object() || !document.contains("annotations"))) {
     throw InputError(results.string() +
                      ": is not a list of results, nor a data set with \"images\", "
                      "\"annotations\" and \"categories\"");
   }
-  if (!is_list && names && document.contains("categories")) {
-    CheckSameCategories(*names, *dataset, NamesOf(document, results), results);
+  if (!is_list) {
+    CocoNames own = NamesOf(document, results);
+    if (names) CheckSameCategories(*names, *dataset, own, results);
+    if (!names) names.emplace();
+    names->categories.merge(own.categories);
+    if (!own.images.empty()) {
+      names->images = std::move(own.images);
+      names->image_sizes = std::move(own.image_sizes);
+    }
   }
-  if (!is_list && !names) names = NamesOf(document, results);
+  if (names && names->categories.empty()) {
+    throw InputError(
+        dataset.value_or(results).string() +
+        ": categories is missing; expected the names of the classes, {\"id\", \"name\"}");
+  }
   const json& list = is_list ? document : JsonEntry(document, results.string()).List("annotations");
   CocoBoxes read;
+  read.has_categories = names.has_value();
   for (const JsonEntry& entry :
        EntriesOf(list, results.string() + (is_list ? "#" : "#/annotations"))) {
     ReadEntry(entry, names, &read);

@@ -54,14 +54,15 @@ std::string LabelledBoxesText(const std::vector<LabelledBox>& boxes);
 // Boxes of COCO's results or of a data set, and what was done to them on reading.
 struct CocoBoxes {
   std::vector<LabelledBox> boxes;
-  RejectionCounts left_out;  // boxes that are not of one object in the image
-  int enlarged = 0;          // oblique boxes, replaced by the larger upright ones around them
+  RejectionCounts left_out;     // boxes that are not of one object in the image
+  int enlarged = 0;             // oblique boxes, replaced by the larger upright ones around them
+  bool has_categories = false;  // false: the labels are COCO's
 };
 
 // Reads detections in COCO's results format: [{"image_id", "category_id", "bbox": [x, y, w, h],
 // "score"}], pixels from the image's outer corner; or a COCO data set with such boxes as
 // "annotations". A missing "score" is 1. A "track_id" of an entry, or of its "attributes", is the
-// object id.
+// object id. Null is as good as missing, and attributes may have their numbers as text.
 //
 // Left out are regions of crowds ("iscrowd" or "ignore" is 1), and boxes of objects that left the
 // image (CVAT's attribute "outside"). A box with CVAT's attribute "rotation" (degrees, about its
@@ -70,9 +71,9 @@ struct CocoBoxes {
 //
 // `dataset`, when given, is the JSON file that the results belong to: its "images" ({"id",
 // "file_name"}) and "categories" ({"id", "name"}) define the ids; a data set with boxes contains
-// them itself. Without either, an integer image_id is a 0-based row of the image list, and
-// category_id is COCO's own (1 to 90). A text as image_id is the name of an image. In file order.
-// Throws InputError with file and JSON pointer.
+// them itself, or some of them. Without either, an integer image_id is a 0-based row of the image
+// list, and category_id is COCO's own (1 to 90). A text as image_id is the name of an image. In
+// file order. Throws InputError with file and JSON pointer.
 CocoBoxes ReadCocoResults(const std::filesystem::path& results,
                           const std::optional<std::filesystem::path>& dataset = std::nullopt);
 

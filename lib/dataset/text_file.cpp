@@ -100,7 +100,8 @@ std::string ReadWholeFile(const std::filesystem::path& path, const char* kind) {
   std::error_code failed;
   const std::uintmax_t bytes = std::filesystem::file_size(path, failed);
   if (!stream.is_open() || failed) {
-    throw InputError(fmt::format("{}: cannot be read; expected a {}", path.string(), kind));
+    throw InputError(fmt::format("{}: {}; expected a {}", path.string(),
+                                 IsFolder(path) ? "is a folder" : "cannot be read", kind));
   }
   if (bytes > kMaxBytes) {
     throw InputError(fmt::format("{}: has {} bytes; expected a {} of at most {}", path.string(),
@@ -208,10 +209,6 @@ std::vector<std::string> SplitCsvLine(std::string_view line, char separator,
 std::map<std::string, size_t> PositionsOf(const CsvColumns& columns,
                                           const std::vector<std::string>& header,
                                           const std::string& place) {
-  const auto refuse = [&](const std::string& column, const char* how_often) {
-    throw InputError(fmt::format("{}: column '{}' is {}; expected each of {} once", place, column,
-                                 how_often, fmt::join(columns.required, ",")));
-  };
   double number = 0.0;
   if (ParseWhole(std::string_view(header[0]).substr(0, header[0].find(' ')), &number)) {
     const bool is_all_numbers = ParseNumbers(fmt::format("{}", fmt::join(header, " "))).has_value();
@@ -221,19 +218,25 @@ std::map<std::string, size_t> PositionsOf(const CsvColumns& columns,
                     is_all_numbers ? columns.rows_of_numbers : ""));
   }
   std::map<std::string, size_t> positions;
+  std::vector<std::string> found;
   for (size_t i = 0; i < header.size(); ++i) {
     std::string name = LowerCase(header[i]);
     std::ranges::replace(name, ' ', '_');
+    found.push_back(name);
     const auto has_name = [&](const std::vector<std::string>& names) {
       return std::ranges::find(names, name) != names.end();
     };
     const bool is_read = has_name(columns.required) || has_name(columns.optional);
-    if (is_read && !positions.emplace(name, i).second) refuse(name, "twice");
+    if (!is_read || positions.emplace(name, i).second) continue;
+    throw InputError(fmt::format("{}: column '{}' is twice; expected each of {} once", place, name,
+                                 fmt::join(columns.required, ",")));
   }
-  for (const std::string& column : columns.required) {
-    if (!positions.contains(column)) refuse(column, "missing");
-  }
-  return positions;
+  std::vector<std::string> missing = columns.required;
+  std::erase_if(missing, [&](const std::string& name) { return positions.contains(name); });
+  if (missing.empty()) return positions;
+  throw InputError(fmt::format("{}: {} missing; expected columns {}{}", place,
+                               fmt::join(missing, ","), fmt::join(columns.required, ","),
+                               columns.missing ? columns.missing(found) : ""));
 }
 
 }  // namespace
@@ -244,8 +247,14 @@ double CsvRow::Real(const std::string& column) const {
 
 void ForEachCsvRow(const std::filesystem::path& path, const CsvColumns& columns,
                    const std::function<void(const CsvRow&)>& use) {
+  const std::string text = ReadWholeFile(path);
   // Tabs at both ends of a line separate fields, which may be empty.
-  const std::vector<TextLine> lines = LinesWithout(" \r", ReadWholeFile(path), path.string());
+  const std::vector<TextLine> lines = LinesWithout(" \r", text, path.string());
+  if (const std::string kind = FileKind(text); !kind.empty()) {
+    throw InputError(fmt::format("{}: is {}; expected a table in CSV, with columns {}{}",
+                                 path.string(), kind, fmt::join(columns.required, ","),
+                                 columns.other_kind));
+  }
   if (lines.empty()) {
     throw InputError(fmt::format("{}: is empty; expected a header {}", path.string(),
                                  fmt::join(columns.required, ",")));

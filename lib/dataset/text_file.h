@@ -76,7 +76,11 @@ std::array<double, kCount> ParseReals(std::span<const std::string_view> words,
 struct CsvColumns {
   std::vector<std::string> required;
   std::vector<std::string> optional = {};
-  std::string rows_of_numbers = {};  // end of the message about a table of numbers without header
+  // Ends of the messages about a table of numbers without header, about a header (names in lower
+  // case) in which columns are missing, and about a file of another kind.
+  std::string rows_of_numbers = {};
+  std::function<std::string(const std::vector<std::string>& header)> missing = {};
+  std::string other_kind = {};
 };
 
 struct CsvRow {
@@ -90,8 +94,8 @@ struct CsvRow {
 // case-insensitive, with blanks equal to underscores. The separator is the most frequent one of
 // comma, semicolon and tab in that line. A field that begins with a quote ends with one; two quotes
 // within it stand for one. Throws InputError, naming the line, for a first line that begins with a
-// number, a column that is missing or there twice, another number of fields than in the first line,
-// and quotes that are not closed.
+// number, columns that are missing, a column that is there twice, another number of fields than in
+// the first line, and quotes that are not closed.
 void ForEachCsvRow(const std::filesystem::path& path, const CsvColumns& columns,
                    const std::function<void(const CsvRow&)>& use);
 

@@ -67,7 +67,8 @@ YoloTexts ReadArchive(const fs::path& archive) {
         continue;
       }
     }
-    if (IsLabelFile(entry.name)) texts.names.push_back(FindLabels(entry.text, place));
+    if (IsLabelFile(entry.name))
+      texts.names.push_back(FindLabels(place, [&] { return entry.text; }));
   }
   return texts;
 }

@@ -38,6 +38,7 @@ constexpr Signature kSignatures[] = {
 };
 
 constexpr const char* kJson = "JSON";
+constexpr const char* kXml = "XML";
 
 // Kinds with "ftyp" after the size of their first box (ISO/IEC 14496-12).
 std::string KindOfBoxes(std::string_view brand) {
@@ -55,6 +56,8 @@ std::string KindOfText(std::string_view first_bytes) {
   if (text.starts_with("<!doctype html") || text.starts_with("<html")) {
     return "an HTML page, as servers send it in place of a file (download the file again)";
   }
+  // Annotations of images often have no declaration.
+  if (text.starts_with("<?xml") || text.starts_with("<annotation")) return kXml;
   return text.front() == '{' || text.front() == '[' ? kJson : "";
 }
 
@@ -80,7 +83,7 @@ std::string KindOfFile(const std::filesystem::path& path) {
 
 void CheckIsText(std::string_view first_bytes, const std::string& file, const char* expected) {
   const std::string kind = FileKind(first_bytes);
-  if (kind.empty() || kind == kJson) return;
+  if (kind.empty() || kind == kJson || kind == kXml) return;
   throw InputError(fmt::format("{}: is {}; expected {}", file, kind, expected));
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +9,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "dataset/class_names.h"
 #include "dataset/dataset_content.h"
 #include "model/occlusion.h"
 #include "support/imported_folder.h"
@@ -371,24 +373,87 @@ TEST_F(FolderFormatsTest, BoxesOutOfViewAreCounted) {
   EXPECT_EQ(Import().rejected_detections.at("out_of_view"), 1);
 }
 
-TEST_F(FolderFormatsTest, ListsOfNamesThatContradictEachOther) {
+TEST_F(FolderFormatsTest, FartherListsOfNamesThatContradictAreFindings) {
   options_.folder.detections_format = DetectionsFormat::kYolo;
   options_.detections = "labels";
   Write("labels/1.0.txt", "1 0.5 0.25 0.125 0.5\n");
   Write("labels/classes.txt", "book\ncup\n");
   Write("data.yaml", "names: [book, Cup, bowl]\n");
   Write("dataset.yaml", "path: of another program\n");
-  ImportOne(DetectionsFormat::kYolo, "labels");
+  EXPECT_THAT(Import().findings, testing::IsEmpty());
   Write("data.yaml", "names: [cup, book]\n");
-  ExpectRefused({"labels/classes.txt: class 0 is 'book'", "'cup' in", "data.yaml", "class_names"});
+  Write("obj.names", "this, that\n");
+  ImportOne(DetectionsFormat::kYolo, "labels");
+  const auto findings = Import().findings;
+  ASSERT_EQ(findings.size(), 2u);
+  EXPECT_THAT(findings[0].found, testing::HasSubstr("obj.names:1: label is 'this, that'"));
+  EXPECT_THAT(findings[1].found, testing::HasSubstr("class 0 is 'book', but 'cup' in"));
+  EXPECT_THAT(findings[1].expected, testing::HasSubstr("labels/classes.txt"));
   options_.folder.class_names = "data.yaml";
   EXPECT_EQ(Only(Import().objects).label, "book");
-  options_.folder.class_names = "";
-  fs::rename(folder_ / "labels", folder_ / "txts");
+}
+
+TEST_F(FolderFormatsTest, ListsOfNamesInOneFolderMayNotContradictEachOther) {
+  Write("txts/1.0.txt", "1 0.5 0.25 0.125 0.5\n");
+  Write("txts/classes.txt", "book\ncup\n");
   Write("txts/obj.names", "cup\nbook\n");
+  options_.folder.detections_format = DetectionsFormat::kYolo;
+  options_.detections = "txts";
+  const std::vector<std::string> words = {"txts/classes.txt: class 0 is 'book'", "'cup' in",
+                                          "txts/obj.names", "class_names"};
+  ExpectRefused(words);
   PackTxts();
   options_.detections = "txts.tar.gz";
-  ExpectRefused({"txts.tar.gz/txts/classes.txt", "'cup' in", "txts/obj.names"});
+  ExpectRefused(words);
+}
+
+TEST_F(FolderFormatsTest, NamesThatAreAssumedAreSaid) {
+  Write("labels/1.0.txt", "41 0.5 0.25 0.125 0.5\n");
+  Write("results.json",
+        R"([{"image_id": 1, "category_id": 47, "bbox": [10, 20, 30, 40], "score": 0.5}])");
+  Write("oa.json", R"([{"file_name": "1.0.png", "detections": [
+      {"category_id": 41, "detection_score": 0.9, "bbox": [10, 20, 30, 40]}]}])");
+  for (const auto& [format, file] : {std::pair(DetectionsFormat::kYolo, "labels"),
+                                     {DetectionsFormat::kCoco, "results.json"},
+                                     {DetectionsFormat::kOaSlam, "oa.json"}}) {
+    testing::internal::CaptureStdout();
+    ImportOne(format, file);
+    EXPECT_THAT(
+        testing::internal::GetCapturedStdout(),
+        testing::HasSubstr(fmt::format("{}: has no names of its classes; takes COCO's 80, of "
+                                       "which 1 occur, cup; class_names gives others",
+                                       file)));
+  }
+  Write("labels/classes.txt", fmt::format("{}\n", fmt::join(CocoLabels(), "\n")));
+  Write("coco.json", DataSetOfCopies(640, 480));
+  for (const auto& [format, file] :
+       {std::pair(DetectionsFormat::kYolo, "labels"), {DetectionsFormat::kCoco, "coco.json"}}) {
+    testing::internal::CaptureStdout();
+    ImportOne(format, file);
+    EXPECT_THAT(testing::internal::GetCapturedStdout(),
+                testing::Not(testing::HasSubstr("COCO's 80")));
+  }
+}
+
+TEST_F(FolderFormatsTest, NumbersOfImagesThatAreNoRows) {
+  const auto with_ids = [&](int first, int last) {
+    Write("results.json",
+          fmt::format(R"([{{"image_id": {}, "category_id": 47, "bbox": [10, 20, 30, 40]}},
+                          {{"image_id": {}, "category_id": 47, "bbox": [10, 20, 30, 40]}}])",
+                      first, last));
+  };
+  options_.folder.detections_format = DetectionsFormat::kCoco;
+  options_.detections = "results.json";
+  with_ids(1, 4);
+  ExpectRefused({"results.json#/1", "frame is 4", "0 to 3", "counted from 1?", "class_names"});
+  with_ids(0, 4);
+  EXPECT_THAT(ExpectError<InputError>([&] { Import(); }, {"frame is 4", "class_names"}),
+              testing::Not(testing::HasSubstr("from 1")));
+  options_.folder.detections_format = DetectionsFormat::kCsv;
+  options_.detections = "detections.csv";
+  Write("detections.csv", "frame,label,x1,y1,x2,y2\n1,cup,1,2,3,4\n4,cup,1,2,3,4\n");
+  EXPECT_THAT(ExpectError<InputError>([&] { Import(); }, {"detections.csv:3", "counted from 1?"}),
+              testing::Not(testing::HasSubstr("class_names")));
 }
 
 TEST_F(FolderFormatsTest, ABoxTooManyInAnImageIsRefused) {

@@ -88,7 +88,8 @@ class FrameLookupTest : public testing::Test {
 };
 
 TEST_F(FrameLookupTest, NamesWithOrWithoutFolderAndExtension) {
-  for (const char* name : {"rgb/12.51.png", "12.51.png", "12.51", "elsewhere/rgb/12.51.png"}) {
+  for (const char* name : {"rgb/12.51.png", "12.51.png", "12.51", "elsewhere/rgb/12.51.png",
+                           "rgb\\12.51.png", "C:\\data\\rgb\\12.51.png"}) {
     EXPECT_EQ(lookup_.Find(name, ""), 1) << name;
   }
   EXPECT_EQ(lookup_.Find("12.52.png", ""), std::nullopt);

@@ -107,6 +107,16 @@ TEST_F(DetectionsCsvTest, BadFilesAreNamed) {
        {"detections.csv:2", "'confidence' would be ignored", "score"}},
       {"frame,track_id,label,x1,y1,x2,y2\n0,1,cup,2,3,4,5\n",
        {"detections.csv:2", "'track_id' would be ignored", "object_id"}},
+      {"filename,class,confidence,xmin,ymin,xmax,ymax\na.png,cup,1,1,2,3,4\n",
+       {"detections.csv:1", "frame,label,x1,y1,x2,y2 missing", "class for label, xmin for x1",
+        "ymax for y2"}},
+      {"frame,x1,y1,right,bottom,label\n0,1,2,3,4,cup\n",
+       {": x2,y2 missing", "; it may have right for x2, bottom for y2"}},
+      {"frame,id,bb_left,bb_top,bb_width,bb_height,conf\n1,1,2,3,4,5,1\n",
+       {"label,x1,y1,x2,y2 missing", "MOTChallenge", "docs/detections.md"}},
+      {"[{\"image_id\": 0, \"bbox\": [1, 2, 3, 4]}]",
+       {"is JSON", "a table in CSV, with columns frame,label", "detections_format"}},
+      {"<annotation>\n<object/>\n</annotation>\n", {"is XML", "a table in CSV"}},
       {"0,1,cup,0.9,1,2,3,4\n",
        {"detections.csv:1", "no header, but '0,1,cup,0.9,1,2,3,4'; expected"}},
       {"1,3,794.27,247.59,71.245,174.88,-1,-1,-1,-1\n",
@@ -182,6 +192,22 @@ TEST_F(CocoResultsTest, TurnedBoxesBecomeUpright) {
   EXPECT_EQ(turned(0.2).enlarged, 0);
 }
 
+TEST_F(CocoResultsTest, NumbersMayBeTextOrNull) {
+  const CocoBoxes read = ReadCocoResults(Write("results.json", R"([
+      {"image_id": 0, "category_id": 1, "bbox": [10, 10, 40, 20], "score": null, "angle": null,
+       "rotation": "0.0", "bbox_mode": null, "track_id": null, "iscrowd": null,
+       "attributes": {"rotation": "90", "track_id": "7", "outside": "false"}},
+      {"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4], "attributes": {"track_id": ""}},
+      {"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4], "attributes": {"track_id": null}},
+      {"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4], "attributes": {"outside": "True"}}])"));
+  ASSERT_EQ(read.boxes.size(), 3u);
+  ExpectLabelledBox(read.boxes[0], 0, "person", 1.0, {19.5, -0.5, 39.5, 39.5});
+  EXPECT_EQ(read.boxes[0].object_id, 7);
+  EXPECT_FALSE(read.boxes[1].object_id);
+  EXPECT_FALSE(read.boxes[2].object_id);
+  EXPECT_THAT(read.left_out, ElementsAre(Pair("out_of_view", 1)));
+}
+
 TEST_F(CocoResultsTest, WordsAsAttributesAreNoAngles) {
   for (const char* value : {R"("front")", R"("")", R"("30 degrees")", "true", "null", "[30]"}) {
     SCOPED_TRACE(value);
@@ -216,6 +242,32 @@ TEST_F(CocoResultsTest, TwoFilesMayNotContradictEachOther) {
       {"dataset.json", "category 1 is 'milk carton'", "'cup' in", "results.json"});
 }
 
+// A data set may leave its images, its categories or both to the file that is given beside it.
+TEST_F(CocoResultsTest, ADataSetHoldsWhatTheOtherFileDoesNot) {
+  const std::string annotations =
+      R"("annotations": [{"image_id": 3, "category_id": 1, "bbox": [1, 2, 3, 4]}])";
+  const std::string categories = R"("categories": [{"id": 1, "name": "milk carton"}])";
+  const std::string images = R"("images": [{"id": 3, "file_name": "rgb/b.png"}])";
+  const std::pair<std::string, std::string> files[] = {
+      {"{" + annotations + "}", kDataset},
+      {"{" + annotations + "," + categories + "}", kDataset},
+      {"{" + annotations + "," + categories + "}", "{" + images + "}"},
+      {"{" + annotations + "," + images + "}", "{" + categories + "}"},
+      // Ids of images are those of the file that has them.
+      {"{" + annotations + "," + images + "}",
+       R"({"images": [{"id": 3, "file_name": "rgb/a.png"}],)" + categories + "}"}};
+  for (const auto& [boxes, dataset] : files) {
+    SCOPED_TRACE(boxes + dataset);
+    const LabelledBox box = Only(ReadWith(dataset, boxes));
+    EXPECT_EQ(box.frame, FrameKey("rgb/b.png"));
+    EXPECT_EQ(box.label, "milk carton");
+  }
+  const std::string by_name =
+      R"({"annotations": [{"image_id": "b.png", "category_id": 1, "bbox": [1, 2, 3, 4]}],)" +
+      categories + "}";
+  EXPECT_EQ(Only(Read(by_name)).frame, FrameKey("b.png"));
+}
+
 TEST_F(CocoResultsTest, NamesOfImagesAreTakenAlsoWithADataset) {
   const auto boxes =
       ReadWith(kDataset, R"([{"image_id": "a.png", "category_id": 2, "bbox": [1, 2, 3, 4]}])");
@@ -241,9 +293,13 @@ TEST_F(CocoResultsTest, BadResultsAreNamed) {
        {"#/0", "bbox_mode is 0", "XYWH_ABS"}},
       {R"([{"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4], "rotation": 30}])",
        {"#/0", "rotation is 30", "oriented boxes are not read"}},
+      {R"([{"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4], "rotation": "30"}])",
+       {"#/0", "rotation is \"30\"", "oriented boxes are not read"}},
       {R"([{"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4],
-            "attributes": {"rotation": "30"}}])",
-       {"#/0/attributes", "rotation is \"30\"", "a number"}}};
+            "attributes": {"track_id": "cup 1"}}])",
+       {"#/0/attributes", "track_id is 'cup 1'", "an integer"}},
+      {"<?xml version=\"1.0\"?>\n<annotations/>\n", {"is XML; expected JSON"}},
+      {"0 0.5 0.5 0.1 0.1\n", {"begins with neither { nor [; expected JSON"}}};
   ExpectBadTexts(cases, "results.json", [&](const std::string& text) { Read(text); });
 }
 
@@ -252,6 +308,9 @@ TEST_F(CocoResultsTest, BadDatasetsAreNamed) {
       R"([{"image_id": 7, "category_id": 2, "bbox": [1, 2, 3, 4], "score": 1}])";
   const BadTexts cases = {
       {R"({"images": []})", {"dataset.json", "categories is missing"}},
+      {R"({"categories": [{"id": 2, "name": "cup"}]})",
+       {"results.json#/0", "image_id is 7", "\"images\"", "has none"}},
+      {"cup\nbook\n", {"dataset.json", "expected JSON", "class_names", "\"categories\""}},
       {R"({"images": [], "categories": [{"id": 2, "name": "cup"}]})",
        {"results.json#/0", "image_id is 7"}},
       {R"({"images": [{"id": 7, "file_name": "a"}], "categories": [{"id": 1, "name": "cup"}]})",
@@ -291,6 +350,8 @@ TEST_F(LabelFileTest, BadFilesAreNamed) {
   ExpectError<InputError>([&] { Read("cup\nbox, large\n"); }, {"labels.txt:2", "'box, large'"});
   ExpectError<InputError>([&] { Read("\n# none\n"); }, {"labels.txt", "no label"});
   ExpectError<InputError>([&] { ReadLabelFile(folder_ / "none.txt"); }, {"none.txt"});
+  ExpectError<InputError>([&] { Read("[\"cup\"]\n"); }, {"labels.txt: is JSON", "one a line"});
+  ExpectError<InputError>([&] { Read("<?xml version=\"1.0\"?>\n<a/>\n"); }, {"is XML"});
 }
 
 TEST_F(LabelFileTest, NamesOfYolosYaml) {
@@ -309,15 +370,33 @@ TEST_F(LabelFileTest, SearchEndsAtTheRoot) {
   EXPECT_THAT(FindLabelFiles("/proc/self", "/"), testing::IsEmpty());
 }
 
-TEST_F(LabelFileTest, ListsMayDifferInSpellingAndLength) {
-  const ClassNames names{"classes.txt", {"coffee table", "cup"}};
-  CheckSameNames(names, {"data.yaml", {"Coffee_Table", "cup", "book"}});
-  CheckSameNames(names, {"data.yaml", {}});
+TEST_F(LabelFileTest, TheNearestListCounts) {
+  const ClassNames near{"a/b/classes.txt", {"coffee table", "cup"}};
+  const ClassNames beside{"a/b/data.yaml", {"coffee table", "book"}};
+  const ClassNames far{"a/data.yaml", {"cup", "coffee table"}};
+  const ClassNames broken{"a/b/obj.names", {}, "obj.names: broken"};
+  std::vector<Finding> findings;
+  const auto nearest = [&](const std::vector<ClassNames>& lists) {
+    findings.clear();
+    return NearestNames(lists, &findings);
+  };
+  EXPECT_FALSE(nearest({}));
+  EXPECT_FALSE(nearest({{"data.yaml", {}}}));
+  EXPECT_EQ(nearest({{"a/data.yaml", {"Coffee_Table", "cup", "book"}}, near})->place, near.place);
+  EXPECT_THAT(findings, IsEmpty());
+  EXPECT_EQ(nearest({far, broken, near})->names, near.names);
+  ASSERT_EQ(findings.size(), 2u);
+  EXPECT_EQ(findings[0].found, "obj.names: broken");
+  EXPECT_EQ(findings[1].found,
+            "a/b/classes.txt: class 0 is 'coffee table', but 'cup' in a/data.yaml");
+  EXPECT_EQ(nearest({near, {"data.yaml", {}, "broken"}})->names, near.names);
+  EXPECT_EQ(findings.size(), 1u);
   ExpectError<InputError>(
       [&] {
-        CheckSameNames(names, {"data.yaml", {"coffee table", "book"}});
+        nearest({near, beside});
       },
-      {"classes.txt", "class 1 is 'cup'", "'book' in data.yaml"});
+      {"class 1 is 'cup'", "'book' in a/b/data.yaml", "class_names"});
+  ExpectError<InputError>([&] { nearest({far, broken}); }, {"obj.names: broken"});
 }
 
 TEST_F(LabelFileTest, LatinLettersOfOneByteAreRefused) {

@@ -34,7 +34,9 @@ TEST(FileKind, IsToldByTheFirstBytes) {
       {kLfsPointer, "a Git LFS pointer, not the file itself (git lfs pull fetches it)"},
       {"\xff\xfe{"s, "UTF-16 text"},
       {"\xEF\xBB\xBF [1]", "JSON"},
-      {"{}", "JSON"}};
+      {"{}", "JSON"},
+      {"<?xml version=\"1.0\"?>", "XML"},
+      {"<annotation verified=\"yes\">", "XML"}};
   for (const auto& [bytes, kind] : kinds) EXPECT_EQ(FileKind(bytes), kind);
   for (const char* page : {"<!DOCTYPE html>\n<html>", "\n  <HTML lang=en>"}) {
     EXPECT_THAT(FileKind(page), testing::StartsWith("an HTML page"));
@@ -43,11 +45,12 @@ TEST(FileKind, IsToldByTheFirstBytes) {
 
 TEST(FileKind, IsUnknownForOtherTexts) {
   for (const char* text : {"", " \n", "BM_0001.png\nBM_0002.png\n", "0,1,2\n", "version 2\n",
-                           "%YAML:1.0\n---", "<?xml version=\"1.0\"?>", "# comment"}) {
+                           "%YAML:1.0\n---", "<background>", "# comment"}) {
     EXPECT_EQ(FileKind(text), "") << text;
     EXPECT_NO_THROW(CheckIsText(text, "file", "text"));
   }
   EXPECT_NO_THROW(CheckIsText("{a: 1}", "file", "text"));
+  EXPECT_NO_THROW(CheckIsText("<?xml version=\"1.0\"?>", "file", "text"));
 }
 
 class KindOfFileTest : public FolderTest {};
