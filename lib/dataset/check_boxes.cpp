@@ -187,7 +187,7 @@ std::vector<Finding> CheckBoxes(const ImportView& view) {
   if (!is_folder) return {};  // other formats define their boxes
   std::vector<Box> boxes;
   for (const DetectionRow& row : view.content.rows) {
-    boxes.push_back(row.box_in_image_file.value_or(row.box));
+    if (!row.is_enlarged) boxes.push_back(row.box_in_image_file.value_or(row.box));
   }
   const Camera& camera = view.sequence.camera;
   std::vector<Finding> findings = CheckImageSizes(view.content.rows, camera);

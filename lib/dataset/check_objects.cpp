@@ -23,6 +23,7 @@ constexpr double kCutPx = 2.0;  // boxes this near to the border count as cut by
 // A box and the true landmark with its id, in its camera's frame.
 struct BoxAndTruth {
   Box box;
+  bool is_enlarged;
   Camera camera;
   Landmark landmark_in_camera;
 };
@@ -48,7 +49,8 @@ std::vector<BoxAndTruth> BoxesAndTruth(const ImportView& view, int shift) {
     if (DistanceToBorder(in_image, camera.width, camera.height) <= kCutPx) continue;
     const Rigid3d world_from_camera =
         frame->second->true_world_from_camera.value_or(frame->second->world_from_camera);
-    pairs.push_back({row.box, camera, Transform(world_from_camera.Inverse(), *landmark->second)});
+    pairs.push_back({row.box, row.is_enlarged, camera,
+                     Transform(world_from_camera.Inverse(), *landmark->second)});
   }
   return pairs;
 }
@@ -100,8 +102,8 @@ std::vector<Finding> CheckTrueSizes(const ImportView& view) {
   constexpr double kLargestFactor = 1.6;
   constexpr double kFactorOfUnit = 5.0;
   std::vector<double> log_factors;
-  for (const auto& [box, camera, landmark] : BoxesAndTruth(view, 0)) {
-    if (box.Height() <= 0.0) continue;
+  for (const auto& [box, is_enlarged, camera, landmark] : BoxesAndTruth(view, 0)) {
+    if (box.Height() <= 0.0 || is_enlarged) continue;
     log_factors.push_back(std::log(HeightPx(camera, landmark) / box.Height()));
   }
   if (log_factors.size() < kFewestBoxes) return {};

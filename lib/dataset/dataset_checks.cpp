@@ -146,10 +146,15 @@ std::vector<Finding> CheckTimestamps(const std::vector<ListedImage>& images,
   std::vector<double> times;
   for (const ListedImage& image : images) times.push_back(image.timestamp);
   std::vector<Finding> findings = CheckEqual(times);
-  const auto matched = std::ranges::count_if(times, [&](double time) {
-    return NearestPose(trajectory, time, max_difference_s).has_value();
-  });
-  if (2 * static_cast<size_t>(matched) >= times.size()) return findings;
+  size_t matched = 0;
+  std::set<double> used;  // times of the poses
+  for (const double time : times) {
+    const auto pose = NearestPose(trajectory, time, max_difference_s);
+    if (!pose) continue;
+    ++matched;
+    used.insert(pose->timestamp);
+  }
+  if (2 * matched >= times.size()) return findings;
   const auto [first, last] = std::ranges::minmax(times);
   const TimeRange of_images{first, last};
   const TimeRange of_poses{trajectory.front().timestamp, trajectory.back().timestamp};
@@ -160,9 +165,16 @@ std::vector<Finding> CheckTimestamps(const std::vector<ListedImage>& images,
     found += fmt::format(" (spans {:.3g} and {:.3g}, ratio {:.3g})", of_images.Span(),
                          of_poses.Span(), of_poses.Span() / of_images.Span());
   }
-  const Advice advice = AdviceOnTimes(of_images, of_poses, trajectory_file);
-  findings.push_back({"timestamps", matched == 0 ? Severity::kError : Severity::kWarning, found,
-                      "images and poses of one clock, in seconds", advice.cause, advice.remedy});
+  const bool are_of_part = used.size() == trajectory.size();
+  const Advice advice =
+      are_of_part
+          ? Advice{"poses of a part of the images, as of keyframes, or of a model of some of them",
+                   "give poses of all images, as those without one are not used"}
+          : AdviceOnTimes(of_images, of_poses, trajectory_file);
+  findings.push_back(
+      {"timestamps", matched == 0 ? Severity::kError : Severity::kWarning, found,
+       are_of_part ? "a pose for each image" : "images and poses of one clock, in seconds",
+       advice.cause, advice.remedy});
   return findings;
 }
 
@@ -171,7 +183,7 @@ namespace {
 // Gates that reject detections because of the data; the others apply what a setting asks for.
 const std::map<std::string, Advice> kGatesOfData = {
     {RejectReasonName(RejectReason::kFrameWithoutPose),
-     {"a trajectory of other images, or of another clock",
+     {"a trajectory of a part of the images, or of another clock",
       "compare the time stamps of images and trajectory; max_time_difference_s"}},
     {RejectReasonName(RejectReason::kBeyondLensModel),
      {"distortion of another camera, or with coefficients in another order",

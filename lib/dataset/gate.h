@@ -34,6 +34,7 @@ struct DetectionRow {
   std::optional<Box> box_in_image_file = std::nullopt;
   // Size of its image, where the file of boxes states it.
   std::optional<ImageSize> image_size = std::nullopt;
+  bool is_enlarged = false;  // the upright box around an oblique one
   // Further values from the dataset's labels, if any; geometry is in the camera frame.
   double truncation = 0.0;  // amount outside the image, in the dataset's own measure
   int occlusion = 0;        // occlusion level, in the dataset's own measure

@@ -317,7 +317,7 @@ void ReadEntry(const JsonEntry& entry, const std::optional<CocoNames>& names, Co
   if (const double angle_deg = attributes ? NumberOf(*attributes, "rotation").value_or(0.0) : 0.0;
       angle_deg != 0.0) {
     const Box around = BoxAround(box.box, angle_deg);
-    if (IsEnlarged(around, box.box, angle_deg)) ++read->enlarged;
+    box.is_enlarged = IsEnlarged(around, box.box, angle_deg);
     box.box = around;
   }
   read->boxes.push_back(std::move(box));

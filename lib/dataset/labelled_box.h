@@ -28,6 +28,8 @@ struct LabelledBox {
   std::optional<int> object_id = std::nullopt;
   // Size of its image, where the file states it.
   std::optional<ImageSize> image_size = std::nullopt;
+  // True for the upright box around an oblique one, which is larger than the object's.
+  bool is_enlarged = false;
 };
 
 // Conversion of the pixel origin: detectors and annotation tools measure from the outer corner of
@@ -51,11 +53,10 @@ std::vector<LabelledBox> ReadDetectionsCsv(const std::filesystem::path& path);
 // must be rows of rgb.txt, the labels without comma.
 std::string LabelledBoxesText(const std::vector<LabelledBox>& boxes);
 
-// Boxes of COCO's results or of a data set, and what was done to them on reading.
+// Boxes of COCO's results or of a data set.
 struct CocoBoxes {
   std::vector<LabelledBox> boxes;
   RejectionCounts left_out;     // boxes that are not of one object in the image
-  int enlarged = 0;             // oblique boxes, replaced by the larger upright ones around them
   bool has_categories = false;  // false: the labels are COCO's
 };
 

@@ -98,7 +98,10 @@ std::vector<Finding> CheckReconstruction(const ReconstructionSummary& summary,
   constexpr double kAngleDeg = 2.0;
   std::vector<Finding> findings;
   if (summary.registered < kRegistered * summary.images) {
-    std::string causes = "images that are blurred, show little texture, or overlap too little";
+    const bool is_given = summary.colmap.empty();
+    std::string causes =
+        is_given ? "a model of a part of the images"
+                 : "images that are blurred, show little texture, or overlap too little";
     // Images without a pose may be renamed if the model has at least as many that are not listed.
     if (unlisted.size() >= summary.images_without_pose.size()) {
       causes += "; or other names than in the model, which has images that are not listed: " +
@@ -109,7 +112,8 @@ std::vector<Finding> CheckReconstruction(const ReconstructionSummary& summary,
          fmt::format("{} of {} images are registered; the others have no pose: {}",
                      summary.registered, summary.images, NamesInWords(summary.images_without_pose)),
          "80 % of the images at least", causes,
-         "take more images between those that are far apart, or give the poses"});
+         is_given ? "give a model of all images, or only the images that it is of"
+                  : "take more images between those that are far apart, or give the poses"});
   }
   if (summary.components.size() > 1) {
     const ReconstructionSummary::Component& second = summary.components[1];

@@ -189,6 +189,30 @@ TEST_F(DatasetChecksTest, HalfAxesOfAnotherUnit) {
   }
 }
 
+// The upright boxes around oblique ones reach out of the image, and are not those of true objects.
+TEST_F(DatasetChecksTest, ObliqueBoxesAreNoOtherMistake) {
+  dataset.label = [](size_t) { return "chair"; };
+  dataset.objects = dataset.TrueObjects(/*first_id=*/1, /*unit_m=*/1.0);
+  const auto write = [&](double wider, double rotation) {
+    WriteCoco(
+        [wider](const Box& b) {
+          return std::array{b.Centre().x() + 0.5 - 0.5 * wider * b.Width(), b.y_min + 0.5,
+                            wider * b.Width(), b.Height()};
+        },
+        [rotation](size_t ball) {
+          return nlohmann::json{{"track_id", ball + 1}, {"attributes", {{"rotation", rotation}}}};
+        });
+  };
+  write(2.5, 45.0);
+  ExpectWarning({"oblique_boxes", "120 of 120"});
+  write(2.5, 90.0);
+  ExpectWarning({"object_half_axes"});
+  write(10.0, 45.0);
+  ExpectAmongWarnings({"oblique_boxes"});
+  write(10.0, 90.0);
+  ExpectRefused<NothingUsableError>({"reach out of the image"});
+}
+
 // The rotation by 40 degrees about z with qw first.
 TEST_F(DatasetChecksTest, TrueQuaternionsWithScalarFirst) {
   dataset.true_quaternion = "0.94, 0, 0, 0.342";

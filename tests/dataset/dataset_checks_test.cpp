@@ -153,6 +153,19 @@ TEST_F(DatasetChecksTest, AClockThatJumps) {
   ExpectAmongWarnings({"timestamps: 8 of 24 images", "max_time_difference_s"});
 }
 
+TEST(CheckTimestampsTest, PosesOfAPartOfTheImages) {
+  std::vector<ListedImage> images;
+  for (int i = 0; i < 10; ++i) images.push_back({1.0 * i, "a.png"});
+  std::vector<TimedPose> poses = {{3.0, {}}, {4.0, {}}, {5.0, {}}};
+  const Finding of_part = Only(CheckTimestamps(images, poses, "odometry.txt", 0.02));
+  EXPECT_THAT(of_part.found, testing::HasSubstr("3 of 10 images have a pose"));
+  EXPECT_THAT(of_part.cause, testing::HasSubstr("a part of the images"));
+  EXPECT_THAT(of_part.remedy, testing::HasSubstr("poses of all images"));
+  poses.push_back({5.5, {}});
+  const Finding of_others = Only(CheckTimestamps(images, poses, "odometry.txt", 0.02));
+  EXPECT_THAT(of_others.cause, testing::HasSubstr("poses of other images"));
+}
+
 TEST_F(DatasetChecksTest, EqualTimestamps) {
   dataset.image_time = [](double t) { return fmt::format("{:.0f}", std::floor(t)); };
   options_.max_time_difference_s = 0.6;

@@ -179,7 +179,7 @@ TEST_F(CocoResultsTest, TurnedBoxesBecomeUpright) {
     ExpectBox(Only(turned(half_turn_deg).boxes).box, {9.5, 9.5, 49.5, 29.5});
     const CocoBoxes quarter = turned(half_turn_deg + 90.0);
     ExpectBox(Only(quarter.boxes).box, {19.5, -0.5, 39.5, 39.5});
-    EXPECT_EQ(quarter.enlarged, 0);
+    EXPECT_FALSE(quarter.boxes[0].is_enlarged);
   }
   for (const double angle_deg : {30.0, 150.0, 330.0}) {
     const CocoBoxes oblique = turned(angle_deg);
@@ -187,9 +187,9 @@ TEST_F(CocoResultsTest, TurnedBoxesBecomeUpright) {
     const double half_height = 10.0 + 10.0 * std::sqrt(0.75);
     ExpectBox(Only(oblique.boxes).box,
               {29.5 - half_width, 19.5 - half_height, 29.5 + half_width, 19.5 + half_height});
-    EXPECT_EQ(oblique.enlarged, 1);
+    EXPECT_TRUE(oblique.boxes[0].is_enlarged);
   }
-  EXPECT_EQ(turned(0.2).enlarged, 0);
+  EXPECT_FALSE(turned(0.2).boxes.at(0).is_enlarged);
 }
 
 TEST_F(CocoResultsTest, NumbersMayBeTextOrNull) {
@@ -216,7 +216,7 @@ TEST_F(CocoResultsTest, WordsAsAttributesAreNoAngles) {
                           "attributes": {{"rotation": {}}}}}])",
                                     value)));
     ExpectBox(Only(read.boxes).box, {9.5, 9.5, 49.5, 29.5});
-    EXPECT_EQ(read.enlarged, 0);
+    EXPECT_FALSE(read.boxes[0].is_enlarged);
   }
 }
 

@@ -199,8 +199,8 @@ TEST_F(RunReconstructTest, AGivenModelOfOtherNamesIsRefusedOrNamed) {
   // Fewer images that are not listed than such without a pose do not explain them.
   Write("data/rgb.txt", "0 rgb/0.png\n0.5 rgb/IMG_1.png\n1 rgb/IMG_2.png\n2 rgb/IMG_3.png\n");
   Run("again", "out/colmap/sparse");
-  EXPECT_THAT(printed_.errors,
-              testing::AllOf(HasSubstr("overlap too little"), Not(HasSubstr("other names"))));
+  EXPECT_THAT(printed_.errors, testing::AllOf(HasSubstr("a model of a part of the images"),
+                                              Not(HasSubstr("other names"))));
 }
 
 TEST_F(RunReconstructTest, AFinishedJobIsNotRunAgain) {
@@ -291,6 +291,14 @@ TEST_F(RunReconstructTest, FindingsAreReported) {
   EXPECT_THAT(ReadReconstruction(Output("reconstruction.json")).images_without_pose,
               testing::ElementsAre("rgb/more.png"));
   EXPECT_EQ(FindingsFromJson(ParseJsonFile(Output("reconstruction.json"))).size(), 3u);
+}
+
+TEST_F(RunReconstructTest, AFinishedModelOfAPartOfTheImages) {
+  WriteModel("0", 2);
+  Run("out", "bin/models");
+  EXPECT_THAT(printed_.errors, HasSubstr("2 of 3 images are registered"));
+  EXPECT_THAT(printed_.errors, HasSubstr("likely cause: a model of a part of the images; remedy: "
+                                         "give a model of all images"));
 }
 
 TEST_F(RunReconstructTest, FailuresOfColmapAreNamed) {

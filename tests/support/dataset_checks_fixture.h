@@ -205,8 +205,12 @@ class DatasetChecksTest : public ImportedFolderTest {
     }
   }
 
-  // Boxes in a file of COCO's results.
-  void WriteCoco(const std::function<std::array<double, 4>(const Box&)>& numbers) {
+  // Boxes in a file of COCO's results, each with these further fields.
+  void WriteCoco(
+      const std::function<std::array<double, 4>(const Box&)>& numbers,
+      const std::function<nlohmann::json(size_t)>& more_of_ball = [](size_t) {
+        return nlohmann::json::object();
+      }) {
     nlohmann::json results = nlohmann::json::array();
     for (int frame = 0; frame < PlausibleDataset::kFrames; ++frame) {
       for (size_t ball = 0; ball < PlausibleDataset::Labels().size(); ++ball) {
@@ -214,6 +218,7 @@ class DatasetChecksTest : public ImportedFolderTest {
                            {"category_id", 62},
                            {"score", 0.9},
                            {"bbox", numbers(dataset.BoxOf(ball, frame))}});
+        results.back().update(more_of_ball(ball));
       }
     }
     Write("boxes.json", results.dump());
