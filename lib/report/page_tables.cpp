@@ -335,20 +335,31 @@ std::string UnfinishedTable(const json& unfinished) {
   return HtmlTable(table);
 }
 
-// Findings, unfinished variants, and notes on what is not on the page.
+// Findings, unfinished variants and files that cannot be shown.
 std::string Remarks(const json& page) {
-  std::string remarks = FindingsHtml(page.at("findings")) + UnfinishedTable(page.at("unfinished"));
-  for (const char* key : {"problems", "notes"}) {
-    for (const json& text : page.at(key)) remarks += Faint(text);
-  }
-  return remarks;
+  std::string remarks = UnfinishedTable(page.at("unfinished"));
+  for (const json& text : page.at("problems")) remarks += Faint(text);
+  return remarks + FindingsHtml(page.at("findings"));
 }
 
-// Where findings are below a map that may need all of the screen.
+// What is not on the page.
+std::string Notes(const json& page) {
+  std::string notes;
+  for (const json& text : page.at("notes")) notes += Faint(text);
+  return notes;
+}
+
+// Where findings are below a map that may need all of the screen, and may be of other variants.
 std::string LinkToFindings(const json& page) {
   const size_t count = page.at("findings").size();
   if (count == 0 || page.at("map_section").get_ref<const std::string&>().empty()) return "";
-  return fmt::format("<p><a href=\"#remarks\">{}</a> below</p>\n", Counted(count, "finding"));
+  std::vector<std::string> places;
+  for (const json& finding : page.at("findings")) {
+    const auto place = finding.at("where").get<std::string>();
+    if (std::ranges::find(places, place) == places.end()) places.push_back(place);
+  }
+  return fmt::format("<p><a href=\"#remarks\">{}</a> below, in {}</p>\n", Counted(count, "finding"),
+                     HtmlText(NamesInWords(places)));
 }
 
 // The variant of most interest.
@@ -393,7 +404,7 @@ std::string DatasetTables(const json& page) {
          "<noscript><p class=\"faint\">The map in three dimensions, frames, charts and figures "
          "need JavaScript; all else is here.</p></noscript>\n" +
          NumbersSection(page) + QualitySection(page) + ObjectsSection(page) +
-         AblationSection(page) + StagesSection(page);
+         AblationSection(page) + StagesSection(page) + Notes(page);
 }
 
 std::string OverviewTables(const json& overview) {
@@ -412,7 +423,7 @@ std::string OverviewTables(const json& overview) {
       content += MetricsTable(dataset.at("variants"), dataset.at("has_true_objects"));
       if (!quality.empty()) content += "<h3>Maps against all that is true</h3>\n" + quality;
     }
-    sections += Section(url, dataset.at("dataset"), content);
+    sections += Section(url, dataset.at("dataset"), content + Notes(dataset));
   }
   return "<h1>Results</h1>\n" + sections;
 }

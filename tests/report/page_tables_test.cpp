@@ -86,6 +86,23 @@ TEST(DatasetTables, CountTheDetectionsOfTheVariantThatIsShownFirst) {
   EXPECT_EQ(OverviewData({page})["datasets"][0]["counts"], CountsOfDataset(page));
 }
 
+// Findings may be of other variants than the map above them; notes are no findings.
+TEST(DatasetTables, FindingsHaveTheirPlaceAndNotesAreBelowAll) {
+  json page = Page();
+  page["map_section"] = "<h2>Map of OursS</h2>";
+  page["findings"] = {{{"severity", "warning"},
+                       {"check", "degenerate"},
+                       {"found", "thin"},
+                       {"expected", "thick"},
+                       {"cause", "views"},
+                       {"remedy", "more"},
+                       {"where", "map.json of Quadric"}}};
+  page["notes"] = {"For lack of room images are small."};
+  const std::string html = DatasetTables(page);
+  EXPECT_THAT(html, HasSubstr("1 finding</a> below, in map.json of Quadric<"));
+  EXPECT_GT(html.find("For lack of room"), html.rfind("</section>"));
+}
+
 TEST(DatasetTables, HaveTheObjectsOfEachVariantWorstFirst) {
   const std::string html = DatasetTables(Page());
   EXPECT_THAT(html, HasSubstr("<details open><summary>OursS</summary>"));
