@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <opencv2/imgproc.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,38 +37,56 @@ std::vector<PoseRun> FindRuns(const std::vector<ListedFrame>& frames) {
   return runs;
 }
 
-// The image of a frame at the size at which motion is measured; none without a readable image.
+// The image with the same mean and contrast everywhere, as light that changes would shift features.
+cv::Mat WithEvenLight(const cv::Mat& image) {
+  constexpr double kNoise = 2.0;  // grey values, which do not become contrast
+  const cv::Size window(31, 31);
+  cv::Mat grey, mean, deviation, even;
+  image.convertTo(grey, CV_32F);
+  cv::blur(grey, mean, window);
+  grey -= mean;
+  cv::sqrBoxFilter(grey, deviation, -1, window);
+  cv::sqrt(deviation, deviation);
+  grey /= deviation + kNoise;
+  grey.convertTo(even, CV_8U, 50.0, 128.0);
+  return even;
+}
+
+// The image of a frame, in even light, at the size at which motion is measured; none without a
+// readable image.
 std::optional<cv::Mat> SmallImage(const ImportView& view, const Frame& frame) {
   if (frame.image.empty()) return std::nullopt;
   try {
     const auto path = ImagePath(view.folder, frame.image, view.folder.string());
-    return ViewOf(ReadImage(path, cv::IMREAD_GRAYSCALE, view.options.image_orientation)).small;
+    const cv::Mat grey = ReadImage(path, cv::IMREAD_GRAYSCALE, view.options.image_orientation);
+    return WithEvenLight(ViewOf(grey).small);
   } catch (const InputError&) {
     return std::nullopt;  // which stages that need images report
   }
 }
 
-// Whether the images of a run differ by more than those of a camera at rest; none if there are no
-// images, or nothing in them to follow.
+// Whether features of the first image of a run are elsewhere in the last one, or in one at half the
+// distance, a quarter of it, ...: far motion loses them. So do things that pass, and darkness:
+// none if they are lost in all.
 std::optional<bool> DoImagesMove(const ImportView& view, const PoseRun& run) {
   const auto& frames = view.content.frames;
   const auto first = SmallImage(view, frames[run.first].frame);
   if (!first) return std::nullopt;
   const MotionTracker tracker(*first);
-  if (!tracker.MedianDisplacement(*first)) return std::nullopt;
-  bool is_known = false;
-  for (const size_t i : {run.first + (run.last - run.first + 1) / 2, run.last}) {
-    const auto image = SmallImage(view, frames[i].frame);
-    if (!image || image->size() != first->size()) continue;
-    is_known = true;
-    const auto displacement = tracker.MedianDisplacement(*image);
-    if (!displacement || *displacement >= FrameOptions().min_motion) return true;
+  std::optional<bool> do_move;
+  for (size_t distance = run.last - run.first; distance > 0; distance /= 2) {
+    const auto image = SmallImage(view, frames[run.first + distance].frame);
+    const auto displacement = image ? tracker.MedianDisplacement(*image) : std::nullopt;
+    if (!displacement) continue;
+    if (*displacement >= FrameOptions().min_motion) return true;
+    do_move = false;
   }
-  return is_known ? std::optional(false) : std::nullopt;
+  return do_move;
 }
 
-// Whether most objects move in their boxes by more than a fifth of half the diagonals.
-bool DoBoxesMove(const std::vector<TrackedObject>& objects, const PoseRun& run) {
+// Whether most objects that are seen over half of a run or more move in their boxes by more than a
+// fifth of half the diagonals; none for few objects.
+std::optional<bool> DoBoxesMove(const std::vector<TrackedObject>& objects, const PoseRun& run) {
   constexpr size_t kFewestObjects = 3;
   constexpr double kLargestShare = 0.2;
   std::vector<double> shares;
@@ -76,12 +95,14 @@ bool DoBoxesMove(const std::vector<TrackedObject>& objects, const PoseRun& run) 
     for (const TrackedRay& ray : object.rays) {
       if (ray.frame >= run.first && ray.frame <= run.last) rays.push_back(ray);
     }
-    if (rays.size() < 2) continue;
+    if (rays.empty()) continue;
     const auto [first, last] = std::ranges::minmax(rays, {}, &TrackedRay::frame);
+    if (2 * (last.frame - first.frame) < run.last - run.first) continue;
     shares.push_back(AngleBetweenDeg(first.ray_in_camera, last.ray_in_camera) /
                      first.half_diagonal_deg);
   }
-  return shares.size() >= kFewestObjects && *MedianOf(shares) > kLargestShare;
+  if (shares.size() < kFewestObjects) return std::nullopt;
+  return *MedianOf(shares) > kLargestShare;
 }
 
 }  // namespace
@@ -101,8 +122,11 @@ std::vector<Finding> CheckRepeatedPoses(const ImportView& view) {
                            [](const PoseRun& run) { return run.last - run.first; });
   runs.resize(std::min(all, kMostRuns));
   const std::vector<TrackedObject> objects = TrackedObjects(view);
+  // Things may move before a camera at rest: what says that it rests decides.
   std::erase_if(runs, [&](const PoseRun& run) {
-    return !DoImagesMove(view, run).value_or(DoBoxesMove(objects, run));
+    const auto do_boxes_move = DoBoxesMove(objects, run);
+    return !do_boxes_move.value_or(true) ||
+           !DoImagesMove(view, run).value_or(do_boxes_move.has_value());
   });
   if (runs.empty()) return {};
   std::ranges::sort(runs, {}, &PoseRun::first);

@@ -101,16 +101,68 @@ TEST_F(DatasetChecksTest, PosesThatATrackerRepeats) {
   const std::vector<std::string> words = {"repeated_poses: 5 frames with exactly the pose",
                                           "frames 10 to 15", "lost"};
   ExpectAmongWarnings(words);
-  const auto write_images = [&](int shift_px) {
-    for (int frame = 0; frame < PlausibleDataset::kFrames; ++frame) {
-      Write(fmt::format("rgb/{:06}.png", frame),
-            EncodedImage(".png", DrawnView(shift_px * frame, {640, 480})));
-    }
-  };
-  write_images(5);
+  WriteViews([](int frame) { return DrawnView(5 * frame, {640, 480}); });
   ExpectAmongWarnings(words);
-  write_images(0);
-  EXPECT_THAT(Warnings(), Not(Contains(HasSubstr("repeated_poses")))) << "the camera stands still";
+  // From one image to the next but one, features are lost.
+  WriteViews([](int frame) { return DrawnView(40 * frame, {640, 480}); });
+  ExpectAmongWarnings(words);
+  dataset.has_object_ids = false;
+  dataset.label = [](size_t) { return "ball"; };
+  ExpectAmongWarnings(words);
+}
+
+// Boxes of the arc, or of things that move before the camera, which images alone show to rest.
+TEST_F(DatasetChecksTest, ImagesThatChangeBeforeACameraAtRest) {
+  dataset.pose_of_frame = [](int frame) { return frame < 10 || frame > 15 ? frame : 10; };
+  const cv::Mat view = DrawnView(0, {640, 480});
+  cv::RNG random(3);
+  const auto noisy = [&](cv::Mat image, double sigma) {
+    cv::Mat noise(image.size(), CV_16SC3), sum;
+    random.fill(noise, cv::RNG::NORMAL, 0.0, sigma);
+    cv::add(image, noise, sum, cv::noArray(), CV_8U);
+    return sum;
+  };
+  const auto expect_nothing = [&](const char* what, const std::function<cv::Mat(int)>& image) {
+    SCOPED_TRACE(what);
+    WriteViews(image);
+    EXPECT_THAT(Warnings(), Not(Contains(HasSubstr("repeated_poses"))));
+  };
+  const auto expect_no_motion = [&] {
+    expect_nothing("nothing changes", [&](int) { return view; });
+    expect_nothing("noise", [&](int) { return noisy(view, 12.0); });
+    expect_nothing("light that is dimmed", [&](int frame) {
+      return noisy(view * std::pow(0.75, std::max(0, frame - 10)), 2.0);
+    });
+    expect_nothing("soft images in light that is dimmed", [&](int frame) {
+      return noisy(Blurred(view) * (frame > 10 ? 0.88 : 1.0), 2.0);
+    });
+    expect_nothing("a lamp that comes on at one side", [&](int frame) {
+      cv::Mat lit = view.clone();
+      for (int x = 0; frame > 10 && x < view.cols; ++x) {
+        lit.col(x) = view.col(x) * (2.5 - 2.0 * x / view.cols);
+      }
+      return noisy(lit, 4.0);
+    });
+    expect_nothing("a picture that passes", [&](int frame) {
+      cv::Mat passed = view.clone();
+      const int x = 40 * (frame - 10);
+      if (x < 0 || x > 400) return passed;
+      DrawnView(900, {640, 480})(cv::Rect(0, 0, 240, 480)).copyTo(passed(cv::Rect(x, 0, 240, 480)));
+      return passed;
+    });
+  };
+  expect_no_motion();
+  dataset.has_object_ids = false;
+  dataset.label = [](size_t) { return "ball"; };
+  expect_no_motion();
+  expect_nothing("darkness", [&](int frame) { return noisy(frame > 10 ? 0.0 * view : view, 2.0); });
+}
+
+TEST_F(DatasetChecksTest, BoxesThatRestWhereImagesDoNotTell) {
+  dataset.pose_of_frame = [](int frame) { return frame < 10 || frame > 15 ? frame : 10; };
+  dataset.view_of_boxes = dataset.pose_of_frame;
+  WriteViews([](int frame) { return DrawnView(5 * frame, {640, 480}); });
+  EXPECT_THAT(Warnings(), Not(Contains(HasSubstr("repeated_poses"))));
 }
 
 // The lag that repeated poses have is not reported as another mistake.

@@ -48,6 +48,7 @@ struct PlausibleDataset {
   Camera written_camera = camera;
   std::function<Rigid3d(const Rigid3d&)> odometry = [](const Rigid3d& pose) { return pose; };
   std::function<int(int)> pose_of_frame = [](int frame) { return frame; };
+  std::function<int(int)> view_of_boxes = [](int frame) { return frame; };
   std::function<std::array<double, 4>(const Box&)> box = [](const Box& b) {
     return std::array<double, 4>{b.x_min, b.y_min, b.x_max, b.y_max};
   };
@@ -142,7 +143,7 @@ struct PlausibleDataset {
     // One image fewer than there are, so that numbers from 1 stay within the list.
     for (int frame = std::max(0, -first_row); frame + 1 < kFrames; ++frame) {
       for (size_t ball = 0; ball < Labels().size(); ++ball) {
-        const auto [a, b, c, d] = box(BoxOf(ball, frame));
+        const auto [a, b, c, d] = box(BoxOf(ball, view_of_boxes(frame)));
         const int object_id = first_object_id + static_cast<int>(ball);
         const std::string id = has_object_ids ? fmt::format("{},", object_id) : "";
         text += fmt::format("{},{}{},{},{},{},{},{}\n", frame + first_row, id, label(ball), score,
@@ -202,6 +203,12 @@ class DatasetChecksTest : public ImportedFolderTest {
                                           /*is_after_pixels=*/false);
     for (int frame = 0; frame < PlausibleDataset::kFrames; ++frame) {
       Write(fmt::format("rgb/{:06}.png", frame), bytes);
+    }
+  }
+
+  void WriteViews(const std::function<cv::Mat(int)>& view_of_frame) {
+    for (int frame = 0; frame < PlausibleDataset::kFrames; ++frame) {
+      Write(fmt::format("rgb/{:06}.png", frame), EncodedImage(".png", view_of_frame(frame)));
     }
   }
 
