@@ -34,7 +34,7 @@ double DisplacementPx(const LensCamera& one, const LensCamera& other);
 
 // The one camera of all images, of which there is one at least: the mean of the given ones. It is a
 // finding if they are not equal. Throws InputError, naming the place and `remedy`, if one of them
-// displaces image points by a pixel or more, which is the least standard deviation of a box edge.
+// displaces image points by a 640th of the image's longer side or more, and a pixel at least.
 LensCamera OneCamera(const std::vector<PlacedCamera>& cameras, const std::string& remedy,
                      std::vector<Finding>* findings);
 

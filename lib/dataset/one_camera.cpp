@@ -40,6 +40,12 @@ std::vector<Eigen::Vector2d> ImagePoints(const LensCamera& lens_camera,
   return DistortPixels(lens_camera.camera, lens_camera.distortion.value_or(Distortion()), pixels);
 }
 
+// The displacement of image points that boxes do not show: the least standard deviation of a box
+// edge, a pixel, in images of 640 pixels, and in larger images the same angle.
+double LimitPx(const Camera& camera) {
+  return std::max(1.0, std::max(camera.width, camera.height) / 640.0);
+}
+
 LensCamera MeanCamera(const std::vector<PlacedCamera>& cameras) {
   constexpr size_t kIntrinsics = 4, kCoefficients = 14;
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(kIntrinsics + kCoefficients);
@@ -75,7 +81,6 @@ double DisplacementPx(const LensCamera& one, const LensCamera& other) {
 
 LensCamera OneCamera(const std::vector<PlacedCamera>& cameras, const std::string& remedy,
                      std::vector<Finding>* findings) {
-  constexpr double kMostPx = 1.0;
   const PlacedCamera& first = cameras.front();
   const auto is_first = [&](const PlacedCamera& placed) { return placed.camera == first.camera; };
   if (std::ranges::all_of(cameras, is_first)) return first.camera;
@@ -92,12 +97,13 @@ LensCamera OneCamera(const std::vector<PlacedCamera>& cameras, const std::string
         "x {}; expected one for all images ({})",
         farthest->place, other.width, other.height, mean.camera.width, mean.camera.height, remedy));
   }
-  if (largest_px >= kMostPx) {
+  const double limit_px = LimitPx(mean.camera);
+  if (largest_px >= limit_px) {
     throw InputError(
         fmt::format("{}: is another camera than that of the other images: image "
                     "points are {:.1f} px (root mean square) from those of the mean camera "
-                    "(fx {:.2f}, not {:.2f}); expected one for all images, to {:g} px ({})",
-                    farthest->place, largest_px, other.fx, mean.camera.fx, kMostPx, remedy));
+                    "(fx {:.2f}, not {:.2f}); expected one for all images, to {:.2g} px ({})",
+                    farthest->place, largest_px, other.fx, mean.camera.fx, limit_px, remedy));
   }
   findings->push_back(
       {"camera_per_image", Severity::kWarning,

@@ -64,7 +64,7 @@ TEST_F(ColmapModelTest, CamerasThatAreNotReadAreNamed) {
 
 // Points on a grid over the image are 245 px from its middle (root mean square), so that cameras of
 // focal lengths 500 and 501 are each 0.24 px from their mean; lenses add 0.0005 r^3 / f^2.
-TEST_F(ColmapModelTest, CamerasLessThanAPixelApartAreOne) {
+TEST_F(ColmapModelTest, CamerasThatAreNearlyEqualAreOne) {
   EXPECT_EQ(Cameras("1 SIMPLE_RADIAL 640 480 500 320 240 0\n2 PINHOLE 640 480 500 500 320 240\n")
                 .camera.fx,
             500.0);
@@ -75,6 +75,22 @@ TEST_F(ColmapModelTest, CamerasLessThanAPixelApartAreOne) {
   EXPECT_NEAR(mean.distortion->k1, 0.0015, 1e-12);
   ASSERT_EQ(findings_.size(), 1u);
   EXPECT_NE(findings_[0].found.find("by 0.29 px"), std::string::npos) << findings_[0].found;
+}
+
+// Focal lengths 0.4 % apart are 0.5 px from their mean in images of 640 pixels, 3 px in those of
+// 4000.
+TEST_F(ColmapModelTest, TheSameAngleIsAllowedInImagesOfAnySize) {
+  Cameras("1 SIMPLE_PINHOLE 640 480 500 320 240\n2 SIMPLE_PINHOLE 640 480 502 320 240\n");
+  EXPECT_EQ(findings_.size(), 1u);
+  Cameras("1 SIMPLE_PINHOLE 4000 3000 3000 2000 1500\n2 SIMPLE_PINHOLE 4000 3000 3012 2000 1500\n");
+  EXPECT_EQ(findings_.size(), 1u);
+  ExpectError<InputError>(
+      [&] {
+        Cameras(
+            "1 SIMPLE_PINHOLE 4000 3000 3000 2000 1500\n"
+            "2 SIMPLE_PINHOLE 4000 3000 3060 2000 1500\n");
+      },
+      {"another camera", "15.2 px", "to 6.2 px"});
 }
 
 TEST_F(ColmapModelTest, CamerasOfNoImageDoNotCount) {
