@@ -45,8 +45,13 @@ bool IsVideo(std::string_view first_bytes) {
   return is_quicktime || is_avi || first_bytes.starts_with("\x1a\x45\xdf\xa3"sv);
 }
 
-// The stream with the largest frames, the first among equals; null if there is no video. Cover art
-// is none.
+// True unless the stream is of another type, or cover art.
+bool IsOfFrames(const AVStream& stream) {
+  return stream.codecpar->codec_type == AVMEDIA_TYPE_VIDEO &&
+         (stream.disposition & AV_DISPOSITION_ATTACHED_PIC) == 0;
+}
+
+// The stream with the largest frames, the first among equals; null if there is no video.
 AVStream* LargestVideo(const AVFormatContext& format) {
   AVStream* largest = nullptr;
   const auto area = [](const AVStream& stream) {
@@ -54,11 +59,20 @@ AVStream* LargestVideo(const AVFormatContext& format) {
   };
   for (unsigned i = 0; i < format.nb_streams; ++i) {
     AVStream* stream = format.streams[i];
-    const bool is_video = stream->codecpar->codec_type == AVMEDIA_TYPE_VIDEO &&
-                          (stream->disposition & AV_DISPOSITION_ATTACHED_PIC) == 0;
-    if (is_video && (largest == nullptr || area(*stream) > area(*largest))) largest = stream;
+    if (IsOfFrames(*stream) && (largest == nullptr || area(*stream) > area(*largest)))
+      largest = stream;
   }
   return largest;
+}
+
+// The duration that a file announces for a stream, or, as MKV, for all; in seconds, 0 if it does
+// not.
+double AnnouncedDuration(const AVFormatContext& format, const AVStream& stream) {
+  const bool is_guess = format.duration_estimation_method == AVFMT_DURATION_FROM_BITRATE;
+  const bool is_own = stream.duration != AV_NOPTS_VALUE;
+  if (is_guess || (!is_own && format.duration == AV_NOPTS_VALUE)) return 0.0;
+  return is_own ? static_cast<double>(stream.duration) * av_q2d(stream.time_base)
+                : static_cast<double>(format.duration) / AV_TIME_BASE;
 }
 
 // The matrix that says how the frames of a stream are shown; null if there is none.
@@ -164,10 +178,6 @@ VideoReader::VideoReader(const std::filesystem::path& path)
   }
   const double rate = av_q2d(av_guess_frame_rate(format, stream, nullptr));
   frame_duration_s_ = std::isfinite(rate) && rate > 0.0 ? 1.0 / rate : 1.0 / 30.0;
-  const bool is_guess = format->duration_estimation_method == AVFMT_DURATION_FROM_BITRATE;
-  if (format->duration > 0 && !is_guess) {
-    announced_s_ = static_cast<double>(format->duration) / AV_TIME_BASE;
-  }
 }
 
 VideoReader::~VideoReader() = default;
@@ -183,6 +193,9 @@ bool VideoReader::ReadPacket() {
     if (stamp != AV_NOPTS_VALUE) {
       const auto end = static_cast<double>(stamp + packet.duration);
       end_s_ = std::max(end_s_, end * av_q2d(stream.time_base));
+    }
+    if (IsOfFrames(stream) || stream.codecpar->codec_type == AVMEDIA_TYPE_AUDIO) {
+      announced_s_ = std::max(announced_s_, AnnouncedDuration(format, stream));
     }
     const bool is_whole = (packet.flags & AV_PKT_FLAG_CORRUPT) == 0;
     ends_within_packet_ = ends_within_packet_ || !is_whole;
@@ -272,7 +285,8 @@ cv::Mat VideoReader::Image(int mode) {
 }
 
 int VideoReader::announced_frames() const {
-  return static_cast<int>(std::lround(std::min(announced_s_ / frame_duration_s_, 1e9)));
+  const double announced_s = AnnouncedDuration(*decoder_->format, *decoder_->stream);
+  return static_cast<int>(std::lround(std::min(announced_s / frame_duration_s_, 1e9)));
 }
 
 bool VideoReader::is_cut_short() const {

@@ -34,8 +34,8 @@ class VideoReader {
 
   // After the last frame: true if the decoder met with an error.
   bool has_errors() const { return has_errors_; }
-  // After the last frame: true if the file ends within a packet, or its streams end a tenth earlier
-  // than it announces.
+  // After the last frame: true if the file ends within a packet, or a tenth earlier than it
+  // announces for pictures or sound.
   bool is_cut_short() const;
   // The angle in the tag `rotate`, by which older programs turned videos, where it is the only one;
   // players ignore it. Otherwise empty.
@@ -49,7 +49,7 @@ class VideoReader {
   std::filesystem::path path_;
   std::unique_ptr<Decoder> decoder_;
   double frame_duration_s_;
-  double announced_s_ = 0.0;  // 0 if the file does not announce its duration
+  double announced_s_ = 0.0;  // duration of pictures and sound of which there are packets so far
   double end_s_ = 0.0;        // of the last packet so far
   std::int64_t first_stamp_ = 0;
   int frames_ = 0;  // decoded so far

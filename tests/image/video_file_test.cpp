@@ -226,6 +226,20 @@ TEST(VideoReaderTest, VideosThatAreCutShortAreNoticed) {
   }
 }
 
+// Chapters are a track of their own, which ends with the last of them.
+TEST(VideoReaderTest, PicturesAndSoundSayHowLongAVideoIs) {
+  const TemporaryFolder folder;
+  const auto path = folder / "video.mov";
+  WriteVideo(path, {{DrawnViews(3)}});
+  std::string bytes = FileBytes(path);
+  const size_t duration = bytes.find("mvhd") + 20;  // of the longest track
+  bytes.replace(duration, 4, NumberBytes(900'000, 4, ByteOrder::kBigEndian));
+  VideoReader video(WriteBytes(path, bytes));
+  EXPECT_EQ(video.announced_frames(), 3);
+  EXPECT_EQ(TimesOf(&video).size(), 3u);
+  EXPECT_FALSE(video.is_cut_short());
+}
+
 TEST(VideoReaderTest, ATagThatPlayersIgnoreIsTold) {
   const TemporaryFolder folder;
   const auto tag_in = [&](const std::string& name, const std::string& tag) {
@@ -376,6 +390,20 @@ TEST_F(SlowVideoTest, WholeVideosAreNotTakenForCutOnes) {
   }
   Ffmpeg("-i /whole.mp4 -c copy -movflags frag_keyframe+empty_moov", folder_ / "fragments.mp4");
   ExpectSameAsFfmpeg(folder_ / "fragments.mp4", {320, 240}, 30);
+  // Chapters and subtitles that end later.
+  WriteBytes(folder_ / "chapters.txt",
+             ";FFMETADATA1\n[CHAPTER]\nTIMEBASE=1/1\nSTART=0\nEND=1\n[CHAPTER]\n"
+             "TIMEBASE=1/1\nSTART=1\nEND=90\n");
+  WriteBytes(folder_ / "words.srt", "1\n00:00:01,000 --> 00:01:30,000\nwords\n");
+  for (const char* name : {"chapters.mp4", "chapters.mov", "chapters.mkv"}) {
+    Ffmpeg("-i /whole.mp4 -i /chapters.txt -map_chapters 1 -c copy", folder_ / name);
+    ExpectSameAsFfmpeg(folder_ / name, {320, 240}, 30);
+  }
+  for (const char* name : {"words.mp4", "words.mkv"}) {
+    const std::string codec = name == std::string("words.mp4") ? "mov_text" : "srt";
+    Ffmpeg("-i /whole.mp4 -i /words.srt -map 0 -map 1 -c copy -c:s " + codec, folder_ / name);
+    ExpectSameAsFfmpeg(folder_ / name, {320, 240}, 30);
+  }
   // A larger cover is no video.
   Ffmpeg("-f lavfi -i testsrc=s=800x600 -frames:v 1", folder_ / "cover.png");
   Ffmpeg("-i /whole.mp4 -i /cover.png -map 0 -map 1 -c copy -disposition:v:1 attached_pic",
