@@ -50,6 +50,12 @@ bool HasHeader(const Photo& photo) { return photo.header.stored.width > 0; }
 
 bool IsDuplicate(const Photo& photo) { return !photo.original.empty(); }
 
+// The name without its extension, each number as a 0.
+std::string PatternOfName(const Photo& photo) {
+  static const std::regex kNumber("[0-9]+");
+  return std::regex_replace(photo.path.stem().string(), kNumber, "0");
+}
+
 void FindDuplicates(std::vector<Photo>* photos) {
   std::map<std::uintmax_t, std::vector<Photo*>> by_length;
   for (Photo& photo : *photos) {
@@ -61,20 +67,15 @@ void FindDuplicates(std::vector<Photo>* photos) {
     if (of_length.size() == 1) continue;
     for (Photo* photo : of_length) by_content[DigestOfInput(photo->path)].push_back(photo);
   }
-  const auto name = [](const Photo* photo) { return photo->path.filename().string(); };
+  std::map<std::string, int> counts;
+  for (const Photo& photo : *photos) ++counts[PatternOfName(photo)];
   for (const auto& [digest, same] : by_content) {
-    const Photo* original =
-        *std::ranges::min_element(same, {}, [&](const Photo* photo) { return name(photo).size(); });
+    const Photo* original = *std::ranges::max_element(
+        same, {}, [&](const Photo* photo) { return counts.at(PatternOfName(*photo)); });
     for (Photo* photo : same) {
-      if (photo != original) photo->original = name(original);
+      if (photo != original) photo->original = original->path.filename().string();
     }
   }
-}
-
-// The name without its extension, each number as a 0.
-std::string PatternOfName(const Photo& photo) {
-  static const std::regex kNumber("[0-9]+");
-  return std::regex_replace(photo.path.stem().string(), kNumber, "0");
 }
 
 // The last number in the name; 0 if there is none.
@@ -100,6 +101,25 @@ bool CounterBeganAnew(const std::vector<const Photo*>& photos) {
     widest = std::max(widest, NumberInName(next) - NumberInName(one));
   }
   return widest_back > widest_on;
+}
+
+// True if each name first differs from the next in a number of its own: 01_door, 02_window. The
+// digits of hashes touch letters.
+bool AreNumbered(const std::vector<const Photo*>& photos) {
+  for (size_t i = 1; i < photos.size(); ++i) {
+    const std::string one = photos[i - 1]->path.stem().string();
+    const std::string next = photos[i]->path.stem().string();
+    const auto same = std::ranges::mismatch(one, next).in1 - one.begin();
+    const size_t begin = one.substr(0, same).find_last_not_of(kDigits) + 1;
+    const auto number = [&](const std::string& name) {
+      const size_t end = std::min(name.find_first_not_of(kDigits, begin), name.size());
+      const bool ends = end == name.size() ||
+                        std::string_view(" _-.,()").find(name[end]) != std::string_view::npos;
+      return ends ? name.substr(begin, end - begin) : "";
+    };
+    if (number(one).empty() || number(next).empty() || number(one) == number(next)) return false;
+  }
+  return true;
 }
 
 bool IsSameFocalLength(double one, double other) {
@@ -245,8 +265,8 @@ PhotoOrder OrderByTime(const CommonCamera& common, std::vector<Photo>* photos) {
     order.steps_back += IsStepBack(usable[i - 1], usable[i]) ? 1 : 0;
     are_counted = are_counted && PatternOfName(*usable[i]) == PatternOfName(*usable.front());
   }
-  order.is_by_time =
-      are_counted ? order.steps_back == 1 && CounterBeganAnew(usable) : order.steps_back > 0;
+  order.is_by_time = are_counted ? order.steps_back == 1 && CounterBeganAnew(usable)
+                                 : order.steps_back > 0 && !AreNumbered(usable);
   if (!order.is_by_time) return order;
   std::ranges::stable_sort(*photos, {}, [](const Photo& photo) {
     const std::string& time = photo.header.time_taken;

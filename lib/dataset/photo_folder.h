@@ -29,11 +29,12 @@ struct Photo {
 // long. Of two equal ones the name counts: a7 after a007, in any folder.
 std::pair<std::string, std::string> OrderOfName(const std::filesystem::path& path);
 
-// The photos directly in a folder, in the order of their names. Of files with the same bytes that
-// with the shortest name is the original ("IMG_1.jpg", not "IMG_1 (1).jpg"). Hidden files and files
-// that have no name of an image are ignored; those of other image formats are listed, without a
-// header. Throws InputError for a folder that cannot be read, has less than two photos, more than
-// can be processed, or a name that is not UTF-8.
+// The photos directly in a folder, in the order of their names. Of files with the same bytes the
+// original is the one whose name is like most others but for numbers ("IMG_1.jpg", not
+// "IMG_1 (1).jpg"), of several the first. Hidden files and files that have no name of an image are
+// ignored; those of other image formats are listed, without a header. Throws InputError for a
+// folder that cannot be read, has less than two photos, more than can be processed, or a name that
+// is not UTF-8.
 std::vector<Photo> ListPhotos(const std::filesystem::path& folder);
 
 // Size and focal length (over the diagonal) that most of the photos have; of sizes that equally
@@ -63,10 +64,11 @@ struct PhotoOrder {
 };
 
 // Puts photos, which are in the order of names, into the order of their EXIF times where names have
-// none: where all usable photos have times that contradict the names, and the names differ in more
-// than numbers, as those of hashes do. Names that differ in numbers only are those of a counter and
-// keep their order, except where the counter began anew: at the only step back in time, where its
-// numbers, all of one length, have their widest gap. A clock that was set leaves no such gap.
+// none: where all usable photos have times that contradict the names, and the names are not told
+// apart by numbers first, as those of hashes. Names that are (01_door, 02_window) keep their order,
+// and so do those that differ in numbers only, except where their counter began anew: at the only
+// step back in time, where its numbers, all of one length, have their widest gap. A clock that was
+// set leaves no such gap.
 PhotoOrder OrderByTime(const CommonCamera& common, std::vector<Photo>* photos);
 
 }  // namespace soslam

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "dataset/photo_folder.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -101,7 +102,7 @@ TEST_F(PhotoFolderTest, LargerImagesWinTies) {
   EXPECT_EQ(Reasons()[2], Rejection::kOtherSize) << "most images come first";
 }
 
-TEST_F(PhotoFolderTest, DuplicatesAreOfTheShortestName) {
+TEST_F(PhotoFolderTest, OriginalsAreNamedLikeMostPhotos) {
   Add("IMG_1.jpg");
   Add("IMG_3.jpg", {64, 48}, ExifOf(1));
   for (const char* name : {"IMG_1 (1).jpg", "Copy of IMG_1.jpg", "IMG_2.jpg"}) {
@@ -116,6 +117,21 @@ TEST_F(PhotoFolderTest, DuplicatesAreOfTheShortestName) {
   Add("IMG_5.jpg", {240, 180}, ExifOf(1));
   EXPECT_EQ(FindCommonCamera(folder_.path(), ListPhotos(folder_.path())).size.width, 240)
       << "duplicates do not count";
+}
+
+TEST_F(PhotoFolderTest, OriginalsKeepTheirPlaceInTheOrder) {
+  for (int i = 1; i <= 4; ++i) {
+    Add(fmt::format("IMG_000{}.jpg", i), {64, 48},
+        ExifOf(1, ByteOrder::kBigEndian, fmt::format("{}", i)));
+  }
+  std::filesystem::copy_file(folder_ / "IMG_0002.jpg", folder_ / "best.jpg");
+  std::filesystem::copy_file(folder_ / "IMG_0003.jpg", folder_ / "A.jpg");
+  EXPECT_THAT(Fields(ListPhotos(folder_.path()), &Photo::original),
+              testing::ElementsAre("IMG_0003.jpg", "", "", "", "", "IMG_0002.jpg"));
+  const TemporaryFolder other;
+  for (const char* name : {"a door.jpg", "b.jpg", "c.jpg"}) WritePhoto(other / name, DrawnView(0));
+  EXPECT_THAT(Fields(ListPhotos(other.path()), &Photo::original),
+              testing::ElementsAre("", "a door.jpg", "a door.jpg"));
 }
 
 TEST_F(PhotoFolderTest, TimesOrderNamesWithoutOrder) {
@@ -151,6 +167,26 @@ TEST_F(PhotoFolderTest, RenumberedPhotosKeepTheOrderOfTheirNames) {
   EXPECT_EQ(InOrder(&order).front(), "1.jpg");
   EXPECT_FALSE(order.is_by_time);
   EXPECT_EQ(order.steps_back, 11);
+}
+
+TEST_F(PhotoFolderTest, NumbersBeforeWordsAreAnOrder) {
+  const auto is_by_time = [&](const std::vector<std::string>& names) {
+    for (const auto& file : std::filesystem::directory_iterator(folder_.path())) {
+      std::filesystem::remove(file);
+    }
+    int minute = 30;
+    for (const std::string& name : names) AddOfMinute(name, --minute);
+    PhotoOrder order;
+    const auto in_order = InOrder(&order);
+    EXPECT_EQ(in_order == names, !order.is_by_time);
+    return order.is_by_time;
+  };
+  EXPECT_FALSE(is_by_time({"01_door.jpg", "02_window.jpg", "10_table.jpg"}));
+  EXPECT_FALSE(is_by_time({"1 door.jpg", "2.jpg", "3-window 2.jpg", "11 door.jpg"}));
+  EXPECT_FALSE(is_by_time({"room 1 door.jpg", "room 2 window.jpg", "room 10 table.jpg"}));
+  EXPECT_TRUE(is_by_time({"door_01.jpg", "table_10.jpg", "window_02.jpg"}));
+  EXPECT_TRUE(is_by_time({"2024_door.jpg", "2024_table.jpg", "2024_window.jpg"}));
+  EXPECT_TRUE(is_by_time({"03ab-11.jpg", "9f1c-12.jpg", "77e0-13.jpg"}));
 }
 
 TEST_F(PhotoFolderTest, CountersMayBeginAnew) {
