@@ -10,6 +10,7 @@
 
 #include "artefact/json_file.h"
 #include "base/error.h"
+#include "base/paths.h"
 #include "dataset/image_path.h"
 #include "dataset/json_entry.h"
 #include "geometry/camera.h"
@@ -33,17 +34,22 @@ std::vector<JsonEntry> FramesOf(const JsonEntry& all) {
   return EntriesOf(all.List("frames"), all.place() + "#/frames");
 }
 
-// The path of a frame's image, with the extension that Blender's scenes leave out.
-std::string ImageOf(const JsonEntry& frame) {
+// The path of a frame's image, with the extension that Blender's scenes leave out: that of a file
+// in the folder, otherwise .png.
+std::string ImageOf(const JsonEntry& frame, const std::filesystem::path& folder) {
   const std::string image = frame.Text("file_path");
-  return std::filesystem::path(image).has_extension() ? image : image + ".png";
+  if (std::filesystem::path(image).has_extension()) return image;
+  for (const char* extension : {".png", ".jpg", ".jpeg", ".PNG", ".JPG", ".JPEG"}) {
+    if (IsFile(folder / (image + extension))) return image + extension;
+  }
+  return image + ".png";
 }
 
 // The size of the first image that is there; none if EXIF turns it, so that it has two.
 std::optional<ImageSize> SizeOfImages(const std::vector<JsonEntry>& frames,
                                       const std::filesystem::path& folder) {
   for (const JsonEntry& frame : frames) {
-    const auto header = ReadImageHeader(ImagePath(folder, ImageOf(frame), frame.place()));
+    const auto header = ReadImageHeader(ImagePath(folder, ImageOf(frame, folder), frame.place()));
     if (header && header->IsTurnedByAQuarter()) return std::nullopt;
     if (header) return header->stored;
   }
@@ -54,7 +60,8 @@ Camera ParseNerfstudioCamera(const JsonEntry& entry) {
   for (const char* side : {"w", "h"}) {
     if (!entry.Has(side)) {
       throw InputError(
-          fmt::format("{}: {} is missing; expected it, or the images that the frames name",
+          fmt::format("{}: {} is missing; expected it, or the images that the frames name, "
+                      "not turned by EXIF",
                       entry.place(), side));
     }
     if (!IsWholeImageSize(entry.Real(side), 1.0)) entry.Refuse(side, "pixels above 0");
@@ -171,7 +178,7 @@ std::vector<ListedImage> ReadNerfstudioImages(const std::filesystem::path& path)
   const json document = ParseJsonFile(path);
   std::vector<ListedImage> images;
   for (const JsonEntry& frame : FramesOf(JsonEntry(document, path.string()))) {
-    images.push_back({0.0, ImageOf(frame)});
+    images.push_back({0.0, ImageOf(frame, path.parent_path())});
   }
   std::ranges::stable_sort(
       images, {}, [](const ListedImage& image) { return std::filesystem::path(image.image); });

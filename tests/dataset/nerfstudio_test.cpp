@@ -155,6 +155,16 @@ TEST_F(NerfstudioTest, AnAngleOfViewNeedsOnlyTheImages) {
   EXPECT_NEAR(Camera().camera.fx, 25.0, 1e-9);
   EXPECT_EQ(Camera().camera.cy, 14.5);
   EXPECT_EQ(Only(ReadNerfstudioImages(WriteDocument())).image, "./train/r_0.png");
+  for (const std::string extension : {".jpg", ".jpeg", ".JPG"}) {
+    document_["frames"][0]["file_path"] = "./train/photo" + extension.substr(1);
+    Write("train/photo" + extension.substr(1) + extension,
+          EncodedImage(".jpg", cv::Mat::zeros(60, 80, CV_8UC3)));
+    EXPECT_EQ(Camera().camera.width, 80);
+    EXPECT_EQ(Only(ReadNerfstudioImages(WriteDocument())).image,
+              "./train/photo" + extension.substr(1) + extension);
+  }
+  document_["frames"][0]["file_path"] = "./train/none";
+  EXPECT_EQ(Only(ReadNerfstudioImages(WriteDocument())).image, "./train/none.png");
 }
 
 }  // namespace
