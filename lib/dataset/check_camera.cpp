@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +9,7 @@
 
 #include "dataset/dataset_checks.h"
 #include "dataset/image_path.h"
+#include "geometry/distortion.h"
 #include "geometry/image_size.h"
 #include "image/image_format.h"
 
@@ -34,6 +36,11 @@ double ScaleOfPrincipalPoint(const Camera& camera) {
   return by_x > 0.0 && IsAbout(by_y, by_x) ? by_x : 0.0;
 }
 
+// True also for pixels of anamorphic lenses, which are up to twice as wide as high.
+bool HasNearlySquarePixels(const Camera& camera) {
+  return camera.fx <= 2.0 * camera.fy && camera.fy <= 2.0 * camera.fx;
+}
+
 Advice AdviceOnIntrinsics(const Camera& camera) {
   const double scale = ScaleOfPrincipalPoint(camera);
   if (camera.cx <= 2.0 && camera.cy <= 2.0) {
@@ -53,6 +60,10 @@ Advice AdviceOnIntrinsics(const Camera& camera) {
             "give fx, fy in pixels: millimetres times the width of the image in pixels, "
             "divided by that of the sensor in millimetres"};
   }
+  if (!HasNearlySquarePixels(camera)) {
+    return {"a focal length of another camera or image size, or in another unit than the other one",
+            "give fx and fy in pixels of these images; they are about equal, as pixels are square"};
+  }
   return {"intrinsics of another camera",
           "give those of the camera that took the images, in pixels"};
 }
@@ -68,14 +79,47 @@ std::vector<Finding> CheckIntrinsics(const Camera& camera) {
   const double scale = std::max(camera.width, camera.height);
   const bool is_focal =
       is_focal_length(camera.fx) && camera.fy >= 0.2 * camera.height && camera.fy <= 10.0 * scale;
-  if (is_focal && is_inside && is_central && !HasSwappedSides(camera)) return {};
+  if (is_focal && is_inside && is_central && !HasSwappedSides(camera) &&
+      HasNearlySquarePixels(camera)) {
+    return {};
+  }
   const bool is_impossible = !is_focal || !is_inside || HasSwappedSides(camera);
   const Advice advice = AdviceOnIntrinsics(camera);
-  return {{"camera_intrinsics", is_impossible ? Severity::kError : Severity::kWarning,
-           fmt::format("camera of {} x {} pixels with fx {:g}, fy {:g}, cx {:g}, cy {:g}",
-                       camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy),
-           "focal lengths of 0.2 to 10 times the width and a principal point near the middle",
-           advice.cause, advice.remedy}};
+  return {
+      {"camera_intrinsics", is_impossible ? Severity::kError : Severity::kWarning,
+       fmt::format("camera of {} x {} pixels with fx {:g}, fy {:g}, cx {:g}, cy {:g}", camera.width,
+                   camera.height, camera.fx, camera.fy, camera.cx, camera.cy),
+       "focal lengths of 0.2 to 10 times the width, about equal, and a principal point near the "
+       "middle",
+       advice.cause, advice.remedy}};
+}
+
+// Checks that the lens model has an inverse at the middle of each side of the image, which is
+// within what a calibration covers, and moves it towards the principal point by no more than a
+// quarter of the distance, which is several times the strongest pincushion distortion of lenses.
+std::vector<Finding> CheckLens(const Camera& camera, const Distortion& distortion) {
+  constexpr double kLeastRatio = 0.75;
+  const Eigen::Vector2d centre(camera.cx, camera.cy);
+  const double right = camera.width - 0.5, bottom = camera.height - 0.5;
+  const std::vector<Eigen::Vector2d> sides = {
+      {-0.5, camera.cy}, {right, camera.cy}, {camera.cx, -0.5}, {camera.cx, bottom}};
+  const auto undistorted = UndistortPixels(camera, distortion, sides);
+  for (size_t i = 0; i < sides.size(); ++i) {
+    if (undistorted[i] &&
+        (*undistorted[i] - centre).norm() >= kLeastRatio * (sides[i] - centre).norm()) {
+      continue;
+    }
+    return {
+        {"camera_lens", Severity::kWarning,
+         fmt::format("lens model with coefficients {:g}, by which the pixel ({:g}, {:g}) {}",
+                     fmt::join(DistortionCoefficients(distortion), " "), sides[i].x(), sides[i].y(),
+                     undistorted[i] ? fmt::format("is ({:.0f}, {:.0f}) without distortion",
+                                                  undistorted[i]->x(), undistorted[i]->y())
+                                    : "has no undistorted one"),
+         "a model that holds up to the sides of the image", kAdviceOnLens.cause,
+         kAdviceOnLens.remedy}};
+  }
+  return {};
 }
 
 // An image size that differs from the camera's.
@@ -156,6 +200,10 @@ std::vector<Finding> CheckCamera(const ImportView& view) {
     if (std::ranges::find(seen, camera) != seen.end()) continue;
     seen.push_back(camera);
     std::ranges::move(CheckIntrinsics(camera), std::back_inserter(findings));
+    if (view.sequence.image_distortion) {
+      std::ranges::move(CheckLens(camera, *view.sequence.image_distortion),
+                        std::back_inserter(findings));
+    }
   }
   return findings;
 }

@@ -81,6 +81,27 @@ TEST_F(DatasetChecksTest, CamerasThatCannotBe) {
   }
 }
 
+TEST_F(DatasetChecksTest, AFocalLengthOfAnotherImage) {
+  dataset.written_camera.fy = 1500.0;
+  ExpectAmongWarnings({"camera_intrinsics: ", "fx 500, fy 1500", "pixels are square"});
+  dataset.written_camera.fy = 260.0;  // an anamorphic lens
+  EXPECT_THAT(Warnings(), testing::Not(testing::Contains(HasSubstr("camera_intrinsics"))));
+}
+
+// A lens whose model ends at a radius of 0.26 within the image, and one that is no lens.
+TEST_F(DatasetChecksTest, LensModelsThatEndWithinTheImage) {
+  options_.folder.distortion = "-5 0 0 0";
+  ExpectAmongWarnings(
+      {"camera_lens: ", "-5 0 0 0 0", "the pixel (-0.5, 239.5) has no undistorted"});
+  options_.folder.distortion = "5 0 0 0";
+  ExpectAmongWarnings({"camera_lens: ", "(-0.5, 239.5) is (132, 240)"});
+  for (const char* real : {"-0.4 0.2 0.001 -0.001", "0.2624 -0.9531 -0.0054 0.0026 1.1633",
+                           "0.2 0 0 0", "5.2 1.1 0 0 0.02 5.5 2.9 0.25"}) {
+    options_.folder.distortion = real;
+    EXPECT_THAT(Warnings(), testing::Not(testing::Contains(HasSubstr("camera_lens")))) << real;
+  }
+}
+
 TEST_F(DatasetChecksTest, ANearlySquareCameraHasNoSwappedSides) {
   dataset.camera = dataset.written_camera = {660, 620, 500.0, 500.0, 325.0, 314.0};
   EXPECT_THAT(Warnings(), IsEmpty());
