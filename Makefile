@@ -58,7 +58,8 @@ NUMBERS := SCALE CAMERA_HEIGHT
 PATHS := IMAGES NETWORK DETECTIONS CAMERA MODEL
 OTHERS := CMAKE_ARGS OUTSIDE_PATHS LAUNCH SBATCH MIRROR BIN GOAL QUIET
 $(foreach name,$(NAMES),$(call refuse-special,$(name))$(call refuse-options,$(name)))
-$(foreach name,$(NUMBERS),$(call refuse-special,$(name)))
+refuse-comma = $(if $(findstring $(comma),$(value $(1))),$(error $(1)='$(value $(1))': expected a decimal point))
+$(foreach name,$(NUMBERS),$(call refuse-comma,$(name))$(call refuse-special,$(name)))
 $(foreach name,DATA_ROOT RESULTS PIPELINES BUILD ANNOTATIONS NETWORKS MAPS,$(call one-word,$(name),$(ONE_FOLDER)))
 $(call one-word,DOWNLOADS,one file without spaces in its path)
 $(if $(filter-out :,$(call special-in,MIRROR)),$(error MIRROR='$(value MIRROR)': expected an address))

@@ -82,7 +82,7 @@ void RefuseWhatWouldBeIgnored(const CsvRow& row) {
   for (const auto& [other, name] : kOtherNames) {
     if (row.fields.contains(name) || !row.fields.contains(other)) continue;
     throw InputError(fmt::format("{}: column '{}' would be ignored; expected its name to be {}",
-                                 row.place, other, name));
+                                 row.place_of_header, other, name));
   }
 }
 

@@ -268,7 +268,7 @@ void ForEachCsvRow(const std::filesystem::path& path, const CsvColumns& columns,
       throw InputError(fmt::format("{}: has {} fields; expected {}, as the header has",
                                    lines[i].place, fields.size(), header.size()));
     }
-    CsvRow row{lines[i].place, {}};
+    CsvRow row{lines[i].place, lines[0].place, {}};
     for (const auto& [column, position] : positions) row.fields[column] = fields[position];
     use(row);
   }

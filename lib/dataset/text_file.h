@@ -84,7 +84,8 @@ struct CsvColumns {
 };
 
 struct CsvRow {
-  std::string place;                          // "<file>:<line>", for error messages
+  std::string place;  // "<file>:<line>", for error messages
+  std::string place_of_header;
   std::map<std::string, std::string> fields;  // trimmed, by the names of the columns
 
   double Real(const std::string& column) const;

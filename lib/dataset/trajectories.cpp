@@ -56,9 +56,15 @@ namespace {
 TimedPose ParseTumPose(const TextLine& line) {
   constexpr std::array kFields = {"timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"};
   const auto words = SplitWords(line.text);
-  if (words.size() != kFields.size()) {
-    throw InputError(fmt::format("{}: has {} numbers; expected {}", line.place, words.size(),
-                                 fmt::join(kFields, " ")));
+  const bool has_commas = line.text.find(',') != line.text.npos;
+  const auto ends_with_comma = [](std::string_view word) { return word.ends_with(','); };
+  if (words.size() != kFields.size() || std::ranges::any_of(words, ends_with_comma)) {
+    throw InputError(fmt::format(
+        "{}: has {} {}; expected {}{}", line.place, words.size(),
+        has_commas ? "words, with commas" : "numbers", fmt::join(kFields, " "),
+        has_commas ? ", with blanks between (rows of EuRoC have commas, nanoseconds and qw first: "
+                     "trajectory_format euroc)"
+                   : ""));
   }
   const auto [t, x, y, z, qx, qy, qz, qw] = ParseReals(words, line.place, kFields);
   return {t, {UnitQuaternion({qx, qy, qz, qw}, line.place), {x, y, z}}};

@@ -186,6 +186,12 @@ ChosenFrames ChoosePhotos(const FrameOptions& options, const fs::path& folder, i
 }
 
 ChosenFrames ChooseFromVideo(const FrameOptions& options, const fs::path& path) {
+  if (IsFile(path) && ReadImageHeader(path)) {
+    throw InputError(
+        path.string() +
+        ": is one image; expected a folder of several, taken from different places, or "
+        "a video");
+  }
   VideoReader video(path);
   const int announced = video.announced_frames();
   ChosenFrames chosen;

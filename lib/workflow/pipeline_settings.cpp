@@ -41,6 +41,26 @@ void CheckStageList(const json& stages, const std::string& file) {
   }
 }
 
+bool HasSetting(const PipelineStage& stage, const std::string& name) {
+  const auto rows = stage.rows();
+  return std::ranges::find(rows, name, &OptionRow::name) != rows.end();
+}
+
+// Throws SettingsError if only other stages have a setting of this name. `stage` is that in whose
+// section it is; null for none.
+void RefuseOfOtherStages(const std::string& name, const PipelineStage* stage,
+                         const std::string& where) {
+  if (stage != nullptr && HasSetting(*stage, name)) return;
+  std::vector<std::string> stages;
+  for (const PipelineStage& other : Stages()) {
+    if (HasSetting(other, name)) stages.emplace_back(other.name);
+  }
+  if (stages.empty()) return;
+  throw SettingsError(fmt::format("{}: '{}' is a setting of {}; expected it in the section {}",
+                                  where, name, fmt::join(stages, ", "),
+                                  stages.size() == 1 ? "of this stage" : "of one of these stages"));
+}
+
 // Checks one file separately, so that a message can name it.
 void CheckLayer(const json& layer, const std::string& file) {
   for (const auto& [key, value] : layer.items()) {
@@ -48,6 +68,9 @@ void CheckLayer(const json& layer, const std::string& file) {
     if (const PipelineStage* stage = FindStage(key)) {
       json without_nulls = json::object();
       if (value.is_object()) without_nulls.merge_patch(value);
+      for (const auto& setting : without_nulls.items()) {
+        RefuseOfOtherStages(setting.key(), stage, file + ": " + key);
+      }
       stage->resolve(value.is_object() ? without_nulls : value, file + ": " + key);
     } else if (key == "stages") {
       CheckStageList(value, file);
@@ -61,6 +84,7 @@ void CheckLayer(const json& layer, const std::string& file) {
         throw SettingsError(fmt::format("{}: about: {}", file, *violation));
       }
     } else {
+      RefuseOfOtherStages(key, nullptr, file);
       throw SettingsError(fmt::format(
           "{}: unknown key '{}'; known are description, about, extends, stages, semantic_table and "
           "the stages {}",

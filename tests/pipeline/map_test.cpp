@@ -208,6 +208,8 @@ TEST_F(MapTest, RefusesWhatIsMissing) {
   expect_refused({images, network, "SCALE=.5"}, "found no MODEL");
   expect_refused({images, network, "SCALE=2"}, "found no MODEL");
   expect_refused({images, network, "CAMERA_HEIGHT=160"}, "expected metres");
+  expect_refused({images, network, "CAMERA_HEIGHT=1,6"},
+                 "CAMERA_HEIGHT='1,6': expected a decimal point");
   expect_refused({images, network, "VARIANT=InitS"}, "the first one makes no map");
   expect_refused({images, network, "VARIANT=OursS Best"}, "VARIANT='Best': no such variant");
   expect_refused({"IMAGE=x", network}, "IMAGE=...: no variable of this Makefile");

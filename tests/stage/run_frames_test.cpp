@@ -299,7 +299,7 @@ TEST_F(RunFramesTest, RefusesWhatMakesNoDataset) {
   ExpectError<NothingUsableError>([&] { Run(photos_); },
                                   {photos_.string(), "1 of 2 images", "1 no_motion"});
   ExpectError<InputError>([&] { Run(photos_ / "1.jpg"); },
-                          {"1.jpg: is a JPEG image; expected a video"});
+                          {"1.jpg: is one image; expected a folder of several"});
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 1) << "nothing is left";
 }
 

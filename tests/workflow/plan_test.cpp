@@ -247,6 +247,9 @@ TEST_F(PlanTest, RefusalsNameTheFile) {
       {R"({"semantic_table": 3})", "semantic_table"},
       {R"({"extends": 3})", "extends"},
       {R"({"extends": "Bad"})", "leads back"},
+      {R"({"border_px": 0})", "'border_px' is a setting of import; expected it in the section of"},
+      {R"({"edges": {"border_px": 0}})", "edges: 'border_px' is a setting of import"},
+      {R"({"edges": {"method": "svd"}})", "'method' is a setting of "},
       {"[]", "object"},
       {"{", ""}};
   for (const auto& [text, part] : cases) {
