@@ -391,9 +391,9 @@ TEST_F(SlowVideoTest, WholeVideosAreNotTakenForCutOnes) {
   Ffmpeg("-i /whole.mp4 -c copy -movflags frag_keyframe+empty_moov", folder_ / "fragments.mp4");
   ExpectSameAsFfmpeg(folder_ / "fragments.mp4", {320, 240}, 30);
   // Chapters and subtitles that end later.
-  WriteBytes(folder_ / "chapters.txt",
-             ";FFMETADATA1\n[CHAPTER]\nTIMEBASE=1/1\nSTART=0\nEND=1\n[CHAPTER]\n"
-             "TIMEBASE=1/1\nSTART=1\nEND=90\n");
+  const std::string chapter = "[CHAPTER]\nTIMEBASE=1/1\n";
+  WriteBytes(folder_ / "chapters.txt", ";FFMETADATA1\n" + chapter + "START=0\nEND=1\ntitle=one\n" +
+                                           chapter + "START=1\nEND=90\ntitle=two\n");
   WriteBytes(folder_ / "words.srt", "1\n00:00:01,000 --> 00:01:30,000\nwords\n");
   for (const char* name : {"chapters.mp4", "chapters.mov", "chapters.mkv"}) {
     Ffmpeg("-i /whole.mp4 -i /chapters.txt -map_chapters 1 -c copy", folder_ / name);
