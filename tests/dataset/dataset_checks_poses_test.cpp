@@ -111,6 +111,13 @@ TEST_F(DatasetChecksTest, PosesThatATrackerRepeats) {
   ExpectAmongWarnings(words);
 }
 
+// Boxes move by 0.13 of half their diagonals.
+TEST_F(DatasetChecksTest, ASlowCameraWhosePosesRepeat) {
+  dataset.pose_of_frame = [](int frame) { return frame == 11 ? 10 : frame; };
+  WriteViews([](int frame) { return DrawnView(5 * frame, {640, 480}); });
+  ExpectAmongWarnings({"repeated_poses: 1 frame with", "frames 10 to 11"});
+}
+
 // Boxes of the arc, or of things that move before the camera, which images alone show to rest.
 TEST_F(DatasetChecksTest, ImagesThatChangeBeforeACameraAtRest) {
   dataset.pose_of_frame = [](int frame) { return frame < 10 || frame > 15 ? frame : 10; };
