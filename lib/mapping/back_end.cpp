@@ -72,15 +72,15 @@ void AddObjects(const BackEndInput& input, const BackEndProblem& problem, MapEst
   }
 }
 
-void AddLandmarkCovariances(const MarginalCovariances& covariances, BackEndProblem* problem,
-                            MapEstimate* map) {
+void AddLandmarkCovariances(const MarginalCovariances& covariances, double dispersion,
+                            BackEndProblem* problem, MapEstimate* map) {
   int without = 0;
   for (ObjectEstimate& object : map->objects) {
     if (!object.landmark_in_world) continue;
     const double* landmark =
         problem->variables().Landmark(static_cast<size_t>(object.object_index));
     if (covariances.Has(landmark)) {
-      object.covariance = covariances.OfLandmark(landmark);
+      object.covariance = dispersion * covariances.OfLandmark(landmark);
     } else {
       ++without;
     }
@@ -89,7 +89,7 @@ void AddLandmarkCovariances(const MarginalCovariances& covariances, BackEndProbl
 }
 
 void AddPlaneCovariances(const Sequence& sequence, const MarginalCovariances& covariances,
-                         BackEndProblem* problem, MapEstimate* map) {
+                         double dispersion, BackEndProblem* problem, MapEstimate* map) {
   if (!covariances.AreDetermined()) return;
   BackEndVariables& variables = problem->variables();
   for (size_t i = 0; i < sequence.planes.size(); ++i) {
@@ -98,8 +98,8 @@ void AddPlaneCovariances(const Sequence& sequence, const MarginalCovariances& co
     Eigen::Vector4d sides = Eigen::Vector4d::Ones();
     sides.head<3>() *= variables.NormalSide(i);
     map->plane_covariances[static_cast<int>(i)] =
-        sides.asDiagonal() * covariances.OfPlane(variables.Normal(i), variables.Offset(i)) *
-        sides.asDiagonal();
+        dispersion * sides.asDiagonal() *
+        covariances.OfPlane(variables.Normal(i), variables.Offset(i)) * sides.asDiagonal();
   }
 }
 
@@ -135,8 +135,11 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
   if (options.covariances) {
     problem.PrepareCovariances();
     const MarginalCovariances covariances(&problem.problem());
-    AddLandmarkCovariances(covariances, &problem, &map);
-    AddPlaneCovariances(input.sequence, covariances, &problem, &map);
+    // The paper's variances are no noise of boxes.
+    const bool is_noise = options.detection_model == DetectionModel::kTangency;
+    const double dispersion = is_noise ? map.solver.Dispersion() : 1.0;
+    AddLandmarkCovariances(covariances, dispersion, &problem, &map);
+    AddPlaneCovariances(input.sequence, covariances, dispersion, &problem, &map);
   }
   return map;
 }

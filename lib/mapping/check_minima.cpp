@@ -117,7 +117,7 @@ std::vector<std::optional<double>> QuarterTurnProbabilities(const BackEndInput& 
     const bool is_minimum = IsTurned(as_in_map->landmark_in_world, as_turned->landmark_in_world);
     const double gain = is_minimum ? as_in_map->cost - as_turned->cost
                                    : as_in_map->cost_of_start - as_turned->cost_of_start;
-    probabilities[i] = 1.0 / (1.0 + std::exp(-gain / std::max(1.0, dispersion)));
+    probabilities[i] = 1.0 / (1.0 + std::exp(-gain / dispersion));
   });
   return probabilities;
 }

@@ -84,6 +84,10 @@ struct SolverSummary {
   // Outward offset (px) of the left, top, right and bottom edges that makes all boxes fit best;
   // zero where no bias is estimated.
   std::array<double, 4> detector_bias_px{};
+
+  // The variance factor of the boxes a posteriori, where they cost more than their noise gives by
+  // chance; else 1.
+  double Dispersion() const { return std::max(1.0, box_cost / expected_box_cost); }
 };
 
 // A support plane that is free, and how it differs from the given one where objects stand on it.

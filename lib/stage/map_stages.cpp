@@ -159,10 +159,10 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
   MapEstimate map = OptimiseMap(input, options, threads);
   if (options.detection_model == DetectionModel::kTangency) {
     const Sequence in_map = AsInMap(sequence, map);
-    const auto quarter_turns = QuarterTurnProbabilities(
-        {in_map, LandmarksOf(map, sequence), input.priors, input.symmetry_images, input.edge_images,
-         input.points},
-        options, map.solver.box_cost / map.solver.expected_box_cost, threads);
+    const auto quarter_turns =
+        QuarterTurnProbabilities({in_map, LandmarksOf(map, sequence), input.priors,
+                                  input.symmetry_images, input.edge_images, input.points},
+                                 options, map.solver.Dispersion(), threads);
     for (ObjectEstimate& object : map.objects) {
       object.quarter_turn = quarter_turns[static_cast<size_t>(object.object_index)];
     }

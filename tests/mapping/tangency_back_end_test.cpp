@@ -113,6 +113,28 @@ TEST(TangencyBackEnd, ARoundCylinderLeavesTheOthersTheirCovariances) {
   for (const ObjectEstimate& object : map.objects) EXPECT_TRUE(object.covariance);
 }
 
+// Errors that are larger than the assumed noise of boxes give the covariance of their real size.
+TEST(TangencyBackEnd, CovariancesGrowWithWhatBoxesCostBeyondTheirNoise) {
+  const Sequence sequence = WithBoxNoise(CuboidSequence(3, 40), 30.0);
+  OptimiseOptions options = TangencyOptions();
+  options.covariances = true;
+  options.hold_poses = true;
+  options.huber_delta = 1e6;
+  options.detector_bias_sigma_px = 0.0;
+  const BackEndInput input = TruthInput(sequence, /*ratio_log_sigma=*/10.0);
+  options.detection_sigma_fraction = 0.02;
+  const MapEstimate map = OptimiseMap(input, options);
+  options.detection_sigma_fraction = 0.04;
+  const MapEstimate of_twice_the_noise = OptimiseMap(input, options);
+  EXPECT_GT(of_twice_the_noise.solver.Dispersion(), 1.5);
+  EXPECT_NEAR(map.solver.Dispersion(), 4.0 * of_twice_the_noise.solver.Dispersion(),
+              0.4 * of_twice_the_noise.solver.Dispersion());
+  for (size_t i = 0; i < map.objects.size(); ++i) {
+    const double trace = map.objects[i].covariance.value().trace();
+    EXPECT_NEAR(of_twice_the_noise.objects[i].covariance.value().trace(), trace, 0.1 * trace);
+  }
+}
+
 TEST(TangencyBackEnd, CostsNearlyNothingAtTheTruth) {
   const Sequence sequence = CuboidSequence(5, 20);
   const MapEstimate map = OptimiseMap(TruthInput(sequence), TangencyOptions());
