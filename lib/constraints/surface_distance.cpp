@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "constraints/surface_distance.h"
 
-#include <algorithm>
 #include <cmath>
 
-#include "geometry/superquadric_norm.h"
+#include "geometry/support_function.h"
 
 namespace soslam {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "exchange/exports.h"
-#include "geometry/superquadric_norm.h"
+#include "geometry/support_function.h"
 
 namespace soslam {
 namespace {

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "geometry/superquadric_norm.h"
+#include "geometry/support_function.h"
 
 namespace soslam {
 

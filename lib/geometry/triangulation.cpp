@@ -18,16 +18,6 @@ namespace {
 // Rays within a tenth of a degree of each other meet anywhere.
 constexpr double kLeastSpread = 1e-6;
 
-std::optional<Eigen::Vector3d> NearestPoint(const std::vector<PointView>& views) {
-  std::vector<Ray> rays;
-  for (const PointView& view : views) {
-    const Rigid3d world_from_camera = view.camera_from_world.Inverse();
-    rays.push_back({world_from_camera.translation,
-                    world_from_camera.rotation * view.camera.Ray(view.pixel).normalized()});
-  }
-  return NearestPointToRays(rays, kLeastSpread);
-}
-
 // d pixel / d point in the world.
 Eigen::Matrix<double, 2, 3> PixelJacobian(const PointView& view, const Eigen::Vector3d& in_camera) {
   return view.camera.ProjectionJacobian(in_camera) *
@@ -78,7 +68,13 @@ std::optional<Eigen::Vector3d> NearestPointToRays(const std::vector<Ray>& rays,
 
 std::optional<TriangulatedPoint> Triangulate(const std::vector<PointView>& views, double huber_px) {
   if (views.size() < 2) return std::nullopt;
-  auto point = NearestPoint(views);
+  std::vector<Ray> rays;
+  for (const PointView& view : views) {
+    const Rigid3d world_from_camera = view.camera_from_world.Inverse();
+    rays.push_back({world_from_camera.translation,
+                    world_from_camera.rotation * view.camera.Ray(view.pixel).normalized()});
+  }
+  auto point = NearestPointToRays(rays, kLeastSpread);
   if (!point) return std::nullopt;
   const ceres::HuberLoss loss(huber_px);
   const QuadraticModel<3> at = MinimiseSquares(

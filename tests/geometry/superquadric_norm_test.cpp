@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "geometry/superquadric_norm.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
+#include "geometry/support_function.h"
 #include "support/numeric_derivatives.h"
 #include "support/shape_exponents.h"
 
