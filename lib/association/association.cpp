@@ -89,7 +89,7 @@ class FrameLinker {
 
   void Predict(int frame) {
     const Camera& camera = model_.sequence().CameraOf(model_.sequence().frames[frame]);
-    ParallelFor(static_cast<int>(states_.size()), threads_, [&](int i) {
+    ParallelFor(states_.size(), threads_, [&](size_t i) {
       State& state = states_[i];
       state.prediction = model_.Predict(association_.tracks[i], frame);
       const bool is_in_image =
@@ -177,7 +177,7 @@ class FrameLinker {
       if (IsDue(i)) due.push_back(i);
       states_[i].has_changed = false;
     }
-    ParallelFor(static_cast<int>(due.size()), threads_, [&](int i) {
+    ParallelFor(due.size(), threads_, [&](size_t i) {
       const size_t track_index = due[i];
       Track& track = association_.tracks[track_index];
       model_.Fit(&track);

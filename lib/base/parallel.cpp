@@ -12,12 +12,12 @@
 
 namespace soslam {
 
-void ParallelFor(int count, int threads, const std::function<void(int)>& work) {
-  std::vector<std::exception_ptr> errors(static_cast<size_t>(std::max(0, count)));
-  std::atomic<int> next = 0;
-  std::atomic<int> end = count;  // items after an error are not started
+void ParallelFor(size_t count, int threads, const std::function<void(size_t)>& work) {
+  std::vector<std::exception_ptr> errors(count);
+  std::atomic<size_t> next = 0;
+  std::atomic<size_t> end = count;  // items after an error are not started
   const auto work_until_done = [&] {
-    for (int i = next++; i < end; i = next++) {
+    for (size_t i = next++; i < end; i = next++) {
       try {
         work(i);
       } catch (...) {
@@ -28,9 +28,10 @@ void ParallelFor(int count, int threads, const std::function<void(int)>& work) {
   };
   {
     // Queried once: the system reads it from a file.
-    static const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    static const size_t cores = std::max(1u, std::thread::hardware_concurrency());
     std::vector<std::jthread> others;  // joined at the end of this block
-    for (int i = 1; i < std::min({count, threads, cores}); ++i) {
+    for (size_t i = 1; i < std::min({count, static_cast<size_t>(std::max(1, threads)), cores});
+         ++i) {
       try {
         others.emplace_back(work_until_done);
       } catch (const std::system_error&) {
@@ -44,9 +45,10 @@ void ParallelFor(int count, int threads, const std::function<void(int)>& work) {
   }
 }
 
-void ParallelFor(const char* what, int count, int threads, const std::function<void(int)>& work) {
-  Progress progress(what, count);
-  ParallelFor(count, threads, [&](int i) {
+void ParallelFor(const char* what, size_t count, int threads,
+                 const std::function<void(size_t)>& work) {
+  Progress progress(what, static_cast<int>(count));
+  ParallelFor(count, threads, [&](size_t i) {
     work(i);
     progress.Step();
   });

@@ -136,10 +136,8 @@ class Grouping {
         places_(std::move(places)),
         is_taken_(sequence.detections.size()),
         supporters_(places_.size()) {
-    ParallelFor(static_cast<int>(places_.size()), threads, [&](int i) {
-      const auto index = static_cast<size_t>(i);
-      supporters_[index] = SupportersOf(places_[index]);
-    });
+    ParallelFor(places_.size(), threads,
+                [&](size_t i) { supporters_[i] = SupportersOf(places_[i]); });
   }
 
   void Run() {

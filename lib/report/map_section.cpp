@@ -115,7 +115,7 @@ std::string EntriesHtml(const std::vector<Entry>& entries, const Sequence& seque
 }
 
 void AddPictures(const ImageSource& images, int threads, std::vector<Entry>* entries) {
-  ParallelFor(static_cast<int>(entries->size()), threads, [&](int i) {
+  ParallelFor(entries->size(), threads, [&](size_t i) {
     Picture& picture = (*entries)[i].picture;
     picture.jpeg = EncodeCrop(picture.frame_index, picture.part, images);
   });

@@ -44,7 +44,7 @@ std::vector<LoadedImage> LoadAll(const std::vector<int>& frames, const ImageSour
   for (const int frame : frames) {
     if (source.has(frame)) images.push_back({frame});
   }
-  ParallelFor(static_cast<int>(images.size()), threads, [&](int i) {
+  ParallelFor(images.size(), threads, [&](size_t i) {
     LoadedImage& image = images[i];
     try {
       const cv::Mat pixels = source.read(image.frame_index);
@@ -59,7 +59,7 @@ std::vector<LoadedImage> LoadAll(const std::vector<int>& frames, const ImageSour
 std::vector<EncodedImages::Image> EncodeAll(const std::vector<LoadedImage>& images, int width,
                                             int threads) {
   std::vector<EncodedImages::Image> encoded(images.size());
-  ParallelFor(static_cast<int>(images.size()), threads, [&](int i) {
+  ParallelFor(images.size(), threads, [&](size_t i) {
     const auto& [frame_index, pixels, failure] = images[i];
     encoded[i] = {frame_index, EncodeJpeg(Scaled(pixels, pixels.cols, width))};
   });

@@ -163,7 +163,7 @@ ChosenFrames ChoosePhotos(const FrameOptions& options, const fs::path& folder, i
   }
   RejectOtherCameras(*photos, camera, &frames);
   std::vector<FrameView> views(photos->size());
-  ParallelFor("photos", static_cast<int>(photos->size()), threads, [&](int i) {
+  ParallelFor("photos", photos->size(), threads, [&](size_t i) {
     if (IsLeftOut(frames[i])) return;
     MeasurePhoto((*photos)[i], options.image_orientation, &frames[i], &views[i]);
   });

@@ -88,7 +88,7 @@ void ReadImages(const OptimiseOptions& options, const StageFiles& files, int thr
   const auto edges_of = EdgesOfSequence(sequence, files);
   const std::vector<size_t> to_read(frame_indices.begin(), frame_indices.end());
   std::vector<std::shared_ptr<const FrameEdges>> frames(sequence.frames.size());
-  ParallelFor("edge maps", static_cast<int>(to_read.size()), threads, [&](int i) {
+  ParallelFor("edge maps", to_read.size(), threads, [&](size_t i) {
     const size_t frame = to_read[i];
     frames[frame] = std::make_shared<const FrameEdges>(edges_of(sequence.frames[frame]));
   });

@@ -50,7 +50,7 @@ void RunEdges(const EdgesOptions& options, const StageFiles& files, int threads)
   const int batch = 4 * threads;  // limits the maps in memory that wait to be written
   for (int begin = 0; begin < frames; begin += batch) {
     std::vector<EdgeMaps> maps(static_cast<size_t>(std::min(batch, frames - begin)));
-    ParallelFor(static_cast<int>(maps.size()), threads, [&](int i) {
+    ParallelFor(maps.size(), threads, [&](size_t i) {
       const cv::Mat grey = reader.Read(images[begin + i], cv::IMREAD_GRAYSCALE);
       maps[i] = ComputeEdgeMaps(grey, options);
       progress.Step();

@@ -177,7 +177,7 @@ void RunFrames(const FrameOptions& options, const StageFiles& files, int threads
   ReportFindings("frames", findings);
   fs::create_directory(output.Temporary() / "rgb");
   if (is_video) WriteVideoFrames(record, images, options.max_image_px, output);
-  ParallelFor("images", static_cast<int>(photos.size()), threads, [&](int i) {
+  ParallelFor("images", photos.size(), threads, [&](size_t i) {
     if (IsLeftOut(record.frames[i])) return;
     WritePhoto(photos[i], options, record.frames[i].image, output);
   });

@@ -40,9 +40,8 @@ std::vector<FeatureTrack> TracksOf(const Sequence& sequence, const std::vector<F
   const size_t batch = 4 * static_cast<size_t>(threads);  // limits the images in memory
   for (size_t begin = 0; begin < images.size(); begin += batch) {
     std::vector<cv::Mat> grey(std::min(batch, images.size() - begin));
-    ParallelFor(static_cast<int>(grey.size()), threads, [&](int i) {
-      grey[i] = reader.Read(images[begin + static_cast<size_t>(i)], cv::IMREAD_GRAYSCALE);
-    });
+    ParallelFor(grey.size(), threads,
+                [&](size_t i) { grey[i] = reader.Read(images[begin + i], cv::IMREAD_GRAYSCALE); });
     for (size_t i = 0; i < grey.size(); ++i) {
       const size_t index = begin + i;
       const Frame& frame = *images[index].frame;
@@ -111,8 +110,8 @@ std::vector<MapPoint> PointsOf(const Sequence& sequence, const std::vector<Frame
                                const std::vector<FeatureTrack>& tracks, const TrackOptions& options,
                                int threads) {
   std::vector<std::optional<MapPoint>> found(tracks.size());
-  ParallelFor(static_cast<int>(tracks.size()), threads,
-              [&](int i) { found[i] = PointOf(sequence, images, tracks[i], options); });
+  ParallelFor(tracks.size(), threads,
+              [&](size_t i) { found[i] = PointOf(sequence, images, tracks[i], options); });
   std::vector<MapPoint> points;
   for (auto& point : found) {
     if (point) points.push_back(std::move(*point));

@@ -75,7 +75,7 @@ TEST_F(EdgesFileTest, FramesComeBackExactly) {
   EXPECT_TRUE(reader.Has(1234567));
   EXPECT_FALSE(reader.Has(12));
   std::vector<EdgeMaps> read(maps.size());
-  ParallelFor(static_cast<int>(ids.size()), 4, [&](int i) { read[i] = reader.Read(ids[i]); });
+  ParallelFor(ids.size(), 4, [&](int i) { read[i] = reader.Read(ids[i]); });
   for (size_t i = 0; i < maps.size(); ++i) ExpectSame(read[i], maps[i]);
   ExpectError<InputError>([&] { reader.Read(12); }, {"edges.h5", "/frames/000012", "missing"});
 }
