@@ -116,11 +116,6 @@ Eigen::Matrix4d OutlineCovariance(const Prediction& prediction, const Camera& ca
   return d_landmark * object.covariance * d_landmark.transpose();
 }
 
-bool IsOutOfReach(const Innovation& innovation) {
-  const Eigen::Array4d reach = kReach * innovation.covariance.diagonal().array().sqrt();
-  return (innovation.residuals.array().abs() > reach).count() > 1;
-}
-
 }  // namespace
 
 BoxLikelihood::BoxLikelihood(const Sequence& sequence, const AssociateOptions& options)
@@ -151,9 +146,10 @@ std::optional<BoxMatch> BoxLikelihood::Match(const Prediction& prediction,
                                              const EdgeBias& bias) const {
   const Box box = WithoutBias(detection.box, detection.is_one_sided, bias);
   const auto edges = BoxEdges(sequence_.CameraOf(detection), detection.box, detection.is_one_sided,
-                              options_.box_sigma_fraction, bias);
+                              options_.upright.detection_sigma_fraction, bias);
   const Innovation innovation = InnovationOf(prediction, box, edges);
-  if (IsOutOfReach(innovation)) return std::nullopt;
+  const Eigen::Array4d reach = kReach * innovation.covariance.diagonal().array().sqrt();
+  if ((innovation.residuals.array().abs() > reach).count() > 1) return std::nullopt;
   const double p = options_.cut_edge_probability;
   BoxMatch best;
   best.overlap = BoxOverlap(prediction.outline, box);

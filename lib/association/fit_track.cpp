@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "geometry/angles.h"
 #include "initialisation/fit_object.h"
 #include "initialisation/upright.h"
 
@@ -19,21 +18,6 @@ using Information =
 using ParameterJacobian =
     Eigen::Matrix<double, kLandmarkDof, Eigen::Dynamic, 0, kLandmarkDof, kMaxParameters>;
 
-// Weak prior that keeps the information regular, as standard deviations: yaw uniform over half a
-// turn, foot anywhere (m), log half axes 1.
-Information PriorInformation(Eigen::Index parameters) {
-  Eigen::Matrix<double, kMaxParameters, 1> sigmas;
-  sigmas << std::numbers::pi / std::sqrt(12.0), 1e3, 1e3, 1.0, 1.0, 1.0, 1e3;
-  return sigmas.head(parameters).array().square().inverse().matrix().asDiagonal();
-}
-
-// Sum of the logarithms of the prior's standard deviations: its normalisation.
-double LogNormalisation(const ShapePrior& prior) {
-  const double conditional = 1.0 - prior.log_correlation * prior.log_correlation;
-  return prior.log_sigma.array().log().sum() + 0.5 * std::log(conditional) +
-         (prior.height_m ? std::log(prior.height_m->log_sigma) : 0.0);
-}
-
 // The landmark with its marginal covariance, including that of `up`: the landmark tilts with `up`,
 // and its other parameters adapt so that it still fits the boxes.
 FittedObject FittedAt(const ObjectEvidence& evidence, const Landmark& landmark,
@@ -42,8 +26,14 @@ FittedObject FittedAt(const ObjectEvidence& evidence, const Landmark& landmark,
                                              .ParameterJacobian(landmark)
                                              .leftCols(evidence.height_is_free ? 7 : 6);
   const LandmarkModel model = ModelOf(CostsAt(evidence, landmark), landmark);
-  const Information information = PriorInformation(d_parameters.cols()) +
-                                  d_parameters.transpose() * model.information * d_parameters;
+  // Weak prior that keeps the information regular, as standard deviations: yaw uniform over half a
+  // turn, foot anywhere (m), log half axes 1.
+  Eigen::Matrix<double, kMaxParameters, 1> sigmas;
+  sigmas << std::numbers::pi / std::sqrt(12.0), 1e3, 1e3, 1.0, 1.0, 1.0, 1e3;
+  const Information prior_information =
+      sigmas.head(d_parameters.cols()).array().square().inverse().matrix().asDiagonal();
+  const Information information =
+      prior_information + d_parameters.transpose() * model.information * d_parameters;
   const Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kMaxParameters, 3> mixed =
       d_parameters.transpose() * model.information.leftCols<3>();
   const Eigen::LDLT<Information> solver(information);
@@ -52,20 +42,14 @@ FittedObject FittedAt(const ObjectEvidence& evidence, const Landmark& landmark,
   const Covariance9 covariance =
       d_parameters * solver.solve(ParameterJacobian(d_parameters).transpose()) +
       d_turn * up_covariance * d_turn.transpose();
-  return {
-      landmark, covariance,
-      model.cost + LogNormalisation(*evidence.prior) + 0.5 * solver.vectorD().array().log().sum()};
-}
-
-// FitTrack for one face that the object may rest on.
-std::optional<FittedObject> FitOnFace(const ObjectEvidence& evidence, double yaw_step,
-                                      const Eigen::Matrix3d& up_covariance) {
-  const auto fits =
-      FitObject(evidence, ProfileOverYaw(evidence, yaw_step).Minima(1), {.max_hypotheses = 1});
-  if (fits.empty()) return std::nullopt;
-  const FittedObject fitted = FittedAt(evidence, fits.front().landmark, up_covariance);
-  if (!fitted.covariance.allFinite() || !std::isfinite(fitted.cost)) return std::nullopt;
-  return fitted;
+  // Sum of the logarithms of the prior's standard deviations: its normalisation.
+  const ShapePrior& prior = *evidence.prior;
+  const double conditional = 1.0 - prior.log_correlation * prior.log_correlation;
+  const double log_normalisation = prior.log_sigma.array().log().sum() +
+                                   0.5 * std::log(conditional) +
+                                   (prior.height_m ? std::log(prior.height_m->log_sigma) : 0.0);
+  return {landmark, covariance,
+          model.cost + log_normalisation + 0.5 * solver.vectorD().array().log().sum()};
 }
 
 }  // namespace
@@ -75,18 +59,22 @@ std::optional<FittedObject> FitTrack(const Sequence& sequence, const std::vector
                                      const std::variant<Plane, UpEstimate>& support_in_world) {
   ObjectEvidence evidence =
       EvidenceInWorld(sequence, SpreadOver(detections, static_cast<size_t>(options.max_views)),
-                      prior, options.box_sigma_fraction);
+                      prior, options.upright);
   const auto* up = std::get_if<UpEstimate>(&support_in_world);
   evidence.height_is_free = up != nullptr;
   evidence.plane = up != nullptr ? Plane{up->up_in_world, 0.0} : std::get<Plane>(support_in_world);
   evidence.size_is_known = true;
-  WeighViews(options.view_correlation_deg * kRadPerDeg, &evidence);
+  WeighViews(options.upright.ViewCorrelation(), &evidence);
   const auto on_faces = OnEachFace(evidence);
   std::optional<FittedObject> best;
   for (const ObjectEvidence& on_face : on_faces) {
-    const auto fit = FitOnFace(on_face, options.yaw_grid_deg * kRadPerDeg,
-                               up != nullptr ? up->covariance : Eigen::Matrix3d::Zero());
-    if (fit && (!best || fit->cost < best->cost)) best = fit;
+    const auto starts = ProfileOverYaw(on_face, options.upright.YawStep()).Minima(1);
+    const auto fits = FitObject(on_face, starts, {.max_hypotheses = 1});
+    if (fits.empty()) continue;
+    const FittedObject fit = FittedAt(on_face, fits.front().landmark,
+                                      up != nullptr ? up->covariance : Eigen::Matrix3d::Zero());
+    if (!fit.covariance.allFinite() || !std::isfinite(fit.cost)) continue;
+    if (!best || fit.cost < best->cost) best = fit;
   }
   // All faces are equally probable.
   if (best) best->cost += std::log(static_cast<double>(on_faces.size()));

@@ -86,11 +86,6 @@ TrackFate FateOf(const AssociationModel& model, const Track& track, const Shown&
              : TrackFate::kObject;
 }
 
-bool IsBetter(const Merge& one, const Merge& other) {
-  return std::tuple(-one.explained, one.cost, one.into) <
-         std::tuple(-other.explained, other.cost, other.into);
-}
-
 class TrackMerger {
  public:
   TrackMerger(const AssociationModel& model, int threads, Association* association)
@@ -128,12 +123,15 @@ class TrackMerger {
   std::optional<Merge> BestMerge(const std::vector<int>& order, size_t position) const {
     const int smaller = order[position];
     std::optional<Merge> best = best_[smaller];
+    const auto rank = [](const Merge& merge) {
+      return std::tuple(-merge.explained, merge.cost, merge.into);
+    };
     const bool is_known = !HasChanged(smaller) && !(best && HasChanged(best->into));
     if (!is_known) best.reset();
     for (size_t larger = position + 1; larger < order.size(); ++larger) {
       if (is_known && !HasChanged(order[larger])) continue;
       const auto merge = TryMerge(order[larger], smaller);
-      if (merge && (!best || IsBetter(*merge, *best))) best = merge;
+      if (merge && (!best || rank(*merge) < rank(*best))) best = merge;
     }
     return best;
   }
@@ -143,8 +141,8 @@ class TrackMerger {
   bool MergeOnce() {
     const std::vector<int> order = SmallestFirst();
     std::vector<std::optional<Merge>> merges(order.size());
-    ParallelFor("tracks", static_cast<int>(order.size()), threads_,
-                [&](int i) { merges[i] = BestMerge(order, static_cast<size_t>(i)); });
+    ParallelFor("tracks", order.size(), threads_,
+                [&](size_t i) { merges[i] = BestMerge(order, i); });
     std::ranges::fill(has_changed_, 0);
     std::vector<int> grown;
     for (size_t i = 0; i < order.size(); ++i) {
@@ -154,8 +152,7 @@ class TrackMerger {
       for (const int track : {order[i], merge->into}) has_changed_[track] = 1;
       grown.push_back(merge->into);
     }
-    ParallelFor(static_cast<int>(grown.size()), threads_,
-                [&](int i) { model_.Fit(&TrackAt(grown[i])); });
+    ParallelFor(grown.size(), threads_, [&](size_t i) { model_.Fit(&TrackAt(grown[i])); });
     return !grown.empty();
   }
 
@@ -261,7 +258,7 @@ class TrackMerger {
 
 void DropFalseTracks(const AssociationModel& model, int threads, Association* association) {
   const double border_px = SmallestDistanceToBorder(model.sequence());
-  ParallelFor("tracks", static_cast<int>(association->tracks.size()), threads, [&](int i) {
+  ParallelFor("tracks", association->tracks.size(), threads, [&](size_t i) {
     Track& track = association->tracks[i];
     if (track.fate == TrackFate::kMerged) return;
     const Shown shown = ShownBy(model, track);

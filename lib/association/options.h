@@ -5,6 +5,8 @@
 #include <string>
 
 #include "base/options.h"
+#include "model/label_groups.h"
+#include "planes/options.h"
 
 namespace soslam {
 
@@ -14,13 +16,16 @@ enum class AssociationSource {
 };
 inline constexpr std::array kAssociationSourceNames = {"given", "estimated"};
 
+// Fits of bodies to the boxes of tracks, whose errors are also those of the label's shape.
+inline constexpr UprightOptions kUprightTracks{
+    .detection_sigma_fraction = 0.05, .axes_weight = 0.0, .yaw_grid_deg = 10.0};
+
 struct AssociateOptions {
   AssociationSource association = AssociationSource::kGiven;
   bool use_planes = true;
-  double camera_roll_sigma_deg = 5.0;
-  double camera_pitch_sigma_deg = 30.0;
+  CameraTilt tilt;
   double unknown_height_m = 0.4;
-  double box_sigma_fraction = 0.05;
+  UprightOptions upright = kUprightTracks;
   double cut_edge_probability = 0.05;
   double new_object_probability = 0.05;
   double label_confusion = 0.05;
@@ -41,7 +46,7 @@ struct AssociateOptions {
       "book, box, laptop, notebook, cell phone; "
       "car, van, truck, bus";
   double similar_label_confusion = 0.02;
-  std::string moving_labels = "person, pedestrian, cyclist, dog, cat, bird, horse, sheep, cow";
+  std::string moving_labels = kMovingLabels;
   double label_evidence_weight = 0.5;
   double no_support_probability = 0.1;
   double odometry_rotation_sigma_deg = 0.1;
@@ -54,8 +59,6 @@ struct AssociateOptions {
   double min_detection_share = 0.1;
   double min_best_score = 0.35;
   int max_views = 16;
-  double view_correlation_deg = 20.0;
-  double yaw_grid_deg = 10.0;
 
   void Describe(OptionVisitor& visit) {
     visit.Group("Association");
@@ -86,20 +89,18 @@ struct AssociateOptions {
                "of two boxes in one frame whose intersection over union is at least this, the one "
                "with the lower score is dropped");
     visit.Group("Boxes");
-    visit.Real("box_sigma_fraction", &box_sigma_fraction, {1e-3, 1.0},
-               "standard deviation of a box edge about that of the object's body, as a fraction of "
-               "the box's width or height, at least 1 px: the errors of the detector and of the "
-               "label's shape");
+    upright.DescribeSigmaAboutBody(
+        visit,
+        "standard deviation of a box edge about that of the object's body, as a fraction of the "
+        "box's width or height, at least 1 px: the errors of the detector and of the label's "
+        "shape");
     visit.Real("cut_edge_probability", &cut_edge_probability, {0.0, 0.2},
                "how often an edge of a box is not the object's, because something unknown hides "
                "that side or adds to it; for each of the four edges");
-    visit.Real("view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
-               "boxes from viewpoints closer than this angle at the object share the error of the "
-               "label's shape, and together have the weight of one; 0: all boxes are independent");
+    upright.DescribeViewCorrelation(visit);
     visit.Integer("max_views", &max_views, {1, 100000},
                   "how many of its detections, evenly over all, an object's landmark is fitted to");
-    visit.Real("yaw_grid_deg", &yaw_grid_deg, {0.1, 45.0},
-               "grid of the sweep over half a turn when a landmark is fitted");
+    upright.DescribeYawGrid(visit, "grid of the sweep over half a turn when a landmark is fitted");
     visit.Group("Odometry");
     visit.Real("odometry_rotation_sigma_deg", &odometry_rotation_sigma_deg, {0.0, 180.0},
                "standard deviation of the odometry between two frames");
@@ -112,12 +113,7 @@ struct AssociateOptions {
     visit.Real("no_support_probability", &no_support_probability, {1e-9, 1.0},
                "the share of objects that stand on none of the planes, as pictures on a wall do; "
                "they get no place in the map");
-    visit.Real(
-        "camera_roll_sigma_deg", &camera_roll_sigma_deg, {1e-3, 1e3},
-        "without planes: standard deviation of the tilt of the cameras' x axes; large: unknown");
-    visit.Real("camera_pitch_sigma_deg", &camera_pitch_sigma_deg, {1e-3, 1e3},
-               "without planes: standard deviation of the tilt of the cameras' optical axes; "
-               "large: unknown");
+    tilt.Describe(visit, "without planes: ");
     visit.Real("unknown_height_m", &unknown_height_m, {1e-6, 1e6},
                "without planes: height of objects whose label has none in the semantic table; its "
                "standard deviation is a factor of e");

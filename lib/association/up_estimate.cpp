@@ -62,27 +62,12 @@ BoxesOfLabels ObserveLabels(const Sequence& sequence, const Segment& segment,
     if (prior.mount == Mount::kOnWall || prior.attitude != Attitude::kStanding) continue;
     boxes.emplace_back();
     for (const int detection : SpreadOver(detections, kBoxesOfLabel)) {
-      boxes.back().push_back(
-          EvidenceInWorld(sequence, {detection}, prior, options.box_sigma_fraction));
+      boxes.back().push_back(EvidenceInWorld(sequence, {detection}, prior, options.upright));
       boxes.back().back().height_is_free = true;
       boxes.back().back().size_is_known = true;
     }
   }
   return boxes;
-}
-
-// Mean cost over a label's boxes; a mean, because boxes of the same object are correlated.
-std::optional<double> MeanCost(const std::vector<ObjectEvidence>& boxes,
-                               const Eigen::Vector3d& up) {
-  double sum = 0.0;
-  int count = 0;
-  for (const ObjectEvidence& box : boxes) {
-    const auto cost = CostOfUprightBody(up, box);
-    if (!cost) continue;
-    sum += *cost;
-    ++count;
-  }
-  return count == 0 ? std::nullopt : std::optional(sum / count);
 }
 
 UpEstimate UpOf(const UpPrior& up_prior, double tilt_variance) {
@@ -103,10 +88,8 @@ UpEstimate UpOf(const Segment& segment, const BoxesOfLabels& boxes,
   std::vector<UpPrior> up_priors;
   std::vector<HoldingEvidence> evidence;
   for (const CameraHolding holding : kHoldings) {
-    const UpPrior up_prior =
-        UpPriorFromCameras(segment.world_from_camera, options.camera_roll_sigma_deg * kRadPerDeg,
-                           options.camera_pitch_sigma_deg * kRadPerDeg,
-                           options.view_correlation_deg * kRadPerDeg, holding);
+    const UpPrior up_prior = UpPriorFromCameras(segment.world_from_camera, options.tilt,
+                                                options.upright.ViewCorrelation(), holding);
     const bool is_known = std::ranges::any_of(up_priors, [&](const UpPrior& other) {
       return IsSameUp(other.up_in_world, up_prior.up_in_world);
     });
@@ -115,7 +98,16 @@ UpEstimate UpOf(const Segment& segment, const BoxesOfLabels& boxes,
     HoldingEvidence one{
         .holding = holding, .up_in_world = up_prior.up_in_world, .object_costs = {}};
     for (const auto& of_label : boxes) {
-      one.object_costs.push_back(MeanCost(of_label, one.up_in_world));
+      // Mean cost over a label's boxes, because those of the same object are correlated.
+      double sum = 0.0;
+      int count = 0;
+      for (const ObjectEvidence& box : of_label) {
+        const auto cost = CostOfUprightBody(one.up_in_world, box);
+        if (!cost) continue;
+        sum += *cost;
+        ++count;
+      }
+      one.object_costs.push_back(count == 0 ? std::nullopt : std::optional(sum / count));
     }
     evidence.push_back(std::move(one));
   }

@@ -1,12 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "constraints/landmark_cost.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
-#include <utility>
+#include <cmath>
 
 #include "base/levenberg_marquardt.h"
 
 namespace soslam {
+namespace {
+
+// Pivots of the information below this share of the largest one are rounding errors of zero.
+constexpr double kMinPivotShare = 1e-13;
+
+using FewResiduals = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, LandmarkTerm::kMaxResiduals>;
+
+}  // namespace
+
+double LandmarkTerm::Value(const Landmark& landmark) const {
+  FewResiduals residuals(NumResiduals());
+  Evaluate(landmark, residuals, nullptr);
+  return 0.5 * residuals.squaredNorm();
+}
+
+void LandmarkTerm::AddTo(const Landmark& landmark, LandmarkModel* sum) const {
+  FewResiduals residuals(NumResiduals());
+  Jacobian jacobian(NumResiduals(), kLandmarkDof);
+  Evaluate(landmark, residuals, &jacobian);
+  for (Eigen::Index row = 0; row < residuals.size(); ++row) {
+    sum->Add(residuals[row], jacobian.row(row).transpose());
+  }
+}
 
 double ConstantCost(const LandmarkCosts& costs) {
   double sum = 0.0;
@@ -60,6 +84,40 @@ Eigen::Matrix<double, kLandmarkDof, kLandmarkDof> LandmarkInCameraJacobian(
   jacobian.block<3, 3>(0, 0) = rotation_camera_from_reference;
   jacobian.block<3, 3>(3, 3) = rotation_camera_from_reference;
   return jacobian;
+}
+
+// With P H P^T = L D L^T, R is sqrt(D) L^T P.
+bool ImageResidual::Evaluate(double const* const* blocks, double* residuals,
+                             double** jacobians) const {
+  const RelativeObservation observation(blocks, shape_exponents_);
+  Eigen::Map<Eigen::Matrix<double, kLandmarkDof + 1, 1>> values(residuals);
+  values.setZero();
+  double& rest = residuals[kLandmarkDof];
+  if (jacobians == nullptr) {
+    rest = std::sqrt(2.0 * in_camera_->Value(observation.landmark_in_camera()));
+    return std::isfinite(rest);
+  }
+  LandmarkModel model;
+  in_camera_->AddTo(observation.landmark_in_camera(), &model);
+  if (!std::isfinite(model.cost) || !model.gradient.allFinite() || !model.information.allFinite()) {
+    return false;
+  }
+  const Eigen::LDLT<LandmarkModel::Matrix> factor(model.information);
+  const LandmarkModel::Vector pivots = factor.vectorD();
+  LandmarkModel::Matrix rows = factor.transpositionsP() * LandmarkModel::Matrix::Identity();
+  rows = factor.matrixU() * rows;
+  LandmarkModel::Vector gradient = factor.transpositionsP() * model.gradient;
+  factor.matrixL().solveInPlace(gradient);
+  Eigen::Matrix<double, kLandmarkDof + 1, kLandmarkDof> d_landmark;
+  d_landmark.setZero();
+  for (int i = 0; i < kLandmarkDof; ++i) {
+    if (!(pivots[i] > kMinPivotShare * pivots.maxCoeff())) continue;
+    values[i] = gradient[i] / std::sqrt(pivots[i]);
+    d_landmark.row(i) = std::sqrt(pivots[i]) * rows.row(i);
+  }
+  rest = std::sqrt(std::max(0.0, 2.0 * model.cost - values.squaredNorm()));
+  observation.WriteJacobians<kLandmarkDof + 1>(d_landmark, blocks, jacobians);
+  return true;
 }
 
 }  // namespace soslam

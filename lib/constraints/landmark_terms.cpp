@@ -1,63 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "constraints/landmark_terms.h"
 
-#include <limits>
-
 #include "constraints/loss.h"
 #include "constraints/parameters.h"
 
 namespace soslam {
-namespace {
-
-using FewResiduals = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, LandmarkTerm::kMaxResiduals>;
-
-}  // namespace
-
-double LandmarkTerm::Value(const Landmark& landmark) const {
-  FewResiduals residuals(NumResiduals());
-  Evaluate(landmark, residuals, nullptr);
-  return 0.5 * residuals.squaredNorm();
-}
-
-void LandmarkTerm::AddTo(const Landmark& landmark, LandmarkModel* sum) const {
-  FewResiduals residuals(NumResiduals());
-  Jacobian jacobian(NumResiduals(), kLandmarkDof);
-  Evaluate(landmark, residuals, &jacobian);
-  for (Eigen::Index row = 0; row < residuals.size(); ++row) {
-    sum->Add(residuals[row], jacobian.row(row).transpose());
-  }
-}
-
-BoxTerm::BoxTerm(const std::array<BoxEdge, 4>& edges, const Landmark& linearisation_in_camera)
-    : edges_(edges) {
-  for (size_t i = 0; i < edges.size(); ++i) depths_[i] = {edges[i], linearisation_in_camera};
-}
-
-void BoxTerm::Evaluate(const Landmark& landmark_in_camera, Residuals residuals,
-                       Jacobian* jacobian) const {
-  for (size_t i = 0; i < edges_.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    LandmarkJacobian1 d_landmark;
-    residuals[row] = Tangency(edges_[i], landmark_in_camera, depths_[i].At(landmark_in_camera), 0.0,
-                              jacobian != nullptr ? &d_landmark : nullptr);
-    if (jacobian != nullptr) jacobian->row(row) = d_landmark;
-  }
-}
-
-void OutlineTerm::Evaluate(const Landmark& landmark_in_camera, Residuals residuals,
-                           Jacobian* jacobian) const {
-  if (!IsInFront(landmark_in_camera)) {
-    residuals.setConstant(std::numeric_limits<double>::quiet_NaN());
-    if (jacobian != nullptr) jacobian->setConstant(std::numeric_limits<double>::quiet_NaN());
-    return;
-  }
-  for (size_t i = 0; i < edges_.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    LandmarkJacobian1 d_landmark;
-    residuals[row] = OutlineExcess(edges_[i], landmark_in_camera, &d_landmark);
-    if (jacobian != nullptr) jacobian->row(row) = d_landmark;
-  }
-}
 
 RatioRows::RatioRows(const ShapePrior& prior) {
   const double correlation = prior.log_correlation;

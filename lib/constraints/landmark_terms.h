@@ -4,61 +4,17 @@
 #include <ceres/cost_function.h>
 
 #include <Eigen/Core>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <utility>
 
 #include "constraints/landmark_cost.h"
 #include "constraints/standing_on_plane.h"
-#include "constraints/tangency.h"
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
 #include "model/shape_prior.h"
 
 namespace soslam {
-
-// A cost of few residuals, each with unit variance.
-class LandmarkTerm : public LandmarkCost {
- public:
-  static constexpr int kMaxResiduals = 4;
-  using Residuals = Eigen::Ref<Eigen::VectorXd>;
-  using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, kLandmarkDof, 0, kMaxResiduals>;
-
-  virtual int NumResiduals() const = 0;
-  // `jacobian` (NumResiduals() x 9) may be null.
-  virtual void Evaluate(const Landmark& landmark, Residuals residuals,
-                        Jacobian* jacobian) const = 0;
-
-  double Value(const Landmark& landmark) const final;
-  void AddTo(const Landmark& landmark, LandmarkModel* sum) const final;
-};
-
-// Tangencies of the four edges of one detection, with the TangentDepthRatio of each.
-class BoxTerm final : public LandmarkTerm {
- public:
-  BoxTerm(const std::array<BoxEdge, 4>& edges, const Landmark& linearisation_in_camera);
-  int NumResiduals() const override { return 4; }
-  void Evaluate(const Landmark& landmark_in_camera, Residuals residuals,
-                Jacobian* jacobian) const override;
-
- private:
-  std::array<BoxEdge, 4> edges_;
-  std::array<TangentDepthRatio, 4> depths_;
-};
-
-// Signed distances (OutlineExcess) by which the silhouette reaches outside the four edges of one
-// detection. Not finite if the object is not wholly in front of the camera.
-class OutlineTerm final : public LandmarkTerm {
- public:
-  explicit OutlineTerm(const std::array<BoxEdge, 4>& edges) : edges_(edges) {}
-  int NumResiduals() const override { return 4; }
-  void Evaluate(const Landmark& landmark_in_camera, Residuals residuals,
-                Jacobian* jacobian) const override;
-
- private:
-  std::array<BoxEdge, 4> edges_;
-};
 
 // Prior of the ratios a / c and b / c as two residuals of unit variance that are linear in the
 // logarithms of the half axes: that of the first ratio, and that of the second given the first

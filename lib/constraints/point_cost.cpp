@@ -46,8 +46,11 @@ double SizeForPoints(const std::vector<Landmark>& landmarks) {
 }
 
 PointCost::PointCost(const std::vector<ObjectPoint>& points, const Landmark& start_in_camera,
-                     double size_m, const PointOptions& options, double weight)
-    : outlier_probability_(options.point_outlier_probability), weight_(weight) {
+                     double size_m, const PointOptions& options, double weight,
+                     SecondDerivatives second_derivatives)
+    : outlier_probability_(options.point_outlier_probability),
+      weight_(weight),
+      second_derivatives_(second_derivatives) {
   const double sharp_m = options.point_sigma_fraction * size_m;
   const double rough_m = options.point_roughness_fraction * size_m;
   for (const ObjectPoint& point : points) {
@@ -87,28 +90,21 @@ std::pair<double, double> PointCost::CostAndWeight(const Density& density, doubl
   return {-std::log(mixture.Sum() / density.highest), weight};
 }
 
-double PointCost::Information(const Density& /*density*/, double /*distance*/,
-                              double weight) const {
-  return weight;
-}
-
-double PointInformation::MeanSquaredDerivative(const Density& density, double from, double to,
-                                               double step) const {
-  double mean = 0.0;
-  for (double distance = from + 0.5 * step; distance < to; distance += step) {
-    const double derivative = CostAndWeight(density, distance).second * distance;
-    mean += step * derivative * derivative * MixtureAt(density, distance).Sum();
-  }
-  return mean;
-}
-
-double PointInformation::Information(const Density& density, double distance,
-                                     double /*weight*/) const {
+double PointCost::FisherInformation(const Density& density, double distance) const {
+  // Integral of the squared derivative of the cost, times the density, over a range of distances.
+  const auto mean_squared_derivative = [&](double from, double to, double step) {
+    double mean = 0.0;
+    for (double at = from + 0.5 * step; at < to; at += step) {
+      const double derivative = CostAndWeight(density, at).second * at;
+      mean += step * derivative * derivative * MixtureAt(density, at).Sum();
+    }
+    return mean;
+  };
   const double near = kFarthestSigmas * density.sigma_m;
   const double deep = kFarthestSigmas * density.rough_sigma_m;
   const double information =
-      MeanSquaredDerivative(density, -near, near, kStepSigmas * density.sigma_m) +
-      MeanSquaredDerivative(density, -deep, -near, kStepSigmas * density.rough_sigma_m);
+      mean_squared_derivative(-near, near, kStepSigmas * density.sigma_m) +
+      mean_squared_derivative(-deep, -near, kStepSigmas * density.rough_sigma_m);
   const double prior = density.surface * Width(density.sigma_m, density.rough_sigma_m);
   return information * MixtureAt(density, distance).Responsibility() / prior;
 }
@@ -130,8 +126,10 @@ void PointCost::AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) co
     const auto [cost, weight] = CostAndWeight(density, distance);
     model.cost += cost;
     model.gradient += weight * distance * jacobian.transpose();
-    model.information.noalias() +=
-        Information(density, distance, weight) * jacobian.transpose() * jacobian;
+    const double information = second_derivatives_ == SecondDerivatives::kMaximisation
+                                   ? weight
+                                   : FisherInformation(density, distance);
+    model.information.noalias() += information * jacobian.transpose() * jacobian;
   }
   sum->Add(model, weight_);
 }

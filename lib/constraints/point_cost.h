@@ -83,12 +83,18 @@ struct PointEvidence {
 // landmark, makes the cost zero for a point on the surface with the smallest standard deviation of
 // any normal, and positive otherwise: costs with one size can be compared. Second derivatives are
 // those of expectation maximisation: each point pulls with its posterior probability.
-class PointCost : public LandmarkCost {
+class PointCost final : public LandmarkCost {
  public:
+  enum class SecondDerivatives {
+    kMaximisation,
+    kFisherInformation,  // of the points, as covariances need
+  };
+
   // Widths are those of an object of this size along the normals of `start_in_camera`; the cost is
   // multiplied by `weight`.
   PointCost(const std::vector<ObjectPoint>& points, const Landmark& start_in_camera, double size_m,
-            const PointOptions& options, double weight);
+            const PointOptions& options, double weight,
+            SecondDerivatives second_derivatives = SecondDerivatives::kMaximisation);
 
   double Value(const Landmark& landmark_in_camera) const override;
   void AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) const override;
@@ -97,7 +103,7 @@ class PointCost : public LandmarkCost {
   // In the order of the points.
   std::vector<PointPosterior> Posteriors(const Landmark& landmark_in_camera) const;
 
- protected:
+ private:
   struct Density {
     Eigen::Vector3d position;
     int index;  // of the point
@@ -121,28 +127,15 @@ class PointCost : public LandmarkCost {
   // Negative logarithm of the density at a distance, relative to the highest, and the factor w of
   // its derivative w d.
   std::pair<double, double> CostAndWeight(const Density& density, double distance) const;
-
- private:
-  // Second derivative (1 / m^2) by the distance, where the derivative by it is w d.
-  virtual double Information(const Density& density, double distance, double weight) const;
+  // Fisher information (1 / m^2) of a point's distance, shared out by responsibility: its mean over
+  // all distances is that of a point, and points far away have none. That of expectation
+  // maximisation is larger, as it takes for known which points are of the object.
+  double FisherInformation(const Density& density, double distance) const;
 
   std::vector<Density> densities_;
   double outlier_probability_;
   double weight_;
-};
-
-// The same with the Fisher information of the points as second derivatives, as covariances need.
-class PointInformation final : public PointCost {
- public:
-  using PointCost::PointCost;
-
- private:
-  // Integral of the squared derivative of the cost, times the density, over a range of distances.
-  double MeanSquaredDerivative(const Density& density, double from, double to, double step) const;
-  // Fisher information (1 / m^2) of a point's distance, shared out by responsibility: its mean over
-  // all distances is that of a point, and points far away have none. That of expectation
-  // maximisation is larger, as it takes for known which points are of the object.
-  double Information(const Density& density, double distance, double weight) const override;
+  SecondDerivatives second_derivatives_;
 };
 
 }  // namespace soslam

@@ -151,6 +151,37 @@ double OutlineExcess(const BoxEdge& edge, const Landmark& landmark_in_camera,
   return is_free ? 0.0 : excess_px / edge.sigma_px;
 }
 
+BoxTerm::BoxTerm(const std::array<BoxEdge, 4>& edges, const Landmark& linearisation_in_camera)
+    : edges_(edges) {
+  for (size_t i = 0; i < edges.size(); ++i) depths_[i] = {edges[i], linearisation_in_camera};
+}
+
+void BoxTerm::Evaluate(const Landmark& landmark_in_camera, Residuals residuals,
+                       Jacobian* jacobian) const {
+  for (size_t i = 0; i < edges_.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    LandmarkJacobian1 d_landmark;
+    residuals[row] = Tangency(edges_[i], landmark_in_camera, depths_[i].At(landmark_in_camera), 0.0,
+                              jacobian != nullptr ? &d_landmark : nullptr);
+    if (jacobian != nullptr) jacobian->row(row) = d_landmark;
+  }
+}
+
+void OutlineTerm::Evaluate(const Landmark& landmark_in_camera, Residuals residuals,
+                           Jacobian* jacobian) const {
+  if (!IsInFront(landmark_in_camera)) {
+    residuals.setConstant(std::numeric_limits<double>::quiet_NaN());
+    if (jacobian != nullptr) jacobian->setConstant(std::numeric_limits<double>::quiet_NaN());
+    return;
+  }
+  for (size_t i = 0; i < edges_.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    LandmarkJacobian1 d_landmark;
+    residuals[row] = OutlineExcess(edges_[i], landmark_in_camera, &d_landmark);
+    if (jacobian != nullptr) jacobian->row(row) = d_landmark;
+  }
+}
+
 TangencyResidual::TangencyResidual(const BoxEdge& edge, const Landmark& initial_in_camera)
     : edge_(edge),
       shape_exponents_(initial_in_camera.shape_exponents),

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <ceres/sized_cost_function.h>
-
 #include <Eigen/Core>
 #include <array>
 #include <optional>
 
-#include "constraints/parameters.h"
+#include "constraints/landmark_cost.h"
 #include "geometry/box.h"
 #include "geometry/camera.h"
 #include "model/shape_prior.h"
@@ -84,6 +82,32 @@ Eigen::Matrix<double, 2, 3> TangencyCurvature(const BoxEdge& edge,
 // Value and Jacobian are not numbers unless the tangent point is in front of the camera.
 double OutlineExcess(const BoxEdge& edge, const Landmark& landmark_in_camera,
                      LandmarkJacobian1* jacobian);
+
+// Tangencies of the four edges of one detection, with the TangentDepthRatio of each.
+class BoxTerm final : public LandmarkTerm {
+ public:
+  BoxTerm(const std::array<BoxEdge, 4>& edges, const Landmark& linearisation_in_camera);
+  int NumResiduals() const override { return 4; }
+  void Evaluate(const Landmark& landmark_in_camera, Residuals residuals,
+                Jacobian* jacobian) const override;
+
+ private:
+  std::array<BoxEdge, 4> edges_;
+  std::array<TangentDepthRatio, 4> depths_;
+};
+
+// Signed distances (OutlineExcess) by which the silhouette reaches outside the four edges of one
+// detection. Not finite if the object is not wholly in front of the camera.
+class OutlineTerm final : public LandmarkTerm {
+ public:
+  explicit OutlineTerm(const std::array<BoxEdge, 4>& edges) : edges_(edges) {}
+  int NumResiduals() const override { return 4; }
+  void Evaluate(const Landmark& landmark_in_camera, Residuals residuals,
+                Jacobian* jacobian) const override;
+
+ private:
+  std::array<BoxEdge, 4> edges_;
+};
 
 // The tangency of one box edge in the back end, with the TangentDepthRatio of the initial estimate.
 //

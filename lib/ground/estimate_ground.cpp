@@ -142,18 +142,17 @@ class Estimation {
 
   void FindUpPrior(const std::vector<SegmentView>& views) {
     const std::vector<Rigid3d> poses = PosesOf(sequence_);
-    const double correlation = options_.view_correlation_deg * kRadPerDeg;
-    up_prior = RobustUpPriorFromCameras(poses, options_.camera_roll_sigma_deg * kRadPerDeg,
-                                        options_.camera_pitch_sigma_deg * kRadPerDeg, correlation,
-                                        result.up_of_cameras.holding);
+    const double correlation = options_.upright.ViewCorrelation();
+    up_prior =
+        RobustUpPriorFromCameras(poses, options_.tilt, correlation, result.up_of_cameras.holding);
     without_verticals = WithCommonError(up_prior);
     result.verticals = !views.empty();
     if (result.verticals) {
       constexpr double kMaxTilt = 12.0 * kRadPerDeg;
       std::vector<SegmentView> in_world = views;
       for (size_t i = 0; i < poses.size(); ++i) in_world[i].world_from_camera = poses[i];
-      up_prior = WithVerticals(up_prior, in_world, options_.vertical_sigma_deg * kRadPerDeg,
-                               correlation, kMaxTilt);
+      up_prior =
+          WithVerticals(up_prior, in_world, options_.verticals.Sigma(), correlation, kMaxTilt);
     }
     up_prior = WithCommonError(up_prior);
   }

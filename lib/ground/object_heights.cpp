@@ -154,10 +154,8 @@ double WrongProbability(const Sequence& sequence, const MeasuredObject& object,
 
 AssociateOptions FitOptions(const GroundOptions& options) {
   AssociateOptions fit;
-  fit.camera_roll_sigma_deg = options.camera_roll_sigma_deg;
-  fit.camera_pitch_sigma_deg = options.camera_pitch_sigma_deg;
-  fit.view_correlation_deg = options.view_correlation_deg;
-  fit.box_sigma_fraction = options.box_sigma_fraction;
+  fit.tilt = options.tilt;
+  fit.upright = options.upright;
   return fit;
 }
 
@@ -172,7 +170,7 @@ std::vector<MeasuredObject> MeasureObjects(const Sequence& sequence,
     if (static_cast<int>(group.size()) < options.min_boxes) continue;
     objects.push_back({group, VotesOf(sequence, group), {}, {}});
   }
-  ParallelFor("objects", static_cast<int>(objects.size()), threads, [&](int i) {
+  ParallelFor("objects", objects.size(), threads, [&](size_t i) {
     MeasuredObject& object = objects[i];
     Measurement measurement(sequence, planes, up, options, &object);
     for (const auto& [label, votes] : object.votes) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <string>
 
+#include "association/options.h"
 #include "base/options.h"
 
 namespace soslam {
@@ -22,15 +23,11 @@ struct GroundOptions {
   double camera_height_log_sigma = 0.1;
   double wrong_height_probability = 0.05;
   double same_label_correlation = 0.3;
-  std::string moving_labels = "person, pedestrian, cyclist, dog, cat, bird, horse, sheep, cow";
+  std::string moving_labels = kMovingLabels;
   int min_boxes = 3;
-  double box_sigma_fraction = 0.05;
-  double view_correlation_deg = 20.0;
-  double camera_roll_sigma_deg = 5.0;
-  double camera_pitch_sigma_deg = 30.0;
-  bool verticals = true;
-  double vertical_sigma_deg = 1.0;
-  double vertical_min_length_px = 30.0;
+  UprightOptions upright = kUprightTracks;
+  CameraTilt tilt;
+  VerticalOptions verticals;
 
   void Describe(OptionVisitor& visit) {
     visit.Group("Ground");
@@ -58,26 +55,19 @@ struct GroundOptions {
                "labels of things that move, separated by commas; they are not used");
     visit.Group("Objects");
     visit.Integer("min_boxes", &min_boxes, {2, 100000}, "objects with fewer boxes are not used");
-    visit.Real("box_sigma_fraction", &box_sigma_fraction, {1e-3, 1.0},
-               "standard deviation of a box edge about that of the object's body, as a fraction of "
-               "the box's width or height, at least 1 px");
-    visit.Real("view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
-               "boxes from viewpoints closer than this angle at the object count as one; so do the "
-               "tilts of cameras that look less than this apart");
+    upright.DescribeSigmaAboutBody(
+        visit,
+        "standard deviation of a box edge about that of the object's body, as a fraction of the "
+        "box's width or height, at least 1 px");
+    upright.DescribeViewCorrelation(
+        visit,
+        "boxes from viewpoints closer than this angle at the object count as one; so do the tilts "
+        "of cameras that look less than this apart");
     visit.Group("Up");
-    visit.Real("camera_roll_sigma_deg", &camera_roll_sigma_deg, {1e-3, 1e3},
-               "standard deviation of the tilt of the cameras' x axes; large: unknown");
-    visit.Real("camera_pitch_sigma_deg", &camera_pitch_sigma_deg, {1e-3, 1e3},
-               "standard deviation of the tilt of the cameras' optical axes; large: unknown");
-    visit.Flag("verticals", &verticals,
-               "look for vertical edges in the images, where there are any");
-    visit.OnlyWhere({{"verticals", {"true"}}}, [&] {
-      visit.Real("vertical_sigma_deg", &vertical_sigma_deg, {1e-3, 90.0},
-                 "standard deviation of the direction of a vertical edge; those off by more than "
-                 "three are of other edges");
-      visit.Real("vertical_min_length_px", &vertical_min_length_px, {1.0, 1e5},
-                 "shorter edges are not used");
-    });
+    tilt.Describe(visit);
+    verticals.Describe(visit,
+                       "standard deviation of the direction of a vertical edge; those off by more "
+                       "than three are of other edges");
   }
 };
 

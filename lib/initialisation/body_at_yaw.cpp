@@ -2,7 +2,6 @@
 #include "initialisation/body_at_yaw.h"
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <cmath>
 
 #include "constraints/loss.h"
@@ -58,7 +57,21 @@ struct BodyAtYaw::LinearSystem {
 BodyAtYaw::BodyAtYaw(const ObjectEvidence& evidence)
     : evidence_(evidence), ground_(evidence.plane), loss_(evidence.huber_delta) {
   if (evidence.HasRatio()) ratio_.emplace(*evidence.prior);
-  Start();
+  // Initial guess at the point nearest to all rays, as high as the boxes.
+  const Eigen::Vector3d point = NearestToAllRays(evidence);
+  const Eigen::Vector3d from_origin = point - ground_.origin;
+  start_.foot = {from_origin.dot(ground_.x), from_origin.dot(ground_.y)};
+  start_.half_axes.setOnes();
+  if (evidence.prior) start_.half_axes.head<2>() = evidence.prior->ratio;
+  double sum = 0.0;
+  for (const BoxView& view : evidence.views) {
+    const double depth = (view.camera_from_reference * point).z();
+    sum += 0.5 * std::abs(depth) * HeightAtUnitDepth(view);
+  }
+  start_.half_axes *= sum / static_cast<double>(evidence.views.size());
+  if (evidence.height_is_free) {
+    start_.height_m = from_origin.dot(ground_.normal) - start_.half_axes.z();
+  }
 }
 
 std::optional<Landmark> BodyAtYaw::Solve(double yaw) const {
@@ -82,24 +95,6 @@ std::optional<Landmark> BodyAtYaw::Solve(double yaw) const {
   return landmark;
 }
 
-// Initial guess at the point nearest to all rays, as high as the boxes.
-void BodyAtYaw::Start() {
-  const Eigen::Vector3d point = NearestToAllRays(evidence_);
-  const Eigen::Vector3d from_origin = point - ground_.origin;
-  start_.foot = {from_origin.dot(ground_.x), from_origin.dot(ground_.y)};
-  start_.half_axes.setOnes();
-  if (evidence_.prior) start_.half_axes.head<2>() = evidence_.prior->ratio;
-  double sum = 0.0;
-  for (const BoxView& view : evidence_.views) {
-    const double depth = (view.camera_from_reference * point).z();
-    sum += 0.5 * std::abs(depth) * HeightAtUnitDepth(view);
-  }
-  start_.half_axes *= sum / static_cast<double>(evidence_.views.size());
-  if (evidence_.height_is_free) {
-    start_.height_m = from_origin.dot(ground_.normal) - start_.half_axes.z();
-  }
-}
-
 Landmark BodyAtYaw::LandmarkOf(const Body& body) const {
   UprightVector parameters;
   parameters << body.yaw, body.foot, body.half_axes.array().log().matrix(), body.height_m;
@@ -111,8 +106,23 @@ bool BodyAtYaw::Step(int round, Body* body) const {
   LinearSystem system;
   const Landmark landmark = LandmarkOf(*body);
   for (const BoxView& view : evidence_.views) AddView(view, landmark, *body, is_first, &system);
-  if (ratio_) AddRatio(*body, &system);
-  if (evidence_.HasSize()) AddSize(*body, &system);
+  // RatioTerm to first order about the object of this height with the prior's ratios. There both
+  // residuals are zero, and a derivative by a half axis is that by its logarithm divided by the
+  // half axis.
+  for (int i = 0; ratio_ && i < 2; ++i) {
+    const Eigen::Vector3d of_prior = body->half_axes.z() * evidence_.prior->ratio.homogeneous();
+    LinearSystem::Row row = LinearSystem::Row::Zero();
+    row.segment<3>(2) = ratio_->d_log_half_axes.row(i).transpose().cwiseQuotient(of_prior);
+    system.Add(row, 0.0, 1.0);
+  }
+  if (evidence_.HasSize()) {  // HeightTerm to first order about the previous height
+    const LogNormal& height_m = *evidence_.prior->height_m;
+    const Eigen::Index axis = OwnHeightAxis(evidence_.RestsOn());
+    const double before = body->half_axes[axis];
+    LinearSystem::Row row = LinearSystem::Row::Zero();
+    row(2 + axis) = 1.0 / (height_m.log_sigma * before);
+    system.Add(row, HeightResidual(height_m, before) - row(2 + axis) * before, 1.0);
+  }
   LinearSystem::FromFree from_free = LinearSystem::Matrix::Identity();
   if (ratio_ && round < kRoundsWithFixedRatio) {
     from_free.col(2).segment<3>(2) = evidence_.prior->ratio.homogeneous();
@@ -164,28 +174,6 @@ void BodyAtYaw::AddView(const BoxView& view, const Landmark& landmark_in_referen
     row(5) = evidence_.height_is_free ? d_height : 0.0;
     system->Add(row, *residual - row.dot(at), view.weight * robust);
   }
-}
-
-// RatioTerm to first order about the object of this height with the prior's ratios. There both
-// residuals are zero, and a derivative by a half axis is that by its logarithm divided by the
-// half axis.
-void BodyAtYaw::AddRatio(const Body& body, LinearSystem* system) const {
-  const Eigen::Vector3d of_prior = body.half_axes.z() * evidence_.prior->ratio.homogeneous();
-  for (int i = 0; i < 2; ++i) {
-    LinearSystem::Row row = LinearSystem::Row::Zero();
-    row.segment<3>(2) = ratio_->d_log_half_axes.row(i).transpose().cwiseQuotient(of_prior);
-    system->Add(row, 0.0, 1.0);
-  }
-}
-
-// HeightTerm to first order about the previous height.
-void BodyAtYaw::AddSize(const Body& body, LinearSystem* system) const {
-  const LogNormal& height_m = *evidence_.prior->height_m;
-  const Eigen::Index axis = OwnHeightAxis(evidence_.RestsOn());
-  const double before = body.half_axes[axis];
-  LinearSystem::Row row = LinearSystem::Row::Zero();
-  row(2 + axis) = 1.0 / (height_m.log_sigma * before);
-  system->Add(row, HeightResidual(height_m, before) - row(2 + axis) * before, 1.0);
 }
 
 }  // namespace soslam

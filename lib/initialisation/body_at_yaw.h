@@ -38,13 +38,10 @@ class BodyAtYaw {
   // Normal equations in foot x, foot y, a, b, c and the foot's height above the plane.
   struct LinearSystem;
 
-  void Start();
   Landmark LandmarkOf(const Body& body) const;
   bool Step(int round, Body* body) const;
   void AddView(const BoxView& view, const Landmark& landmark, const Body& body, bool is_first,
                LinearSystem* system) const;
-  void AddRatio(const Body& body, LinearSystem* system) const;
-  void AddSize(const Body& body, LinearSystem* system) const;
 
   const ObjectEvidence& evidence_;
   UprightGround ground_;

@@ -1,38 +1,52 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
+#include <functional>
 #include <optional>
 #include <vector>
 
-#include "base/parallel.h"
+#include "initialisation/cuboids.h"
+#include "initialisation/object_points.h"
+#include "initialisation/single_frame.h"
+#include "initialisation/upright_options.h"
 #include "model/estimates.h"
 #include "model/sequence.h"
+#include "model/shape_prior.h"
 
 namespace soslam {
 
-// An estimate per detection, each from the value of its object; a failure where that has none.
-template <typename Value, typename Estimator>
-LandmarkEstimates EstimateObservations(const Sequence& sequence,
-                                       const std::vector<std::optional<Value>>& of_objects,
-                                       int threads, const Estimator& estimator) {
-  LandmarkEstimates estimates;
-  estimates.observations.resize(sequence.detections.size());
-  ParallelFor("detections", static_cast<int>(sequence.detections.size()), threads, [&](int i) {
-    ObservationEstimate& estimate = estimates.observations[i];
-    const auto& value = of_objects[sequence.detections[i].object_index];
-    if (value) {
-      estimate = estimator(*value, i);
-    } else {
-      estimate.failure = "no_ratio_for_label";
-    }
-    estimate.detection_index = i;
-  });
-  return estimates;
-}
+// Single-frame landmarks of all detections (one ObservationEstimate each). Detections of objects
+// without a ratio fail with no_ratio_for_label.
+LandmarkEstimates InitialiseSingleFrame(const Sequence& sequence,
+                                        const std::vector<std::optional<Eigen::Vector2d>>& ratios,
+                                        const SingleFrameOptions& options, int threads);
 
-// The detected objects, still without landmarks; those that move have failed. `detections`: see
-// DetectionsByObject.
-std::vector<ObjectEstimate> DetectedObjects(const Sequence& sequence,
-                                            const std::vector<std::vector<int>>& detections);
+// Upright landmarks of any shape exponents for all detections: all hypotheses of FitObject, lowest
+// cost first. `yaw_priors`: one per detection, or empty. `points`: none if null.
+// Failures: no_ratio_for_label, fewer_than_three_measured_edges, no_solution.
+LandmarkEstimates InitialiseUpright(const Sequence& sequence,
+                                    const std::vector<std::optional<ShapePrior>>& priors,
+                                    const UprightOptions& options, int threads,
+                                    const std::vector<std::optional<YawPrior>>& yaw_priors = {},
+                                    const PointsInFrames* points = nullptr);
+
+// CubeSLAM's cuboids of all detections: the best one at each yaw, lowest cost first. `edges_of`
+// gives the edge maps of a frame, and is called from several threads. Failures:
+// frame_without_image, no_edges, no_solution.
+LandmarkEstimates InitialiseCuboids(const Sequence& sequence,
+                                    const std::function<EdgeMaps(const Frame&)>& edges_of,
+                                    const CuboidOptions& options, int threads);
+
+// One upright landmark per object from all of its boxes, with the frames' estimated poses; without
+// a prior, a cuboid of free ratio. See WeighViews for the correlation. Failures: moving,
+// not_determined_by_its_views.
+LandmarkEstimates InitialiseMultiView(const Sequence& sequence,
+                                      const std::vector<std::optional<ShapePrior>>& priors,
+                                      const UprightOptions& options, int threads);
+
+// One landmark per object by SVD over all of its boxes, with the frames' estimated poses. Failures:
+// moving, fewer_than_three_views, no_finite_quadric.
+LandmarkEstimates InitialiseSvd(const Sequence& sequence);
 
 }  // namespace soslam

@@ -3,11 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
+#include "geometry/angles.h"
 #include "geometry/triangulation.h"
-#include "initialisation/view_weights.h"
 
 namespace soslam {
 namespace {
@@ -29,17 +28,7 @@ void AddDepthsOfSize(const ObjectEvidence& evidence, PointOnPlanes* point) {
 // Costs that do not depend on the boxes.
 LandmarkCosts PriorCosts(const ObjectEvidence& evidence) {
   LandmarkCosts costs;
-  if (evidence.HasRatio()) costs.push_back(std::make_unique<RatioTerm>(*evidence.prior));
-  if (evidence.HasSize()) {
-    costs.push_back(std::make_unique<HeightTerm>(*evidence.prior->height_m, evidence.RestsOn()));
-  }
-  if (evidence.scene_axis) {
-    costs.push_back(
-        std::make_unique<AxisTerm>(evidence.plane, *evidence.scene_axis, evidence.axes_weight));
-  }
-  if (evidence.yaw_prior) {
-    costs.push_back(std::make_unique<YawTerm>(evidence.plane, *evidence.yaw_prior));
-  }
+  for (auto& term : PriorTerms(evidence)) costs.push_back(std::move(term));
   if (evidence.MayLean()) {
     costs.push_back(std::make_unique<LeaningTerm>(evidence.plane, evidence.standing));
   }
@@ -75,12 +64,20 @@ LandmarkCosts BoxAndPriorCosts(const ObjectEvidence& evidence, const Landmark& l
 
 }  // namespace
 
+std::array<BoxEdge, 4> EdgesOf(const Sequence& sequence, const Detection& detection,
+                               const std::optional<ShapePrior>& prior,
+                               const UprightOptions& options) {
+  return BoxEdges(sequence.CameraOf(detection), detection.box, detection.is_one_sided,
+                  options.detection_sigma_fraction, prior ? prior->edge_bias : EdgeBias());
+}
+
 ObjectEvidence EvidenceInWorld(const Sequence& sequence, const std::vector<int>& detections,
                                const std::optional<ShapePrior>& prior,
-                               double detection_sigma_fraction) {
+                               const UprightOptions& options) {
   ObjectEvidence evidence;
   evidence.prior = prior;
-  const EdgeBias bias = prior ? prior->edge_bias : EdgeBias();
+  evidence.axes_weight = options.axes_weight;
+  evidence.huber_delta = options.huber_delta;
   for (const int index : detections) {
     const Detection& detection = sequence.detections[index];
     const Object& object = sequence.ObjectOf(detection);
@@ -89,8 +86,7 @@ ObjectEvidence EvidenceInWorld(const Sequence& sequence, const std::vector<int>&
       evidence.plane = support.plane_in_world;
       evidence.scene_axis = support.scene_axis_in_world;
     }
-    evidence.views.push_back({BoxEdges(sequence.CameraOf(detection), detection.box,
-                                       detection.is_one_sided, detection_sigma_fraction, bias),
+    evidence.views.push_back({EdgesOf(sequence, detection, prior, options),
                               sequence.FrameOf(detection).world_from_camera.Inverse()});
   }
   return evidence;
@@ -98,14 +94,13 @@ ObjectEvidence EvidenceInWorld(const Sequence& sequence, const std::vector<int>&
 
 ObjectEvidence EvidenceInCamera(const Sequence& sequence, const Detection& detection,
                                 const std::optional<ShapePrior>& prior,
-                                double detection_sigma_fraction) {
+                                const UprightOptions& options) {
   ObjectEvidence evidence;
-  evidence.views = {{BoxEdges(sequence.CameraOf(detection), detection.box, detection.is_one_sided,
-                              detection_sigma_fraction, prior ? prior->edge_bias : EdgeBias()),
-                     Rigid3d()}};
+  evidence.views = {{EdgesOf(sequence, detection, prior, options), Rigid3d()}};
   evidence.plane = detection.plane_in_camera;
   evidence.prior = prior;
   evidence.scene_axis = SceneAxisInCamera(sequence, detection);
+  evidence.axes_weight = options.axes_weight;
   evidence.huber_delta = std::numeric_limits<double>::infinity();
   return evidence;
 }
@@ -136,6 +131,24 @@ Eigen::Vector3d NearestToAllRays(const ObjectEvidence& evidence) {
   return point.Solve();
 }
 
+std::vector<double> DirectionWeights(const std::vector<Eigen::Vector3d>& directions,
+                                     double correlation_rad) {
+  std::vector<double> similar(directions.size(), 1.0);  // sums over all directions
+  if (correlation_rad > 0.0) {
+    for (size_t i = 0; i < directions.size(); ++i) {
+      for (size_t j = 0; j < i; ++j) {
+        const double ratio = AngleBetween(directions[i], directions[j]) / correlation_rad;
+        const double similarity = std::exp(-0.5 * ratio * ratio);
+        similar[i] += similarity;
+        similar[j] += similarity;
+      }
+    }
+  }
+  std::vector<double> weights;
+  for (const double sum : similar) weights.push_back(1.0 / sum);
+  return weights;
+}
+
 void WeighViews(double correlation_rad, ObjectEvidence* evidence) {
   const Eigen::Vector3d centre = NearestToAllRays(*evidence);
   std::vector<Eigen::Vector3d> directions;
@@ -144,6 +157,22 @@ void WeighViews(double correlation_rad, ObjectEvidence* evidence) {
   }
   const auto weights = DirectionWeights(directions, correlation_rad);
   for (size_t i = 0; i < weights.size(); ++i) evidence->views[i].weight = weights[i];
+}
+
+std::vector<std::unique_ptr<const LandmarkTerm>> PriorTerms(const ObjectEvidence& evidence) {
+  std::vector<std::unique_ptr<const LandmarkTerm>> terms;
+  if (evidence.HasRatio()) terms.push_back(std::make_unique<RatioTerm>(*evidence.prior));
+  if (evidence.HasSize()) {
+    terms.push_back(std::make_unique<HeightTerm>(*evidence.prior->height_m, evidence.RestsOn()));
+  }
+  if (evidence.scene_axis && evidence.axes_weight > 0.0) {
+    terms.push_back(
+        std::make_unique<AxisTerm>(evidence.plane, *evidence.scene_axis, evidence.axes_weight));
+  }
+  if (evidence.yaw_prior) {
+    terms.push_back(std::make_unique<YawTerm>(evidence.plane, *evidence.yaw_prior));
+  }
+  return terms;
 }
 
 LandmarkCosts CostsAt(const ObjectEvidence& evidence, const Landmark& linearisation) {

@@ -15,6 +15,7 @@
 #include "constraints/tangency.h"
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
+#include "initialisation/upright_options.h"
 #include "model/sequence.h"
 #include "model/shape_prior.h"
 
@@ -62,17 +63,22 @@ struct ObjectEvidence {
   }
 };
 
+// The edges of a detection's box, without the bias of its label, for fits and the back end.
+std::array<BoxEdge, 4> EdgesOf(const Sequence& sequence, const Detection& detection,
+                               const std::optional<ShapePrior>& prior,
+                               const UprightOptions& options);
+
 // Evidence of one object in the world, from its detections (indices into Sequence::detections, at
 // least one), with the frames' estimated poses, on the object's plane, if it has one. All views
 // have weight 1.
 ObjectEvidence EvidenceInWorld(const Sequence& sequence, const std::vector<int>& detections,
                                const std::optional<ShapePrior>& prior,
-                               double detection_sigma_fraction);
+                               const UprightOptions& options);
 
 // Evidence of one detection in its camera, without a loss.
 ObjectEvidence EvidenceInCamera(const Sequence& sequence, const Detection& detection,
                                 const std::optional<ShapePrior>& prior,
-                                double detection_sigma_fraction);
+                                const UprightOptions& options);
 
 // Why an observation has no solution at any yaw.
 std::string WhyNoSolution(const ObjectEvidence& evidence);
@@ -84,8 +90,20 @@ double HeightAtUnitDepth(const BoxView& view);
 // of the support plane and the depths from the size.
 Eigen::Vector3d NearestToAllRays(const ObjectEvidence& evidence);
 
+// Weights of observations whose errors are correlated when their directions (of any length) are
+// near each other: one over the sum of exp(-(angle / correlation)^2 / 2) over all directions, the
+// own one included. Directions closer than about `correlation_rad` together count as one: the
+// misfit between a label's shape and a box is almost the same in the next frame. All weights are 1
+// where it is zero.
+std::vector<double> DirectionWeights(const std::vector<Eigen::Vector3d>& directions,
+                                     double correlation_rad);
+
 // Gives the views their DirectionWeights about NearestToAllRays.
 void WeighViews(double correlation_rad, ObjectEvidence* evidence);
+
+// What the priors of ratio, size, scene and yaw say of a landmark; a prior of weight zero says
+// nothing. Single frames, several views and the back end have these terms.
+std::vector<std::unique_ptr<const LandmarkTerm>> PriorTerms(const ObjectEvidence& evidence);
 
 // Costs of a landmark: boxes, with the tangent points at their depths on the linearisation point,
 // priors, and further evidence made for this point. Views of which the linearisation point is not

@@ -58,10 +58,16 @@ class ObjectPointFinder {
 
  private:
   void AddViews(int index, const std::vector<View>& views) {
+    std::vector<PointView> in_cameras;
+    for (const View& view : views) {
+      const Frame& frame = sequence_.frames[view.frame_index];
+      in_cameras.push_back(
+          {sequence_.CameraOf(frame), frame.world_from_camera.Inverse(), view.pixel});
+    }
     std::optional<TriangulatedPoint> triangulated;
     for (const auto& [object_index, places] : PlacesOf(views)) {
       if (places.in_box.size() < kFewestFramesInBox) continue;
-      if (!triangulated) triangulated = TriangulateViews(views);
+      if (!triangulated) triangulated = Triangulate(in_cameras, kHuberPx);
       if (!triangulated) return;
       const int anchor = places.in_box[places.in_box.size() / 2];
       ObjectPoint of_object = PointOf(*triangulated, views.size(), places, anchor);
@@ -102,16 +108,6 @@ class ObjectPointFinder {
     return places;
   }
 
-  std::optional<TriangulatedPoint> TriangulateViews(const std::vector<View>& views) const {
-    std::vector<PointView> in_cameras;
-    for (const View& view : views) {
-      const Frame& frame = sequence_.frames[view.frame_index];
-      in_cameras.push_back(
-          {sequence_.CameraOf(frame), frame.world_from_camera.Inverse(), view.pixel});
-    }
-    return Triangulate(in_cameras, kHuberPx);
-  }
-
   // Errors of the image points of one track are correlated: together they are as precise as two.
   ObjectPoint PointOf(const TriangulatedPoint& point, size_t views, const PlacesInBoxes& places,
                       int anchor) const {
@@ -125,22 +121,17 @@ class ObjectPointFinder {
     result.position = camera_from_world * point.position_in_world;
     result.covariance = rotation * covariance_in_world * rotation.transpose();
     const Object& object = sequence_.ObjectOf(DetectionAt(anchor));
-    result.prior =
-        kObjectShare * static_cast<double>(places.in_box.size()) / places.frames *
-        ProbabilityAbove(sequence_.planes[object.plane_index].plane_in_world,
-                         point.position_in_world, covariance_in_world, result.position.norm());
-    return result;
-  }
-
-  // Probability that a point is not on the plane; 0 below it.
-  double ProbabilityAbove(const Plane& plane_in_world, const Eigen::Vector3d& position_in_world,
-                          const Eigen::Matrix3d& covariance, double range) const {
+    const Plane& plane_in_world = sequence_.planes[object.plane_index].plane_in_world;
     const Eigen::Vector3d& normal = plane_in_world.normal;
-    const double height = plane_in_world.SignedDistance(position_in_world);
-    const double sigma = std::hypot(std::sqrt(normal.dot(covariance * normal)),
-                                    options_.point_range_fraction * range);
+    const double height = plane_in_world.SignedDistance(point.position_in_world);
+    const double sigma = std::hypot(std::sqrt(normal.dot(covariance_in_world * normal)),
+                                    options_.point_range_fraction * result.position.norm());
     const double deviations = 0.5 * height / sigma;
-    return height > 0.0 ? 1.0 - std::exp(-0.5 * deviations * deviations) : 0.0;
+    // Probability that the point is not on the plane; 0 below it.
+    const double is_above = height > 0.0 ? 1.0 - std::exp(-0.5 * deviations * deviations) : 0.0;
+    result.prior =
+        kObjectShare * static_cast<double>(places.in_box.size()) / places.frames * is_above;
+    return result;
   }
 
   const Sequence& sequence_;

@@ -5,7 +5,7 @@
 
 #include "base/options.h"
 #include "constraints/point_cost.h"
-#include "initialisation/cuboid_score.h"
+#include "initialisation/cuboids.h"
 #include "initialisation/single_frame.h"
 #include "initialisation/upright_options.h"
 #include "initialisation/yaw_prior.h"
@@ -31,7 +31,6 @@ struct InitialiseOptions {
   UprightOptions upright;
   YawPriorOptions yaw_prior;
   PointOptions points;
-  double view_correlation_deg = 20.0;
   CuboidOptions cuboids;
 
   void Describe(OptionVisitor& visit) {
@@ -42,22 +41,15 @@ struct InitialiseOptions {
         "label's shape by a sweep over yaw (yaw_sweep), or a cuboid that fits the edges in the "
         "image as in CubeSLAM (cuboid_proposals); or one per object from all of its "
         "observations: such a body (multi_view), or an ellipsoid by SVD (svd)");
-    visit.OnlyWhere({{"method", {"single_frame", "yaw_sweep", "multi_view"}}}, [&] {
-      visit.Choice("ratio_prior", &ratio_prior, kRatioPriorNames,
-                   "where the size ratio of eq. (11) comes from");
-    });
+    visit.OnlyWhere({{"method", {"single_frame", "yaw_sweep", "multi_view"}}},
+                    [&] { DescribeRatioPrior(visit, &ratio_prior); });
     visit.OnlyWhere({{"method", {"single_frame"}}}, [&] { single_frame.Describe(visit); });
     visit.OnlyWhere({{"method", {"yaw_sweep", "multi_view"}}}, [&] {
       upright.Describe(visit);  // the options up to yaw_prior belong to its group
-      visit.Choice("shape", &shape, kShapeSourceNames, "where the shape exponents come from");
+      DescribeShape(visit, &shape);
     });
-    visit.OnlyWhere({{"method", {"multi_view"}}, {"yaw_prior", {"motion"}}}, [&] {
-      visit.Real(
-          "view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
-          "boxes from viewpoints closer than this angle at the object share the error of the "
-          "label's shape, and together have the weight of one; 0: all boxes are "
-          "independent");
-    });
+    visit.OnlyWhere({{"method", {"multi_view"}}, {"yaw_prior", {"motion"}}},
+                    [&] { upright.DescribeViewCorrelation(visit); });
     visit.OnlyWhere({{"method", {"yaw_sweep"}}}, [&] { yaw_prior.Describe(visit); });
     points.Describe(visit);
     visit.OnlyWhere({{"method", {"cuboid_proposals"}}}, [&] { cuboids.Describe(visit); });

@@ -7,15 +7,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
 
-#include "constraints/detection.h"
 #include "constraints/parameters.h"
-#include "constraints/scale_ratio.h"
-#include "constraints/support.h"
+#include "constraints/quadric_constraints.h"
 #include "geometry/angles.h"
-#include "initialisation/estimates_of_sequence.h"
-#include "initialisation/object_evidence.h"
 #include "model/occlusion.h"
 
 namespace soslam {
@@ -94,14 +89,6 @@ bool IsPlausible(const SingleFrameObservation& observation, const Hypothesis& hy
          OutlineBox(observation.camera, landmark).has_value();
 }
 
-bool IsSame(const Plane& plane, const Landmark& one, const Landmark& other) {
-  const double yaw = Yaw(plane.normal, one.frame_from_object.rotation);
-  const double other_yaw = Yaw(plane.normal, other.frame_from_object.rotation);
-  return std::abs(YawDifferenceModuloPi(yaw, other_yaw)) < kSameYaw &&
-         (one.half_axes.array() / other.half_axes.array() - 1.0).abs().maxCoeff() <
-             kSameRelativeSize;
-}
-
 // Tie-break score of a solution: 0 if the x axis is along the preferred direction or, for the
 // scene's axes, at right angles to it.
 double Oddity(const SingleFrameObservation& observation, const Landmark& landmark,
@@ -141,7 +128,13 @@ ObservationEstimate InitialiseFromSingleFrame(const SingleFrameObservation& obse
     const Hypothesis hypothesis = Solve(observation, options, *start);
     if (!IsPlausible(observation, hypothesis)) continue;
     const auto same = std::ranges::find_if(found, [&](const Hypothesis& other) {
-      return IsSame(plane, hypothesis.landmark_in_camera, other.landmark_in_camera);
+      const Landmark& one = hypothesis.landmark_in_camera;
+      const Landmark& two = other.landmark_in_camera;
+      const double turn = YawDifferenceModuloPi(Yaw(plane.normal, one.frame_from_object.rotation),
+                                                Yaw(plane.normal, two.frame_from_object.rotation));
+      const Eigen::Array3d relative_sizes = one.half_axes.array() / two.half_axes.array();
+      return std::abs(turn) < kSameYaw &&
+             (relative_sizes - 1.0).abs().maxCoeff() < kSameRelativeSize;
     });
     if (same == found.end()) {
       found.push_back(hypothesis);
@@ -164,19 +157,6 @@ ObservationEstimate InitialiseFromSingleFrame(const SingleFrameObservation& obse
   };
   std::ranges::stable_sort(found.begin(), tied_end, {}, oddity);
   return {0, found, ""};
-}
-
-LandmarkEstimates InitialiseSingleFrame(const Sequence& sequence,
-                                        const std::vector<std::optional<Eigen::Vector2d>>& ratios,
-                                        const SingleFrameOptions& options, int threads) {
-  const auto estimator = [&](const Eigen::Vector2d& ratio, int index) {
-    const Detection& detection = sequence.detections[index];
-    return InitialiseFromSingleFrame(
-        {sequence.CameraOf(detection), detection.box, detection.plane_in_camera, ratio,
-         SceneAxisInCamera(sequence, detection)},
-        options);
-  };
-  return EstimateObservations(sequence, ratios, threads, estimator);
 }
 
 }  // namespace soslam

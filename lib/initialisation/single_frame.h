@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
-#include <vector>
 
 #include "base/options.h"
 #include "constraints/variances.h"
@@ -72,11 +71,5 @@ ObservationEstimate InitialiseFromSingleFrame(const SingleFrameObservation& obse
 // The cost of eq. (12): half the sum of squared weighted residuals.
 double SingleFrameCost(const SingleFrameObservation& observation,
                        const ConstraintVariances& variances, const Landmark& landmark_in_camera);
-
-// Single-frame landmarks of all detections (one ObservationEstimate each). Detections of objects
-// without a ratio fail with no_ratio_for_label.
-LandmarkEstimates InitialiseSingleFrame(const Sequence& sequence,
-                                        const std::vector<std::optional<Eigen::Vector2d>>& ratios,
-                                        const SingleFrameOptions& options, int threads);
 
 }  // namespace soslam

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "geometry/triangulation.h"
-#include "initialisation/estimates_of_sequence.h"
 
 namespace soslam {
 namespace {
@@ -65,45 +64,6 @@ std::optional<DualQuadricLandmark> LandmarkFromTangentPlanes(
   world_from_object.translation = centre + size * world_from_object.translation;
   result->landmark.half_axes *= size;
   return result;
-}
-
-namespace {
-
-constexpr size_t kMinViews = 3;
-
-std::vector<Plane> TangentPlanesInWorld(const Sequence& sequence,
-                                        const std::vector<int>& detections) {
-  std::vector<Plane> planes;
-  for (const int index : detections) {
-    const Detection& detection = sequence.detections[index];
-    const Frame& frame = sequence.frames[detection.frame_index];
-    for (const Eigen::Vector3d& line : detection.box.EdgeLines()) {
-      planes.push_back(
-          Transform(frame.world_from_camera, sequence.CameraOf(frame).BackProject(line)));
-    }
-  }
-  return planes;
-}
-
-}  // namespace
-
-LandmarkEstimates InitialiseSvd(const Sequence& sequence) {
-  LandmarkEstimates estimates;
-  const auto detections = DetectionsByObject(sequence);
-  estimates.objects = DetectedObjects(sequence, detections);
-  for (ObjectEstimate& object : estimates.objects) {
-    if (!object.failure.empty()) continue;
-    const std::vector<int>& own = detections[static_cast<size_t>(object.object_index)];
-    if (own.size() < kMinViews) {
-      object.failure = "fewer_than_three_views";
-    } else if (const auto found = LandmarkFromTangentPlanes(TangentPlanesInWorld(sequence, own))) {
-      object.landmark_in_world = found->landmark;
-      object.proper_ellipsoid = found->proper;
-    } else {
-      object.failure = "no_finite_quadric";
-    }
-  }
-  return estimates;
 }
 
 }  // namespace soslam

@@ -6,8 +6,6 @@
 
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
-#include "model/estimates.h"
-#include "model/sequence.h"
 
 namespace soslam {
 
@@ -17,9 +15,5 @@ namespace soslam {
 // None for fewer than 9 planes or if the solution is not finite.
 std::optional<DualQuadricLandmark> LandmarkFromTangentPlanes(
     const std::vector<Plane>& planes_in_world);
-
-// One landmark per object by SVD over all of its boxes, with the frames' estimated poses. Failures:
-// moving, fewer_than_three_views, no_finite_quadric.
-LandmarkEstimates InitialiseSvd(const Sequence& sequence);
 
 }  // namespace soslam

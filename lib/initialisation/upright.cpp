@@ -79,20 +79,6 @@ std::optional<UprightSolution> FitUpright(const Plane& plane, const Landmark& st
   return UprightSolution{landmark_at(parameters), cost + ConstantCost(costs)};
 }
 
-namespace {
-
-// The body turned about a horizontal direction, its lowest point still on the plane.
-Landmark Tilted(const Landmark& upright, const Plane& plane, const Eigen::Vector3d& turn) {
-  Landmark tilted = upright;
-  tilted.frame_from_object.rotation =
-      (ExpRotation(turn) * upright.frame_from_object.rotation).normalized();
-  const double lowest = plane.offset - FindSupportPoint(tilted, -plane.normal).extent;
-  tilted.frame_from_object.translation -= lowest * plane.normal;
-  return tilted;
-}
-
-}  // namespace
-
 std::optional<UprightSolution> FitLeaning(const Plane& plane, const Landmark& upright,
                                           const LandmarkCosts& costs) {
   const auto linearise = [&](const Landmark& at) { return ModelOf(costs, at); };
@@ -105,7 +91,12 @@ std::optional<UprightSolution> FitLeaning(const Plane& plane, const Landmark& up
   std::optional<UprightSolution> best;
   for (const Eigen::Vector3d& turn :
        {Eigen::Vector3d(0.0 * x), x, y, Eigen::Vector3d(-x), Eigen::Vector3d(-y)}) {
-    Landmark landmark = Tilted(upright, plane, turn);
+    // The body turned about a horizontal direction, its lowest point still on the plane.
+    Landmark landmark = upright;
+    landmark.frame_from_object.rotation =
+        (ExpRotation(turn) * upright.frame_from_object.rotation).normalized();
+    const double lowest = plane.offset - FindSupportPoint(landmark, -plane.normal).extent;
+    landmark.frame_from_object.translation -= lowest * plane.normal;
     const LevenbergMarquardtOptions options{kMaxIterations, NegligibleDecrease(costs)};
     const double cost = MinimiseSquares(linearise, plus, options, &landmark).cost;
     if (!std::isfinite(cost) || !HasExtent(landmark)) continue;

@@ -15,17 +15,6 @@ namespace {
 constexpr double kTrueYawSigma = 0.1 * kRadPerDeg;
 constexpr size_t kMinPriorViews = 2;
 
-// Foot of an object in the world: where the ray through the centre of its box's lower edge meets
-// the support plane. None if the lower edge is one-sided, or if its ray does not meet the plane in
-// front of the camera.
-std::optional<Eigen::Vector3d> Foot(const Sequence& sequence, const Detection& detection) {
-  if (detection.is_one_sided[3]) return std::nullopt;
-  const auto foot_in_camera =
-      GroundContactInCamera(sequence.CameraOf(detection), detection.box, detection.plane_in_camera);
-  if (!foot_in_camera) return std::nullopt;
-  return sequence.FrameOf(detection).world_from_camera * *foot_in_camera;
-}
-
 // Motion (m, world frame) between the first and the last of the detections' feet, from the linear
 // regression of all feet over time.
 std::optional<Eigen::Vector3d> Motion(const Sequence& sequence,
@@ -35,9 +24,12 @@ std::optional<Eigen::Vector3d> Motion(const Sequence& sequence,
   double mean_time = 0.0;
   for (const int index : detections) {
     const Detection& detection = sequence.detections[index];
-    const auto foot = Foot(sequence, detection);
+    if (detection.is_one_sided[3]) continue;
+    // Where the ray through the centre of the box's lower edge meets the support plane.
+    const auto foot = GroundContactInCamera(sequence.CameraOf(detection), detection.box,
+                                            detection.plane_in_camera);
     if (!foot) continue;
-    feet.push_back(*foot);
+    feet.push_back(sequence.FrameOf(detection).world_from_camera * *foot);
     times.push_back(sequence.FrameOf(detection).timestamp);
     mean_time += times.back();
   }
@@ -66,8 +58,7 @@ YawPrior AlongDirection(const Sequence& sequence, const Detection& detection,
 std::optional<YawPrior> MotionPrior(const Sequence& sequence, const Detection& detection,
                                     const std::vector<int>& around,
                                     const std::optional<ShapePrior>& shape,
-                                    const YawPriorOptions& options, const UprightOptions& upright,
-                                    double view_correlation_deg) {
+                                    const YawPriorOptions& options, const UprightOptions& upright) {
   const auto motion = Motion(sequence, around);
   if (motion && motion->norm() >= options.motion_min_m) {
     return AlongDirection(sequence, detection, *motion,
@@ -76,18 +67,14 @@ std::optional<YawPrior> MotionPrior(const Sequence& sequence, const Detection& d
   if (around.size() < kMinPriorViews || (shape && shape->attitude != Attitude::kStanding)) {
     return std::nullopt;
   }
-  ObjectEvidence views = EvidenceInWorld(sequence, around, shape, upright.detection_sigma_fraction);
-  WeighViews(view_correlation_deg * kRadPerDeg, &views);
-  const auto optima = ProfileOverYaw(views, upright.yaw_grid_deg * kRadPerDeg).Minima(1);
+  ObjectEvidence views = EvidenceInWorld(sequence, around, shape, upright);
+  views.axes_weight = 0.0;
+  WeighViews(upright.ViewCorrelation(), &views);
+  const auto optima = ProfileOverYaw(views, upright.YawStep()).Minima(1);
   if (optima.empty()) return std::nullopt;
   const Eigen::Quaterniond& rotation = optima.front().frame_from_object.rotation;
   return AlongDirection(sequence, detection, rotation * Eigen::Vector3d::UnitX(),
                         options.standing_sigma_deg * kRadPerDeg);
-}
-
-std::optional<YawPrior> TruePrior(const Sequence& sequence, const Detection& detection) {
-  const auto yaw = TrueYaw(sequence, detection);
-  return yaw ? std::optional(YawPrior{*yaw, kTrueYawSigma}) : std::nullopt;
 }
 
 // For each detection, the detections of its object, itself included, at most `frames` before or
@@ -119,19 +106,18 @@ std::optional<double> TrueYaw(const Sequence& sequence, const Detection& detecti
 std::vector<std::optional<YawPrior>> YawPriors(const Sequence& sequence,
                                                const std::vector<std::optional<ShapePrior>>& shapes,
                                                const YawPriorOptions& options,
-                                               const UprightOptions& upright,
-                                               double view_correlation_deg, int threads) {
+                                               const UprightOptions& upright, int threads) {
   std::vector<std::optional<YawPrior>> priors(sequence.detections.size());
   if (options.source == YawPriorSource::kNone) return priors;
   const auto neighbours = Neighbours(sequence, options.motion_frames);
-  ParallelFor("detections", static_cast<int>(priors.size()), threads, [&](int i) {
-    const auto index = static_cast<size_t>(i);
-    const Detection& detection = sequence.detections[index];
-    priors[index] =
-        options.source == YawPriorSource::kGroundTruth
-            ? TruePrior(sequence, detection)
-            : MotionPrior(sequence, detection, neighbours[index], shapes[detection.object_index],
-                          options, upright, view_correlation_deg);
+  ParallelFor("detections", priors.size(), threads, [&](size_t i) {
+    const Detection& detection = sequence.detections[i];
+    if (options.source == YawPriorSource::kMotion) {
+      priors[i] = MotionPrior(sequence, detection, neighbours[i], shapes[detection.object_index],
+                              options, upright);
+    } else if (const auto yaw = TrueYaw(sequence, detection)) {
+      priors[i] = YawPrior{*yaw, kTrueYawSigma};
+    }
   });
   return priors;
 }

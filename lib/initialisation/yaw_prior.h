@@ -58,7 +58,6 @@ std::optional<double> TrueYaw(const Sequence& sequence, const Detection& detecti
 std::vector<std::optional<YawPrior>> YawPriors(const Sequence& sequence,
                                                const std::vector<std::optional<ShapePrior>>& shapes,
                                                const YawPriorOptions& options,
-                                               const UprightOptions& upright,
-                                               double view_correlation_deg, int threads);
+                                               const UprightOptions& upright, int threads);
 
 }  // namespace soslam

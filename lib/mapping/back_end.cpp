@@ -18,22 +18,6 @@ constexpr double kConvergenceTolerance = 1e-3;
 // A round need not converge, as the next one changes its residuals.
 constexpr int kIterationsPerRound = 10;
 
-double Change(const Landmark& from, const Landmark& to) {
-  const double size = MeanHalfAxis(from);
-  return std::max({(to.Centre() - from.Centre()).norm() / size,
-                   (to.half_axes - from.half_axes).norm() / size,
-                   to.frame_from_object.rotation.angularDistance(from.frame_from_object.rotation)});
-}
-
-double LargestChange(const std::vector<std::optional<Landmark>>& from,
-                     const std::vector<std::optional<Landmark>>& to) {
-  double change = 0.0;
-  for (size_t i = 0; i < from.size(); ++i) {
-    if (from[i]) change = std::max(change, Change(*from[i], *to[i]));
-  }
-  return change;
-}
-
 // Returns whether the landmarks converged: they are at the minimum of the residuals made for them.
 bool SolveWithImages(BackEndProblem* problem) {
   const BackEndVariables& variables = problem->variables();
@@ -41,7 +25,18 @@ bool SolveWithImages(BackEndProblem* problem) {
     if (problem->IterationsLeft() <= 0) return false;
     const std::vector<std::optional<Landmark>> before = variables.LandmarkValues();
     const auto have_converged = [&] {
-      return LargestChange(before, variables.LandmarkValues()) < kConvergenceTolerance;
+      double change = 0.0;
+      for (size_t i = 0; i < before.size(); ++i) {
+        if (!before[i]) continue;
+        const Landmark to = variables.LandmarkValue(i);
+        const double size = MeanHalfAxis(*before[i]);
+        const double turn =
+            to.frame_from_object.rotation.angularDistance(before[i]->frame_from_object.rotation);
+        change =
+            std::max(change, std::max({(to.Centre() - before[i]->Centre()).norm() / size,
+                                       (to.half_axes - before[i]->half_axes).norm() / size, turn}));
+      }
+      return change < kConvergenceTolerance;
     };
     problem->RenewImageResiduals();
     problem->Solve(kIterationsPerRound);
@@ -72,13 +67,13 @@ void AddObjects(const BackEndInput& input, const BackEndProblem& problem, MapEst
   }
 }
 
-void AddLandmarkCovariances(const MarginalCovariances& covariances, double dispersion,
-                            BackEndProblem* problem, MapEstimate* map) {
+void AddCovariances(const Sequence& sequence, const MarginalCovariances& covariances,
+                    double dispersion, BackEndProblem* problem, MapEstimate* map) {
+  BackEndVariables& variables = problem->variables();
   int without = 0;
   for (ObjectEstimate& object : map->objects) {
     if (!object.landmark_in_world) continue;
-    const double* landmark =
-        problem->variables().Landmark(static_cast<size_t>(object.object_index));
+    const double* landmark = variables.Landmark(object.object_index);
     if (covariances.Has(landmark)) {
       object.covariance = dispersion * covariances.OfLandmark(landmark);
     } else {
@@ -86,13 +81,7 @@ void AddLandmarkCovariances(const MarginalCovariances& covariances, double dispe
     }
   }
   if (without > 0) map->solver.gated["covariance_of_undetermined_problem"] = without;
-}
-
-void AddPlaneCovariances(const Sequence& sequence, const MarginalCovariances& covariances,
-                         double dispersion, BackEndProblem* problem, MapEstimate* map) {
-  if (!covariances.AreDetermined()) return;
-  BackEndVariables& variables = problem->variables();
-  for (size_t i = 0; i < sequence.planes.size(); ++i) {
+  for (size_t i = 0; i < sequence.planes.size() && covariances.AreDetermined(); ++i) {
     const bool has_objects = problem->problem().HasParameterBlock(variables.Offset(i));
     if (!sequence.planes[i].attitude_information || !has_objects) continue;
     Eigen::Vector4d sides = Eigen::Vector4d::Ones();
@@ -111,7 +100,7 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
   problem.Solve();
   bool has_converged = true;
   if (options.detection_model == DetectionModel::kTangency) {
-    if (problem.summary().converged) {
+    if (options.check_inputs && problem.summary().converged) {
       map.input_alternatives = FindInputAlternatives(input, options, problem.variables());
     }
     if (!input.symmetry_images.empty() || !input.edge_images.empty() || !input.points.empty()) {
@@ -138,8 +127,7 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
     // The paper's variances are no noise of boxes.
     const bool is_noise = options.detection_model == DetectionModel::kTangency;
     const double dispersion = is_noise ? map.solver.Dispersion() : 1.0;
-    AddLandmarkCovariances(covariances, dispersion, &problem, &map);
-    AddPlaneCovariances(input.sequence, covariances, dispersion, &problem, &map);
+    AddCovariances(input.sequence, covariances, dispersion, &problem, &map);
   }
   return map;
 }

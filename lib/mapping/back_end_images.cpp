@@ -6,9 +6,8 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "constraints/image_residual.h"
+#include "constraints/landmark_cost.h"
 #include "mapping/back_end_problem.h"
-#include "orientation/symmetry_samples.h"
 #include "orientation/texture_asymmetry.h"
 
 namespace soslam {
@@ -39,14 +38,14 @@ void BackEndProblem::RenewImageResiduals() {
   std::vector<std::function<ImageBlocks()>> makers;
   for (const auto& [index, image] : input_.symmetry_images) {
     if (!is_used(index)) continue;
-    detections.push_back(static_cast<size_t>(index));
+    detections.push_back(index);
     makers.push_back([this, index = detections.back(), &image = image] {
       return IsTangency() ? TextureBlocks(index, image) : PairBlocks(index, image);
     });
   }
   for (const auto& [index, image] : input_.edge_images) {
     if (!is_used(index)) continue;
-    detections.push_back(static_cast<size_t>(index));
+    detections.push_back(index);
     makers.push_back(
         [this, index = detections.back(), &image = image] { return EdgeBlocks(index, image); });
   }
@@ -54,12 +53,12 @@ void BackEndProblem::RenewImageResiduals() {
     if (!input_.initial_landmarks[i]) continue;
     if (input_.points[i].empty()) ++summary_.gated[kNoPoints];
     for (const PointsInView& view : input_.points[i]) {
-      detections.push_back(static_cast<size_t>(view.detection_index));
-      makers.push_back([this, i, &view = view] { return PointBlocks<PointCost>(i, view); });
+      detections.push_back(view.detection_index);
+      makers.push_back([this, i, &view = view] { return PointBlocks(i, view); });
     }
   }
   std::vector<ImageBlocks> made(makers.size());
-  ParallelFor(static_cast<int>(makers.size()), threads_, [&](int i) { made[i] = makers[i](); });
+  ParallelFor(makers.size(), threads_, [&](size_t i) { made[i] = makers[i](); });
   for (size_t i = 0; i < made.size(); ++i) AddImageBlocks(detections[i], std::move(made[i]));
   SetManifolds();
   FixPoses();
@@ -117,21 +116,21 @@ BackEndProblem::ImageBlocks BackEndProblem::PairBlocks(
   return blocks;
 }
 
-template <typename Cost>
-Cost BackEndProblem::PointCostOf(size_t object_index, const PointsInView& view,
-                                 const Landmark& start_in_camera) const {
-  return {view.points, start_in_camera, SizeForPoints(start_in_camera), options_.points,
-          PointWeight(input_.points[object_index], options_.points)};
+PointCost BackEndProblem::PointCostOf(size_t object_index, const PointsInView& view,
+                                      const Landmark& start_in_camera) const {
+  const double weight = PointWeight(input_.points[object_index], options_.points);
+  return {view.points,     start_in_camera, SizeForPoints(start_in_camera),
+          options_.points, weight,          second_derivatives_of_points_};
 }
 
 void BackEndProblem::PrepareCovariances() {
+  second_derivatives_of_points_ = PointCost::SecondDerivatives::kFisherInformation;
   for (const ceres::ResidualBlockId block : point_blocks_) problem_.RemoveResidualBlock(block);
   point_blocks_.clear();
   for (size_t i = 0; i < input_.points.size(); ++i) {
     if (!input_.initial_landmarks[i]) continue;
     for (const PointsInView& view : input_.points[i]) {
-      AddImageBlocks(static_cast<size_t>(view.detection_index),
-                     PointBlocks<PointInformation>(i, view));
+      AddImageBlocks(view.detection_index, PointBlocks(i, view));
     }
   }
 }
@@ -141,19 +140,18 @@ std::vector<PointPosterior> BackEndProblem::PointsOf(size_t object_index) const 
   if (input_.points.empty() || !input_.initial_landmarks[object_index]) return points;
   for (const PointsInView& view : input_.points[object_index]) {
     const Landmark in_camera = LandmarkInCamera(input_.sequence.detections[view.detection_index]);
-    std::ranges::copy(PointCostOf<PointCost>(object_index, view, in_camera).Posteriors(in_camera),
+    std::ranges::copy(PointCostOf(object_index, view, in_camera).Posteriors(in_camera),
                       std::back_inserter(points));
   }
   std::ranges::stable_sort(points, {}, &PointPosterior::point);
   return points;
 }
 
-template <typename Cost>
 BackEndProblem::ImageBlocks BackEndProblem::PointBlocks(size_t object_index,
                                                         const PointsInView& view) const {
   const Detection& detection = input_.sequence.detections[view.detection_index];
   const Landmark in_camera = LandmarkInCamera(detection);
-  auto points = std::make_unique<Cost>(PointCostOf<Cost>(object_index, view, in_camera));
+  auto points = std::make_unique<PointCost>(PointCostOf(object_index, view, in_camera));
   ImageBlocks blocks{kPoints, nullptr, static_cast<int>(view.points.size()), {}, true};
   blocks.functions.push_back(
       std::make_unique<ImageResidual>(std::move(points), in_camera.shape_exponents));

@@ -7,17 +7,13 @@
 
 #include "base/error.h"
 #include "base/progress.h"
-#include "constraints/detection.h"
-#include "constraints/landmark_terms.h"
 #include "constraints/odometry.h"
 #include "constraints/parameters.h"
-#include "constraints/plane_prior.h"
-#include "constraints/scale_ratio.h"
+#include "constraints/quadric_constraints.h"
 #include "constraints/standing_on_plane.h"
-#include "constraints/support.h"
 #include "constraints/tangency.h"
 #include "geometry/angles.h"
-#include "initialisation/view_weights.h"
+#include "initialisation/object_evidence.h"
 
 namespace soslam {
 namespace {
@@ -67,7 +63,7 @@ BackEndProblem::BackEndProblem(const BackEndInput& input, const OptimiseOptions&
       options_(options),
       threads_(threads),
       variables_(input),
-      loss_(options.huber_delta),
+      loss_(options.upright.huber_delta),
       problem_(ProblemOptions()) {
   WeighViews();
   if (!options.hold_poses) AddOdometry();
@@ -83,8 +79,8 @@ BackEndProblem::BackEndProblem(const BackEndInput& input, const OptimiseOptions&
 }
 
 Landmark BackEndProblem::LandmarkInCamera(const Detection& detection) const {
-  return Transform(variables_.PoseValue(static_cast<size_t>(detection.frame_index)).Inverse(),
-                   variables_.LandmarkValue(static_cast<size_t>(detection.object_index)));
+  return Transform(variables_.PoseValue(detection.frame_index).Inverse(),
+                   variables_.LandmarkValue(detection.object_index));
 }
 
 void BackEndProblem::WeighViews() {
@@ -99,7 +95,7 @@ void BackEndProblem::WeighViews() {
           input_.initial_landmarks[i]->Centre() -
           input_.sequence.FrameOf(input_.sequence.detections[index]).world_from_camera.translation);
     }
-    const auto weights = DirectionWeights(directions, options_.view_correlation_deg * kRadPerDeg);
+    const auto weights = DirectionWeights(directions, options_.upright.ViewCorrelation());
     for (size_t k = 0; k < weights.size(); ++k) {
       view_weights_[detections[k]] = weights[k];
     }
@@ -166,34 +162,29 @@ void BackEndProblem::AddLandmark(size_t object_index) {
     }
     ++summary_.residuals["support"];
   }
-  if (options_.ratio) AddRatio(object_index);
-  if (IsTangency() && options_.axes_weight > 0.0 && support.scene_axis_in_world) {
-    AddTerm(std::make_unique<AxisTerm>(plane, *support.scene_axis_in_world, options_.axes_weight),
-            object_index);
+  const auto& prior = input_.priors[object_index];
+  if (options_.ratio) {
+    ++(prior ? summary_.residuals["ratio"] : summary_.gated["object_without_ratio"]);
   }
-}
-
-void BackEndProblem::AddRatio(size_t object_index) {
-  if (!input_.priors[object_index]) {
-    ++summary_.gated["object_without_ratio"];
+  const Landmark& initial = *input_.initial_landmarks[object_index];
+  if (!IsTangency()) {
+    if (!options_.ratio || !prior) return;
+    const Eigen::Vector2d ratio = OnFace(*prior, initial.rests_on).ratio;
+    problem_.AddResidualBlock(new ScaleRatioResidual(ratio, options_.variances.ratio), &loss_,
+                              landmark);
     return;
   }
-  const ShapePrior prior =
-      OnFace(*input_.priors[object_index], input_.initial_landmarks[object_index]->rests_on);
-  if (IsTangency()) {
-    // No loss: a ratio far from the prior is as unlikely as its spread says.
-    AddTerm(std::make_unique<RatioTerm>(prior), object_index);
-  } else {
-    problem_.AddResidualBlock(new ScaleRatioResidual(prior.ratio, options_.variances.ratio), &loss_,
-                              variables_.Landmark(object_index));
+  ObjectEvidence evidence;
+  evidence.plane = plane;
+  evidence.ratio_is_free = !options_.ratio;
+  if (prior) evidence.prior = OnFace(*prior, initial.rests_on);
+  evidence.scene_axis = support.scene_axis_in_world;
+  evidence.axes_weight = options_.upright.axes_weight;
+  // No loss: a ratio far from the prior is as unlikely as its spread says.
+  for (auto& term : PriorTerms(evidence)) {
+    problem_.AddResidualBlock(new LandmarkTermResidual(std::move(term), initial.shape_exponents),
+                              nullptr, landmark);
   }
-  ++summary_.residuals["ratio"];
-}
-
-void BackEndProblem::AddTerm(std::unique_ptr<const LandmarkTerm> term, size_t object_index) {
-  const ShapeExponents& exponents = input_.initial_landmarks[object_index]->shape_exponents;
-  problem_.AddResidualBlock(new LandmarkTermResidual(std::move(term), exponents), nullptr,
-                            variables_.Landmark(object_index));
 }
 
 void BackEndProblem::AddDetections() {
@@ -215,45 +206,8 @@ void BackEndProblem::AddDetections() {
     ++added;
   }
   if (added > 0) summary_.residuals["detection"] = added;
-  if (IsTangency()) AddBias();
-}
-
-void BackEndProblem::AddDetection(size_t index, const Landmark& initial_in_camera) {
-  const Detection& detection = input_.sequence.detections[index];
-  const Camera& camera = input_.sequence.CameraOf(detection);
-  if (!IsTangency()) {
-    AddBoxBlock(problem_.AddResidualBlock(
-                    new DetectionResidual(camera, detection.box, options_.variances.DetectionM4()),
-                    &loss_, Pose(detection), LandmarkOf(detection)),
-                0.5 * 4.0);
-    return;
-  }
-  view_losses_.emplace_back(&loss_, view_weights_[index], ceres::DO_NOT_TAKE_OWNERSHIP);
-  const auto& prior = input_.priors[detection.object_index];
-  const auto edges =
-      BoxEdges(camera, detection.box, detection.is_one_sided, options_.detection_sigma_fraction,
-               prior ? prior->edge_bias : EdgeBias());
-  for (size_t side = 0; side < edges.size(); ++side) {
-    // A body so near that it reaches behind the camera has no tangent point in view.
-    if (!(FindTangentDepth(edges[side], initial_in_camera).depth_m > 0.0)) {
-      ++summary_.gated["edge_behind_camera"];
-      continue;
-    }
-    AddBoxBlock(
-        problem_.AddResidualBlock(new TangencyResidual(edges[side], initial_in_camera),
-                                  &view_losses_.back(), Pose(detection), LandmarkOf(detection),
-                                  variables_.Bias(side), variables_.LogFocal()),
-        0.5 * view_weights_[index]);
-  }
-}
-
-void BackEndProblem::AddBoxBlock(ceres::ResidualBlockId block, double expected_cost) {
-  box_blocks_.push_back(block);
-  summary_.expected_box_cost += expected_cost;
-}
-
-// The bias of each side that some box has: normal about zero, or zero where its sigma is.
-void BackEndProblem::AddBias() {
+  if (!IsTangency()) return;
+  // The bias of each side that some box has: normal about zero, or zero where its sigma is.
   const double sigma_px = options_.detector_bias_sigma_px;
   for (size_t side = 0; side < 4; ++side) {
     double* bias = variables_.Bias(side);
@@ -265,6 +219,32 @@ void BackEndProblem::AddBias() {
     } else {
       problem_.SetParameterBlockConstant(bias);
     }
+  }
+}
+
+void BackEndProblem::AddDetection(size_t index, const Landmark& initial_in_camera) {
+  const Detection& detection = input_.sequence.detections[index];
+  if (!IsTangency()) {
+    const Camera& camera = input_.sequence.CameraOf(detection);
+    box_blocks_.push_back(problem_.AddResidualBlock(
+        new DetectionResidual(camera, detection.box, options_.variances.DetectionM4()), &loss_,
+        Pose(detection), LandmarkOf(detection)));
+    summary_.expected_box_cost += 0.5 * 4.0;
+    return;
+  }
+  view_losses_.emplace_back(&loss_, view_weights_[index], ceres::DO_NOT_TAKE_OWNERSHIP);
+  const auto edges =
+      EdgesOf(input_.sequence, detection, input_.priors[detection.object_index], options_.upright);
+  for (size_t side = 0; side < edges.size(); ++side) {
+    // A body so near that it reaches behind the camera has no tangent point in view.
+    if (!(FindTangentDepth(edges[side], initial_in_camera).depth_m > 0.0)) {
+      ++summary_.gated["edge_behind_camera"];
+      continue;
+    }
+    box_blocks_.push_back(problem_.AddResidualBlock(
+        new TangencyResidual(edges[side], initial_in_camera), &view_losses_.back(), Pose(detection),
+        LandmarkOf(detection), variables_.Bias(side), variables_.LogFocal()));
+    summary_.expected_box_cost += 0.5 * view_weights_[index];
   }
 }
 
@@ -295,19 +275,22 @@ void BackEndProblem::FixPoses() {
   }
 }
 
-std::shared_ptr<ceres::ParameterBlockOrdering> BackEndProblem::LandmarkOrdering() {
-  auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-  for (size_t i = 0; i < input_.initial_landmarks.size(); ++i) {
-    double* landmark = variables_.Landmark(i);
-    if (problem_.HasParameterBlock(landmark)) ordering->AddElementToGroup(landmark, 0);
-  }
-  return ordering;
-}
-
 void BackEndProblem::Solve(int max_iterations) {
   const ceres::Solver::Summary solution = Minimise(std::min(max_iterations, IterationsLeft()));
   if (!solution.IsSolutionUsable()) throw NumericalError("back end: " + solution.message);
-  Record(solution);
+  std::vector<double>& costs = summary_.cost_per_iteration;
+  if (costs.empty()) summary_.initial_cost = solution.initial_cost;
+  summary_.final_cost = solution.final_cost;
+  summary_.box_cost = BoxCost();
+  summary_.iterations += static_cast<int>(std::max<size_t>(1, solution.iterations.size())) - 1;
+  summary_.converged = solution.termination_type == ceres::CONVERGENCE;
+  summary_.detector_bias_px = variables_.BiasValues();
+  double lowest = solution.initial_cost;
+  for (const ceres::IterationSummary& iteration : solution.iterations) {
+    // Ceres gives a rejected step the cost where it would have led.
+    if (iteration.step_is_successful) lowest = std::min(lowest, iteration.cost);
+    costs.push_back(lowest);
+  }
 }
 
 ceres::Solver::Summary BackEndProblem::Minimise(int max_iterations) {
@@ -319,7 +302,12 @@ ceres::Solver::Summary BackEndProblem::Minimise(int max_iterations) {
   } else {
     // A landmark that its boxes hardly determine would shorten the steps of all others: after each
     // step, each is optimised alone.
-    options.inner_iteration_ordering = LandmarkOrdering();
+    options.inner_iteration_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+    for (size_t i = 0; i < input_.initial_landmarks.size(); ++i) {
+      double* landmark = variables_.Landmark(i);
+      if (!problem_.HasParameterBlock(landmark)) continue;
+      options.inner_iteration_ordering->AddElementToGroup(landmark, 0);
+    }
     std::vector<double*> variables;
     problem_.GetParameterBlocks(&variables);
     std::erase_if(variables, [&](double* at) { return problem_.IsParameterBlockConstant(at); });
@@ -353,22 +341,6 @@ double BackEndProblem::BoxCost() {
     problem_.Evaluate(boxes, &cost, nullptr, nullptr, nullptr);
   }
   return cost;
-}
-
-void BackEndProblem::Record(const ceres::Solver::Summary& solution) {
-  std::vector<double>& costs = summary_.cost_per_iteration;
-  if (costs.empty()) summary_.initial_cost = solution.initial_cost;
-  summary_.final_cost = solution.final_cost;
-  summary_.box_cost = BoxCost();
-  summary_.iterations += static_cast<int>(std::max<size_t>(1, solution.iterations.size())) - 1;
-  summary_.converged = solution.termination_type == ceres::CONVERGENCE;
-  summary_.detector_bias_px = variables_.BiasValues();
-  double lowest = solution.initial_cost;
-  for (const ceres::IterationSummary& iteration : solution.iterations) {
-    // Ceres gives a rejected step the cost where it would have led.
-    if (iteration.step_is_successful) lowest = std::min(lowest, iteration.cost);
-    costs.push_back(lowest);
-  }
 }
 
 }  // namespace soslam

@@ -8,7 +8,6 @@
 #include <memory>
 #include <vector>
 
-#include "constraints/landmark_terms.h"
 #include "mapping/back_end.h"
 #include "mapping/back_end_variables.h"
 #include "mapping/options.h"
@@ -75,33 +74,23 @@ class BackEndProblem {
   void AddOdometry();
   void AddLandmark(size_t object_index);
   void AddStanding(size_t object_index);
-  void AddRatio(size_t object_index);
-  void AddTerm(std::unique_ptr<const LandmarkTerm> term, size_t object_index);
   void AddDetections();
   void AddDetection(size_t index, const Landmark& initial_in_camera);
-  void AddBias();
   void SetManifolds();
   void FixPoses();
   ImageBlocks TextureBlocks(size_t index, const std::shared_ptr<const SymmetryImage>& image) const;
   ImageBlocks PairBlocks(size_t index, const std::shared_ptr<const SymmetryImage>& image) const;
-  template <typename Cost>
-  Cost PointCostOf(size_t object_index, const PointsInView& view,
-                   const Landmark& start_in_camera) const;
-  template <typename Cost>
+  PointCost PointCostOf(size_t object_index, const PointsInView& view,
+                        const Landmark& start_in_camera) const;
   ImageBlocks PointBlocks(size_t object_index, const PointsInView& view) const;
   ImageBlocks EdgeBlocks(size_t index, const std::shared_ptr<const EdgeImage>& image) const;
   void AddImageBlocks(size_t index, ImageBlocks blocks);
-  std::shared_ptr<ceres::ParameterBlockOrdering> LandmarkOrdering();
-  void AddBoxBlock(ceres::ResidualBlockId block, double expected_cost);
-  void Record(const ceres::Solver::Summary& solution);
 
   // A detection's landmark in its camera, at the present values of the variables.
   Landmark LandmarkInCamera(const Detection& detection) const;
-  double* Pose(const Detection& detection) {
-    return variables_.Pose(static_cast<size_t>(detection.frame_index));
-  }
+  double* Pose(const Detection& detection) { return variables_.Pose(detection.frame_index); }
   double* LandmarkOf(const Detection& detection) {
-    return variables_.Landmark(static_cast<size_t>(detection.object_index));
+    return variables_.Landmark(detection.object_index);
   }
 
   const BackEndInput& input_;
@@ -115,6 +104,8 @@ class BackEndProblem {
   std::vector<ceres::ResidualBlockId> box_blocks_;
   std::vector<ceres::ResidualBlockId> image_blocks_;  // of texture and edges
   std::vector<ceres::ResidualBlockId> point_blocks_;
+  PointCost::SecondDerivatives second_derivatives_of_points_ =
+      PointCost::SecondDerivatives::kMaximisation;
   SolverSummary summary_;
 };
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mapping/back_end_variables.h"
 
-#include <algorithm>
-
 namespace soslam {
 namespace {
 

@@ -16,15 +16,6 @@ namespace {
 constexpr int kYaws = 8;
 constexpr double kScales[] = {0.8, 1.25};
 
-// The body scaled about the middle of its foot, and turned about its z axis.
-Landmark ScaledAndTurned(const Landmark& body, double scale, double turn) {
-  Landmark moved = RotatedAboutZ(body, turn);
-  const Eigen::Vector3d up = body.frame_from_object.rotation * Eigen::Vector3d::UnitZ();
-  moved.half_axes *= scale;
-  moved.frame_from_object.translation += (scale - 1.0) * body.half_axes.z() * up;
-  return moved;
-}
-
 struct Solved {
   Landmark landmark_in_world;
   double cost;
@@ -74,16 +65,19 @@ std::vector<ObjectMinimum> CheckMinima(const BackEndInput& input, const Optimise
                                        int threads) {
   const OptimiseOptions alone = AloneOptions(options);
   std::vector<std::optional<ObjectMinimum>> minima(input.initial_landmarks.size());
-  ParallelFor("objects", static_cast<int>(minima.size()), threads, [&](int index) {
-    const auto i = static_cast<size_t>(index);
+  ParallelFor("objects", minima.size(), threads, [&](size_t i) {
     if (!input.initial_landmarks[i]) return;
     const Landmark& in_map = *input.initial_landmarks[i];
     const auto from_map = SolveFrom(input, i, in_map, alone);
     if (!from_map) return;
-    minima[i] = {index, from_map->cost, from_map->cost, from_map->landmark_in_world};
+    minima[i] = {static_cast<int>(i), from_map->cost, from_map->cost, from_map->landmark_in_world};
     for (int k = 0; k < kYaws; ++k) {
       for (const double scale : kScales) {
-        const Landmark start = ScaledAndTurned(in_map, scale, k * std::numbers::pi / kYaws);
+        // The body scaled about the middle of its foot, and turned about its z axis.
+        Landmark start = RotatedAboutZ(in_map, k * std::numbers::pi / kYaws);
+        const Eigen::Vector3d up = in_map.frame_from_object.rotation * Eigen::Vector3d::UnitZ();
+        start.half_axes *= scale;
+        start.frame_from_object.translation += (scale - 1.0) * in_map.half_axes.z() * up;
         const auto found = SolveFrom(input, i, start, alone);
         if (!found || !(found->cost < minima[i]->lowest_cost)) continue;
         minima[i]->lowest_cost = found->cost;

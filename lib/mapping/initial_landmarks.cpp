@@ -1,9 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mapping/initial_landmarks.h"
 
+#include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <limits>
+#include <map>
+#include <memory>
+#include <numbers>
+#include <utility>
 
+#include "base/parallel.h"
 #include "base/upper_median.h"
+#include "geometry/angles.h"
+#include "initialisation/fit_object.h"
+#include "orientation/edge_alignment.h"
+#include "orientation/texture_asymmetry.h"
 
 namespace soslam {
 namespace {
@@ -21,6 +33,129 @@ double MedianEdgeRms(const Sequence& sequence, const std::vector<int>& detection
         detection.box));
   }
   return UpperMedian(std::move(distances));
+}
+
+// Yaws closer than this lead to the same optimum.
+constexpr double kYawBin = 6.0 * kRadPerDeg;
+constexpr double kYawStep = 3.0 * kRadPerDeg;
+constexpr size_t kMinViews = 2;
+// Enough to see an object from all sides that it is seen from.
+constexpr size_t kMaxViews = 16;
+constexpr size_t kMaxCandidates = 12;
+constexpr size_t kAllMinima = std::numeric_limits<size_t>::max();
+
+// The evidence for an object in the world, from views of it (indices in Sequence::detections), with
+// constant poses. Keeps references to its arguments.
+ObjectEvidence EvidenceOfViews(const BackEndInput& input, size_t object_index,
+                               const std::vector<int>& views, const OptimiseOptions& options) {
+  const Sequence& sequence = input.sequence;
+  ObjectEvidence evidence =
+      EvidenceInWorld(sequence, views, input.priors[object_index], options.upright);
+  WeighViews(options.upright.ViewCorrelation(), &evidence);
+  evidence.ratio_is_free = !options.ratio;
+  evidence.standing.height_m = options.standing_height_sigma_m;
+  std::vector<std::pair<BoxView, TextureAsymmetry>> textures;
+  for (size_t i = 0; i < views.size(); ++i) {
+    const BoxView& view = evidence.views[i];
+    const Camera& camera = sequence.CameraOf(sequence.detections[views[i]]);
+    if (const auto image = input.edge_images.find(views[i]); image != input.edge_images.end()) {
+      evidence.further.push_back(
+          {[&options, &camera, &image = image->second](const Landmark& in_camera) {
+             return std::make_unique<EdgeCost>(image, camera, in_camera, options.edges);
+           },
+           view.camera_from_reference, view.weight});
+    }
+    const auto image = input.symmetry_images.find(views[i]);
+    if (image == input.symmetry_images.end()) continue;
+    textures.push_back({view, {*image->second, camera, options.texture, options.symmetry_options}});
+  }
+  if (!textures.empty()) {
+    evidence.compared_cost = [textures](const Landmark& landmark, double limit) {
+      double cost = 0.0;
+      for (const auto& [view, texture] : textures) {
+        if (!(cost < limit)) break;
+        cost += view.weight * texture.Cost(Transform(view.camera_from_reference, landmark));
+      }
+      return cost;
+    };
+  }
+  return evidence;
+}
+
+// Adds the points of an object, with the widths of one size for all of its landmarks.
+void AddPoints(const BackEndInput& input, size_t object_index, double size_m,
+               const PointOptions& options, ObjectEvidence* evidence) {
+  if (input.points.empty()) return;
+  const PointsOfObject& points = input.points[object_index];
+  const double weight = PointWeight(points, options);
+  for (const PointsInView& view : points) {
+    FurtherEvidence further = InCamera({view.points, size_m, weight, options});
+    further.camera_from_reference =
+        input.sequence.FrameOf(input.sequence.detections[view.detection_index])
+            .world_from_camera.Inverse();
+    evidence->further.push_back(further);
+  }
+}
+
+// The cheapest of each bin of yaw, cheapest first.
+std::vector<Landmark> BestOfEachYaw(const std::vector<Landmark>& landmarks,
+                                    const ObjectEvidence& evidence) {
+  std::map<long, std::pair<double, Landmark>> best;
+  for (Landmark landmark : landmarks) {
+    landmark.shape_exponents = evidence.Exponents();  // whatever it was found with
+    landmark.rests_on = evidence.RestsOn();
+    const double yaw = Yaw(evidence.plane.normal, landmark.frame_from_object.rotation);
+    const long bin = std::lround(YawDifferenceModuloPi(yaw, FirstYaw(evidence)) / kYawBin);
+    const auto known = best.find(bin);
+    const double limit =
+        known == best.end() ? std::numeric_limits<double>::infinity() : known->second.first;
+    const double cost = CostOf(evidence, landmark, limit).total;
+    if (cost < limit) best.insert_or_assign(bin, std::pair(cost, landmark));
+  }
+  std::vector<std::pair<double, Landmark>> candidates;
+  for (const auto& [bin, candidate] : best) candidates.push_back(candidate);
+  std::ranges::stable_sort(candidates, {}, &std::pair<double, Landmark>::first);
+  candidates.resize(std::min(candidates.size(), kMaxCandidates));
+  std::vector<Landmark> starts;
+  for (const auto& [cost, landmark] : candidates) starts.push_back(landmark);
+  return starts;
+}
+
+// The body a quarter turn on, and the same body called by its other horizontal axis.
+std::vector<Landmark> QuarterTurns(const Landmark& body) {
+  const Landmark turned = RotatedAboutZ(body, 0.5 * std::numbers::pi);
+  Landmark renamed = turned;
+  std::swap(renamed.half_axes.x(), renamed.half_axes.y());
+  return {turned, renamed};
+}
+
+// Hypotheses of any face are tried on all faces that the object may rest on, as a body seen from
+// few sides may be called by either name.
+std::optional<Landmark> ChooseLandmark(const BackEndInput& input, size_t object_index,
+                                       const std::vector<int>& views,
+                                       std::vector<Landmark> hypotheses,
+                                       const OptimiseOptions& options) {
+  const ObjectEvidence evidence = EvidenceOfViews(input, object_index, views, options);
+  std::vector<ObjectEvidence> on_faces = OnEachFace(evidence);
+  for (const ObjectEvidence& on_face : on_faces) {
+    if (views.size() < kMinViews) continue;
+    ObjectEvidence boxes = on_face;
+    boxes.further.clear();
+    boxes.compared_cost = nullptr;
+    std::ranges::copy(ProfileOverYaw(boxes, kYawStep).Minima(kAllMinima),
+                      std::back_inserter(hypotheses));
+  }
+  if (hypotheses.empty()) return std::nullopt;
+  const double point_size_m = SizeForPoints(hypotheses);
+  std::vector<std::vector<ObjectFit>> fits;
+  for (ObjectEvidence& on_face : on_faces) {
+    AddPoints(input, object_index, point_size_m, options.points, &on_face);
+    fits.push_back(FitObject(on_face, BestOfEachYaw(hypotheses, on_face), {}));
+    if (fits.back().empty()) continue;
+    fits.push_back(FitObject(on_face, QuarterTurns(fits.back().front().landmark), {}));
+  }
+  const auto best = Joined(std::move(fits), 1);
+  return best.empty() ? std::nullopt : std::optional(best.front().landmark);
 }
 
 }  // namespace
@@ -62,6 +197,25 @@ std::vector<std::optional<Landmark>> ChooseInitialLandmarks(const Sequence& sequ
   for (auto& landmark : initial_landmarks) {
     if (landmark) landmark->shape_exponents = kEllipsoidExponent;
   }
+  return initial_landmarks;
+}
+
+std::vector<std::optional<Landmark>> ChooseInitialUprightLandmarks(
+    const BackEndInput& input, const LandmarkEstimates& estimates, const OptimiseOptions& options,
+    int threads) {
+  const Sequence& sequence = input.sequence;
+  std::vector<std::vector<Landmark>> hypotheses = HypothesesByObject(sequence, estimates);
+  for (const ObjectEstimate& object : estimates.objects) {
+    if (!object.landmark_in_world) continue;
+    hypotheses[object.object_index].push_back(*object.landmark_in_world);
+  }
+  const auto detections = DetectionsByObject(sequence);
+  std::vector<std::optional<Landmark>> initial_landmarks(sequence.objects.size());
+  ParallelFor("objects", initial_landmarks.size(), threads, [&](size_t i) {
+    if (detections[i].empty() || !sequence.objects[i].is_static) return;
+    const std::vector<int> views = SpreadOver(detections[i], kMaxViews);
+    initial_landmarks[i] = ChooseLandmark(input, i, views, std::move(hypotheses[i]), options);
+  });
   return initial_landmarks;
 }
 

@@ -7,7 +7,7 @@
 #include "constraints/odometry.h"
 #include "constraints/point_cost.h"
 #include "constraints/variances.h"
-#include "geometry/angles.h"
+#include "initialisation/upright_options.h"
 #include "model/semantic_table.h"
 #include "orientation/options.h"
 
@@ -37,17 +37,14 @@ struct OptimiseOptions {
   double odometry_translation_sigma_m = 0.01;
   double symmetry_sigma = 30.0;
   int symmetry_views = 1;
-  double detection_sigma_fraction = 0.02;
   double detector_bias_sigma_px = 0.0;
-  double view_correlation_deg = 20.0;
-  double axes_weight = 1.0;
+  UprightOptions upright;
   double standing_angle_sigma_deg = 0.1;
   double standing_height_sigma_m = 0.002;
   bool refine_planes = true;
   EdgeOptions edges;
   TextureOptions texture;
   PointOptions points;
-  double huber_delta = 1.0;
   SymmetryOptions symmetry_options;
   bool covariances = true;
   int max_iterations = 500;
@@ -65,8 +62,7 @@ struct OptimiseOptions {
                  "label's shape, with the label's spread of ratios (tangency)");
     visit.Flag("support", &support, "use the support constraint, eq. (5)-(8)");
     visit.Flag("ratio", &ratio, "use the scale ratio constraint, eq. (9)-(11)");
-    visit.Choice("ratio_prior", &ratio_prior, kRatioPriorNames,
-                 "where the size ratio of eq. (11) comes from");
+    DescribeRatioPrior(visit, &ratio_prior);
     visit.Flag("symmetry", &symmetry,
                "use the texture symmetry of some of each object's observations, eq. (16)");
     visit.Flag("edge_alignment", &edge_alignment,
@@ -75,9 +71,9 @@ struct OptimiseOptions {
       visit.Integer("symmetry_views", &symmetry_views, {1, 100000},
                     "how many observations of each object, evenly over all from the first on");
     });
-    visit.Real("huber_delta", &huber_delta, {1e-9, 1e9},
-               "weighted residuals beyond this count linearly (Huber loss H of eq. (1)); with "
-               "tangency, those of odometry and boxes");
+    upright.DescribeLoss(visit,
+                         "weighted residuals beyond this count linearly (Huber loss H of eq. (1)); "
+                         "with tangency, those of odometry and boxes");
     visit.Group("Poses and odometry");
     visit.Flag("hold_poses", &hold_poses,
                "the poses of the trajectory are constant, as those of motion capture or structure "
@@ -94,21 +90,13 @@ struct OptimiseOptions {
     });
     visit.OnlyWhere({{"detection_model", {"tangency"}}}, [&] {
       visit.Group("Bodies of any shape");
-      visit.Choice("shape", &shape, kShapeSourceNames, "where the shape exponents come from");
-      visit.Real("detection_sigma_fraction", &detection_sigma_fraction, {1e-4, 1.0},
-                 "standard deviation of a detector's box edge, as a fraction of the box's "
-                 "width or height; at least 1 px");
+      DescribeShape(visit, &shape);
+      upright.DescribeSigma(visit);
       visit.Real("detector_bias_sigma_px", &detector_bias_sigma_px, {0.0, 1e4},
                  "standard deviation of a bias that each of the four edges has in all boxes "
                  "of the sequence, estimated along; 0: no bias");
-      visit.Real(
-          "view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
-          "boxes from viewpoints closer than this angle at the object share the error of the "
-          "label's shape, and together have the weight of one; 0: all boxes are independent");
-      visit.Real(
-          "axes_weight", &axes_weight, {0.0, 1e6},
-          "cost (negative logarithm of a likelihood) of a yaw half-way between the axes of the "
-          "scene, along which its straight edges lie; 0 if objects are not aligned with them");
+      upright.DescribeViewCorrelation(visit);
+      upright.DescribeAxesWeight(visit);
       visit.Real("standing_angle_sigma_deg", &standing_angle_sigma_deg, {1e-6, 90.0},
                  "standard deviation of the tilt of a body on its support plane; not of those that "
                  "may lean");

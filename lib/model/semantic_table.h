@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/options.h"
 #include "model/sequence.h"
 #include "model/shape_prior.h"
 
@@ -56,6 +57,10 @@ enum class RatioPrior {
   kGroundTruth,  // its own true ratio, to separate the prior's error from the method's
 };
 inline constexpr std::array kRatioPriorNames = {"table", "unit", "groundtruth"};
+inline void DescribeRatioPrior(OptionVisitor& visit, RatioPrior* prior) {
+  visit.Choice("ratio_prior", prior, kRatioPriorNames,
+               "where the size ratio of eq. (11) comes from");
+}
 
 // Source of an object's shape exponents.
 enum class ShapeSource {
@@ -64,6 +69,9 @@ enum class ShapeSource {
   kEllipsoid,  // always an ellipsoid, as in the paper
 };
 inline constexpr std::array kShapeSourceNames = {"table", "cuboid", "ellipsoid"};
+inline void DescribeShape(OptionVisitor& visit, ShapeSource* shape) {
+  visit.Choice("shape", shape, kShapeSourceNames, "where the shape exponents come from");
+}
 
 // log_sigma of a true ratio: the error of the annotation, assumed to be 2 %.
 inline constexpr double kTrueRatioLogSigma = 0.02;

@@ -70,8 +70,7 @@ struct RefineOptions {
 
   void Describe(OptionVisitor& visit) {
     visit.Group("Landmarks");
-    visit.Choice("ratio_prior", &ratio_prior, kRatioPriorNames,
-                 "where the size ratio of eq. (11) comes from");
+    DescribeRatioPrior(visit, &ratio_prior);
     visit.OnlyWhere({{"method", {"turn"}}}, [&] {
       visit.Group("Turned landmarks");
       visit.Real("yaw_step_deg", &yaw_step_deg, {0.1, 45.0},
@@ -151,7 +150,7 @@ struct ProfileOptions {
     visit.Flag("edge_alignment", &edge_alignment,
                "use the alignment of the body's edges with the image's");
     visit.Flag("texture_symmetry", &texture_symmetry, "use the symmetry of the texture");
-    visit.Choice("shape", &shape, kShapeSourceNames, "where the shape exponents come from");
+    DescribeShape(visit, &shape);
     upright.Describe(visit);
     visit.OnlyWhere({{"edge_alignment", {"true"}}}, [&] { edges.Describe(visit); });
     visit.OnlyWhere({{"texture_symmetry", {"true"}}}, [&] { texture.Describe(visit); });

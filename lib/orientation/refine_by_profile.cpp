@@ -5,17 +5,14 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <memory>
 #include <numbers>
 #include <utility>
 
-#include "geometry/angles.h"
 #include "geometry/landmark.h"
 #include "initialisation/fit_object.h"
 #include "initialisation/object_points.h"
 #include "initialisation/yaw_prior.h"
 #include "model/occlusion.h"
-#include "orientation/refine_by_turning.h"
 #include "orientation/texture_asymmetry.h"
 
 namespace soslam {
@@ -23,109 +20,79 @@ namespace {
 
 // Further hypotheses are far less likely.
 constexpr size_t kMaxHypotheses = 6;
+// A texture counts as symmetric when its cost is below this fraction of the largest possible cost,
+// that is when most of its pairs are symmetric.
+constexpr double kSymmetricShare = 0.5;
 
-// The orientation profile of an object that rests on one face.
-class OrientationProfile {
- public:
-  OrientationProfile(const Sequence& sequence, const Detection& detection,
-                     const std::shared_ptr<const FrameEdges>& edges, const ShapePrior& prior,
-                     const ProfileOptions& options, const SymmetryOptions& symmetry_options,
-                     const std::optional<PointEvidence>& points)
-      : options_(options),
-        symmetry_options_(symmetry_options),
-        camera_(sequence.CameraOf(detection)),
-        symmetry_image_(edges->maps, detection.box),
-        asymmetry_(symmetry_image_, camera_, options.texture, symmetry_options),
-        evidence_(EvidenceInCamera(sequence, detection, prior,
-                                   options.upright.detection_sigma_fraction)) {
-    evidence_.axes_weight = options.upright.axes_weight;
-    if (points) evidence_.further.push_back(InCamera(*points));
-    if (options.edge_alignment) {
-      const auto image = std::make_shared<const EdgeImage>(
-          EdgeImage{edges, detection.box, BoxesInFront(sequence, detection)});
-      evidence_.further.push_back({[this, image](const Landmark& in_camera) {
-                                     return std::make_unique<EdgeCost>(image, camera_, in_camera,
-                                                                       options_.edges);
-                                   },
-                                   Rigid3d()});
-    }
-    if (options.texture_symmetry) {
-      evidence_.compared_cost = [this](const Landmark& landmark, double /*limit*/) {
-        return asymmetry_.Cost(landmark);
-      };
-    }
+// The orientation profile of an object that rests on one face, without the observation's place in
+// the sequence.
+RefinedObservation RefineOnFace(const Sequence& sequence, const Detection& detection,
+                                const std::shared_ptr<const FrameEdges>& edges,
+                                const ShapePrior& prior, const ProfileOptions& options,
+                                const SymmetryOptions& symmetry_options,
+                                const std::optional<PointEvidence>& points) {
+  const Camera& camera = sequence.CameraOf(detection);
+  const SymmetryImage symmetry_image(edges->maps, detection.box);
+  const TextureAsymmetry asymmetry(symmetry_image, camera, options.texture, symmetry_options);
+  ObjectEvidence evidence = EvidenceInCamera(sequence, detection, prior, options.upright);
+  if (points) evidence.further.push_back(InCamera(*points));
+  if (options.edge_alignment) {
+    const auto image = std::make_shared<const EdgeImage>(
+        EdgeImage{edges, detection.box, BoxesInFront(sequence, detection)});
+    const auto cost_at = [&camera, &options, image](const Landmark& in_camera) {
+      return std::make_unique<EdgeCost>(image, camera, in_camera, options.edges);
+    };
+    evidence.further.push_back({cost_at, Rigid3d()});
   }
-  OrientationProfile(const OrientationProfile&) = delete;
-  OrientationProfile& operator=(const OrientationProfile&) = delete;
-
-  // Without the observation's place in the sequence.
-  RefinedObservation Refine() const {
-    RefinedObservation result;
-    const YawProfile profile =
-        ProfileOverYaw(evidence_, options_.upright.yaw_grid_deg * kRadPerDeg);
-    std::vector<YawProfile::Optimum> optima;
-    for (const ObjectFit& fit :
-         FitObject(evidence_, profile.Minima(kMaxHypotheses), {kMaxHypotheses, profile.Step()})) {
-      result.estimate.hypotheses.push_back({fit.landmark, fit.cost.total});
-      optima.push_back({YawOf(fit.landmark), fit.cost.total});
-    }
-    if (result.estimate.hypotheses.empty()) {
-      result.estimate.failure = WhyNoSolution(evidence_);
-      return result;
-    }
-    const Landmark& best = result.estimate.hypotheses.front().landmark_in_camera;
-    RecordCurves(profile, &result.record);
-    RecordPairs(best, &result.record);
-    result.record.refined_yaw = YawOf(best);
-    // The mirror plane of an object on its side is horizontal.
-    if (options_.texture_symmetry && evidence_.RestsOn() != RestingFace::kSide) {
-      result.record.mirror_planes =
-          MirrorPlanes(profile.yaw, result.record.cost.at("texture_symmetry"),
-                       result.record.refined_yaw, options_.texture);
-    }
-    result.record.yaw_sigma = profile.StandardDeviation(optima);
+  if (options.texture_symmetry) {
+    evidence.compared_cost = [&asymmetry](const Landmark& landmark, double /*limit*/) {
+      return asymmetry.Cost(landmark);
+    };
+  }
+  const YawProfile profile = ProfileOverYaw(evidence, options.upright.YawStep());
+  RefinedObservation result;
+  std::vector<YawProfile::Optimum> optima;
+  for (const ObjectFit& fit :
+       FitObject(evidence, profile.Minima(kMaxHypotheses), {kMaxHypotheses, profile.Step()})) {
+    result.estimate.hypotheses.push_back({fit.landmark, fit.cost.total});
+    const double yaw = Yaw(evidence.plane.normal, fit.landmark.frame_from_object.rotation);
+    optima.push_back({yaw, fit.cost.total});
+  }
+  if (optima.empty()) {
+    result.estimate.failure = WhyNoSolution(evidence);
     return result;
   }
-
- private:
-  double YawOf(const Landmark& landmark) const {
-    return Yaw(evidence_.plane.normal, landmark.frame_from_object.rotation);
+  SymmetryRecord& record = result.record;
+  record.yaw = profile.yaw;
+  record.cost["total"] = profile.Costs();
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  for (const auto& fit : profile.fits) {
+    if (options.edge_alignment) {
+      record.cost["edge_alignment"].push_back(fit ? fit->cost.further : none);
+    }
+    if (options.texture_symmetry) {
+      record.cost["texture_symmetry"].push_back(fit ? fit->cost.compared : none);
+    }
   }
-
-  void RecordPairs(const Landmark& landmark, SymmetryRecord* record) const {
-    const auto texture = asymmetry_.Find(landmark);
-    if (!texture) return;
-    const SymmetryDescriptor descriptor(symmetry_options_.descriptor, symmetry_image_, camera_,
-                                        InOwnAxes(landmark));
+  const Landmark& best = result.estimate.hypotheses.front().landmark_in_camera;
+  if (const auto texture = asymmetry.Find(best)) {
+    const SymmetryDescriptor descriptor(symmetry_options.descriptor, symmetry_image, camera,
+                                        InOwnAxes(best));
     for (const Eigen::Vector2d& pixel : texture->pixels) {
-      const auto pair = descriptor.Evaluate(pixel, std::nullopt, false, texture->mirror_plane);
-      if (!pair) continue;  // at the border of the image, by rounding
-      record->samples.push_back(pixel.cast<float>());
-      record->mirrored.push_back(pair->mirror_pixel.cast<float>());
+      // None at the border of the image, by rounding.
+      RecordPair(pixel, descriptor.Evaluate(pixel, std::nullopt, false, texture->mirror_plane),
+                 &record);
     }
   }
-
-  void RecordCurves(const YawProfile& profile, SymmetryRecord* record) const {
-    record->yaw = profile.yaw;
-    record->cost["total"] = profile.Costs();
-    const double none = std::numeric_limits<double>::quiet_NaN();
-    for (const auto& fit : profile.fits) {
-      if (options_.edge_alignment) {
-        record->cost["edge_alignment"].push_back(fit ? fit->cost.further : none);
-      }
-      if (options_.texture_symmetry) {
-        record->cost["texture_symmetry"].push_back(fit ? fit->cost.compared : none);
-      }
-    }
+  record.refined_yaw = optima.front().yaw;
+  // The mirror plane of an object on its side is horizontal.
+  if (options.texture_symmetry && evidence.RestsOn() != RestingFace::kSide) {
+    record.mirror_planes = MirrorPlanes(profile.yaw, record.cost.at("texture_symmetry"),
+                                        optima.front().yaw, options.texture);
   }
-
-  const ProfileOptions& options_;
-  const SymmetryOptions& symmetry_options_;
-  Camera camera_;
-  SymmetryImage symmetry_image_;
-  TextureAsymmetry asymmetry_;
-  ObjectEvidence evidence_;
-};
+  record.yaw_sigma = profile.StandardDeviation(optima);
+  return result;
+}
 
 // Joins the hypotheses of two faces; the record is that of the better one, if equal of the first.
 RefinedObservation Joined(RefinedObservation one, RefinedObservation other) {
@@ -156,8 +123,7 @@ RefinedObservation RefineByProfile(const Sequence& sequence, int detection_index
   for (const auto& on_face : OnPossibleFaces(prior)) {
     if (!on_face) continue;
     RefinedObservation refined =
-        OrientationProfile(sequence, detection, edges, *on_face, options, symmetry_options, points)
-            .Refine();
+        RefineOnFace(sequence, detection, edges, *on_face, options, symmetry_options, points);
     joined = joined ? Joined(std::move(*joined), std::move(refined)) : std::move(refined);
   }
   RefinedObservation result = joined.value_or(RefinedObservation());
@@ -168,14 +134,6 @@ RefinedObservation RefineByProfile(const Sequence& sequence, int detection_index
   result.record.true_yaw = TrueYaw(sequence, detection);
   return result;
 }
-
-namespace {
-
-// A texture counts as symmetric when its cost is below this fraction of the largest possible cost,
-// that is when most of its pairs are symmetric.
-constexpr double kSymmetricShare = 0.5;
-
-}  // namespace
 
 std::optional<int> MirrorPlanes(const std::vector<double>& grid,
                                 const std::vector<double>& texture_cost, double yaw,

@@ -11,7 +11,7 @@
 #include "geometry/angles.h"
 #include "initialisation/single_frame.h"
 #include "initialisation/yaw_prior.h"
-#include "orientation/symmetry_samples.h"
+#include "orientation/texture_asymmetry.h"
 
 namespace soslam {
 namespace {
@@ -86,18 +86,6 @@ void RecordCurves(const Refinement& refinement, SymmetryRecord* record) {
   }
 }
 
-void RecordPairs(const Refinement& refinement, const Landmark& landmark, SymmetryRecord* record) {
-  const SymmetryOptions& options = refinement.options.symmetry;
-  const SymmetryDescriptor evaluate(options.descriptor, *refinement.image,
-                                    refinement.observation.camera, landmark);
-  for (const Eigen::Vector2d& pixel : refinement.samples) {
-    if (const auto pair = evaluate.Evaluate(pixel, options.min_viewing_cosine, false)) {
-      record->samples.push_back(pixel.cast<float>());
-      record->mirrored.push_back(pair->mirror_pixel.cast<float>());
-    }
-  }
-}
-
 // The hypothesis with the most symmetric texture near its yaw, among those that fit the box as well
 // as the first.
 Refinement ChooseHypothesis(const Sequence& sequence, const Detection& detection,
@@ -128,12 +116,6 @@ Refinement ChooseHypothesis(const Sequence& sequence, const Detection& detection
     }
   }
   return *chosen;
-}
-
-// Why a landmark is not refined; empty where it is.
-std::string FailureOf(const Refinement& refinement) {
-  if (refinement.image->edge_pixels.empty()) return "no_edges";
-  return refinement.best_turn ? "" : "too_few_visible_pairs";
 }
 
 }  // namespace
@@ -170,6 +152,13 @@ std::vector<std::optional<double>> SymmetryCosts(const SymmetryImage& image, con
   return costs;
 }
 
+void RecordPair(const Eigen::Vector2d& pixel, const std::optional<SymmetryDescriptor::Pair>& pair,
+                SymmetryRecord* record) {
+  if (!pair) return;
+  record->samples.push_back(pixel.cast<float>());
+  record->mirrored.push_back(pair->mirror_pixel.cast<float>());
+}
+
 RefinedObservation RefineByTurning(const Sequence& sequence, const ObservationEstimate& initial,
                                    const EdgeMaps& maps,
                                    const std::optional<Eigen::Vector2d>& ratio,
@@ -188,14 +177,23 @@ RefinedObservation RefineByTurning(const Sequence& sequence, const ObservationEs
   const Refinement refinement =
       ChooseHypothesis(sequence, detection, initial.hypotheses, maps, *ratio, options);
   Landmark refined = refinement.start;
-  result.estimate.failure = FailureOf(refinement);
-  if (result.estimate.failure.empty()) {
+  if (refinement.image->edge_pixels.empty()) {
+    result.estimate.failure = "no_edges";
+  } else if (!refinement.best_turn) {
+    result.estimate.failure = "too_few_visible_pairs";
+  } else {
+    result.estimate.failure.clear();
     refined = RotatedAboutZ(refinement.start, refinement.best_turn->turn);
     result.estimate.hypotheses = {
         {refined, SingleFrameCost(refinement.observation, options.variances, refined)}};
   }
   RecordCurves(refinement, &result.record);
-  RecordPairs(refinement, refined, &result.record);
+  const SymmetryDescriptor descriptor(options.symmetry.descriptor, *refinement.image,
+                                      refinement.observation.camera, refined);
+  for (const Eigen::Vector2d& pixel : refinement.samples) {
+    RecordPair(pixel, descriptor.Evaluate(pixel, options.symmetry.min_viewing_cosine, false),
+               &result.record);
+  }
   result.record.initial_yaw = YawInCamera(refinement, refinement.start);
   result.record.refined_yaw = YawInCamera(refinement, refined);
   result.record.true_yaw = TrueYaw(sequence, detection);

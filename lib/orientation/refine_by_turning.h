@@ -32,6 +32,10 @@ std::vector<std::optional<double>> SymmetryCosts(const SymmetryImage& image, con
                                                  const std::vector<Descriptor>& descriptors,
                                                  const SymmetryOptions& options);
 
+// Adds the pair of a pixel to what is recorded, if there is one.
+void RecordPair(const Eigen::Vector2d& pixel, const std::optional<SymmetryDescriptor::Pair>& pair,
+                SymmetryRecord* record);
+
 // Refines the yaw of an observation's landmark by the symmetry of its texture, section V; centre
 // and half axes stay. Of the hypotheses that fit the box equally well, the one with the lowest
 // symmetry cost near its yaw is taken. If there is no such cost, the estimate stays unchanged, with

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -12,6 +13,17 @@
 #include "orientation/options.h"
 
 namespace soslam {
+
+// Calls `add` with candidates of pixels to compare, section V-D: corners in the box and/or a
+// uniform grid over it, or its edge pixels. Corners come first, strongest first. `add` returns
+// whether the pixel's ray meets the landmark: at most options.max_corners corners do.
+void ForEachSample(const SymmetryImage& image, const SymmetryOptions& options,
+                   const std::function<bool(const Eigen::Vector2d&)>& add);
+
+// The candidates whose rays meet a landmark.
+std::vector<Eigen::Vector2d> SamplePixels(const SymmetryImage& image, const Camera& camera,
+                                          const Landmark& landmark_in_camera,
+                                          const SymmetryOptions& options);
 
 // Throws SettingsError if the mirror plane may be offset from the xz plane but the descriptor is
 // measured on the surface, on which mirror points then no longer lie.

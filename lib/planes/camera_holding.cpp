@@ -2,7 +2,6 @@
 #include "planes/camera_holding.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -30,27 +29,7 @@ const double kWrongObject = std::log(1e4);
 
 constexpr double kSameUp = 5.0 * kRadPerDeg;
 
-using Costs = std::vector<double>;
-
-// Per object, the lowest cost over all evidence; infinite for an object that has no body in any.
-Costs LowestCosts(const std::vector<HoldingEvidence>& evidence) {
-  Costs lowest(evidence.front().object_costs.size(), std::numeric_limits<double>::infinity());
-  for (const HoldingEvidence& one : evidence) {
-    for (size_t i = 0; i < lowest.size(); ++i) {
-      if (one.object_costs[i]) lowest[i] = std::min(lowest[i], *one.object_costs[i]);
-    }
-  }
-  return lowest;
-}
-
-// Factor, at least 1, by which the boxes cost more than expected from their noise.
-double Misfit(const Costs& lowest, double expected_cost) {
-  double sum = 0.0;
-  for (const double cost : lowest) sum += std::isfinite(cost) ? cost : 0.0;
-  return expected_cost > 0.0 ? std::max(1.0, sum / expected_cost) : 1.0;
-}
-
-double CostOf(const HoldingEvidence& evidence, const Costs& lowest, double misfit) {
+double CostOf(const HoldingEvidence& evidence, const std::vector<double>& lowest, double misfit) {
   double cost = evidence.other_cost / misfit + kFromBelow * evidence.share_from_below;
   if (evidence.holding != CameraHolding::kLevel) cost += kNotLevel;
   if (evidence.ignores_verticals) cost += kWrongVerticals;
@@ -62,15 +41,6 @@ double CostOf(const HoldingEvidence& evidence, const Costs& lowest, double misfi
   return cost;
 }
 
-size_t BestOf(const std::vector<HoldingEvidence>& evidence, const Costs& costs) {
-  size_t best = 0;
-  for (size_t i = 1; i < costs.size(); ++i) {
-    if (!evidence[i].can_be_chosen) continue;
-    if (!evidence[best].can_be_chosen || costs[i] < costs[best]) best = i;
-  }
-  return best;
-}
-
 }  // namespace
 
 bool IsSameUp(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
@@ -79,13 +49,27 @@ bool IsSameUp(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
 
 HoldingChoice ChooseHolding(const std::vector<HoldingEvidence>& evidence, double expected_cost,
                             double clear) {
-  const Costs lowest = LowestCosts(evidence);
-  const double misfit = Misfit(lowest, expected_cost);
+  // Per object, the lowest cost over all evidence; infinite for one that has no body in any.
+  std::vector<double> lowest(evidence.front().object_costs.size(),
+                             std::numeric_limits<double>::infinity());
+  for (const HoldingEvidence& one : evidence) {
+    for (size_t i = 0; i < lowest.size(); ++i) {
+      if (one.object_costs[i]) lowest[i] = std::min(lowest[i], *one.object_costs[i]);
+    }
+  }
+  // Factor, at least 1, by which the boxes cost more than expected from their noise.
+  double sum_of_lowest = 0.0;
+  for (const double cost : lowest) sum_of_lowest += std::isfinite(cost) ? cost : 0.0;
+  const double misfit = expected_cost > 0.0 ? std::max(1.0, sum_of_lowest / expected_cost) : 1.0;
   HoldingChoice choice;
   for (const HoldingEvidence& one : evidence) {
     choice.costs.push_back(CostOf(one, lowest, misfit));
   }
-  choice.best = BestOf(evidence, choice.costs);
+  for (size_t i = 1; i < evidence.size(); ++i) {
+    if (!evidence[i].can_be_chosen) continue;
+    const bool is_lower = choice.costs[i] < choice.costs[choice.best];
+    if (!evidence[choice.best].can_be_chosen || is_lower) choice.best = i;
+  }
   const double best_cost = choice.costs[choice.best];
   // It may be that of a holding that cannot be chosen.
   const double lowest_cost = std::ranges::min(choice.costs);

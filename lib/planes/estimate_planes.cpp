@@ -86,11 +86,9 @@ class Estimator {
   std::optional<ObjectEvidence> Observe(const std::vector<int>& detections,
                                         const std::optional<ShapePrior>& prior) const {
     if (detections.empty() || (prior && prior->attitude == Attitude::kFree)) return std::nullopt;
-    ObjectEvidence observation =
-        EvidenceInWorld(sequence_, detections, prior, options_.detection_sigma_fraction);
+    ObjectEvidence observation = EvidenceInWorld(sequence_, detections, prior, options_.upright);
     observation.height_is_free = true;
-    WeighViews(options_.view_correlation_deg * kRadPerDeg, &observation);
-    observation.huber_delta = options_.huber_delta;
+    WeighViews(options_.upright.ViewCorrelation(), &observation);
     observation.ratio_is_free = prior && prior->attitude != Attitude::kStanding;
     observation.size_is_known = options_.size_prior && !observation.ratio_is_free;
     return observation;
@@ -131,14 +129,13 @@ class Estimator {
   // Finds the bodies whose own views determine the height of their base, given the normal.
   void FindOwnHeights(const Eigen::Vector3d& normal) {
     std::vector<std::optional<StandingBody>> found(observations_.size());
-    ParallelFor("objects", static_cast<int>(found.size()), threads_, [&](int i) {
-      const auto index = static_cast<size_t>(i);
-      if (!observations_[index]) return;
-      auto body = FitBodyAtFreeHeight(*observations_[index], normal, kYawStep);
+    ParallelFor("objects", found.size(), threads_, [&](size_t i) {
+      if (!observations_[i]) return;
+      auto body = FitBodyAtFreeHeight(*observations_[i], normal, kYawStep);
       if (!body) return;
       const double information = EvidenceOf(*body, body->landmark.Centre()).information(2, 2);
       const double size = 2.0 * body->landmark.half_axes.maxCoeff();
-      if (information * std::pow(kMaxHeightSigmaBySize * size, 2) > 1.0) found[index] = body;
+      if (information * std::pow(kMaxHeightSigmaBySize * size, 2) > 1.0) found[i] = body;
     });
     deciding_.clear();
     own_.clear();
@@ -212,9 +209,8 @@ class Estimator {
     }
     for (size_t i = 0; i < standing_.planes.size(); ++i) estimate->planes.push_back(WritePlane(i));
     estimate->objects.resize(sequence_.objects.size());
-    ParallelFor("objects", static_cast<int>(estimate->objects.size()), threads_, [&](int i) {
-      estimate->objects[i] = WriteObject(static_cast<size_t>(i), estimate->planes);
-    });
+    ParallelFor("objects", estimate->objects.size(), threads_,
+                [&](size_t i) { estimate->objects[i] = WriteObject(i, estimate->planes); });
   }
 
   EstimatedPlane WritePlane(size_t index) const {
@@ -313,22 +309,19 @@ UpPrior DownOf(const UpPrior& up_prior, const std::optional<PlanesEstimate>& flo
   return down;
 }
 
-// The ceiling made parallel to the floor, through its own point.
-EstimatedPlane Opposite(const EstimatedPlane& floor, EstimatedPlane ceiling) {
-  const Eigen::Vector3d normal = -floor.plane_in_world.normal;
-  ceiling.plane_in_world = {normal, -normal.dot(ceiling.point_in_world)};
-  const Eigen::Vector3d& x = ceiling.x_axis_in_world;
-  ceiling.x_axis_in_world = (x - normal.dot(x) * normal).normalized();
-  return ceiling;
-}
-
 // Floors and ceilings in one estimate, with the objects of each on their own planes; ceilings are
 // made parallel to the floor if `parallel`.
 PlanesEstimate JoinedPlanes(const PlanesEstimate& floors, const PlanesEstimate& ceilings,
                             bool parallel, const std::vector<std::optional<ShapePrior>>& priors) {
   PlanesEstimate joined = floors;
-  for (const EstimatedPlane& ceiling : ceilings.planes) {
-    joined.planes.push_back(parallel ? Opposite(floors.planes.front(), ceiling) : ceiling);
+  const Eigen::Vector3d down = -floors.planes.front().plane_in_world.normal;
+  for (EstimatedPlane ceiling : ceilings.planes) {
+    if (parallel) {  // made parallel to the floor, through its own point
+      ceiling.plane_in_world = {down, -down.dot(ceiling.point_in_world)};
+      const Eigen::Vector3d x = ceiling.x_axis_in_world;
+      ceiling.x_axis_in_world = (x - down.dot(x) * down).normalized();
+    }
+    joined.planes.push_back(ceiling);
   }
   for (size_t i = 0; i < priors.size(); ++i) {
     if (MountOf(priors[i]) != Mount::kHanging) continue;

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <string>
 
 #include "base/options.h"
+#include "initialisation/upright_options.h"
 
 namespace soslam {
 
@@ -16,18 +18,51 @@ enum class PlaneSource {
 inline constexpr std::array kPlaneSourceNames = {"given", "estimated", "where_missing",
                                                  "camera_height"};
 
+// Standard deviations of how level cameras are held.
+struct CameraTilt {
+  double roll_sigma_deg = 5.0;
+  double pitch_sigma_deg = 30.0;
+
+  double RollSigma() const { return roll_sigma_deg * kRadPerDeg; }
+  double PitchSigma() const { return pitch_sigma_deg * kRadPerDeg; }
+
+  // `where`: what the docs begin with.
+  void Describe(OptionVisitor& visit, const std::string& where = "") {
+    const auto doc = [&](const char* axes) {
+      return where + "standard deviation of the tilt of the cameras' " + axes + "; large: unknown";
+    };
+    visit.Real("camera_roll_sigma_deg", &roll_sigma_deg, {1e-3, 1e3}, doc("x axes").c_str());
+    visit.Real("camera_pitch_sigma_deg", &pitch_sigma_deg, {1e-3, 1e3},
+               doc("optical axes").c_str());
+  }
+};
+
+// Vertical edges in images.
+struct VerticalOptions {
+  bool are_used = true;
+  double sigma_deg = 1.0;
+  double min_length_px = 30.0;
+
+  double Sigma() const { return sigma_deg * kRadPerDeg; }
+
+  void Describe(OptionVisitor& visit, const char* doc_of_sigma) {
+    visit.Flag("verticals", &are_used,
+               "look for vertical edges in the images, where there are any");
+    visit.OnlyWhere({{"verticals", {"true"}}}, [&] {
+      visit.Real("vertical_sigma_deg", &sigma_deg, {1e-3, 90.0}, doc_of_sigma);
+      visit.Real("vertical_min_length_px", &min_length_px, {1.0, 1e5},
+                 "shorter edges are not used");
+    });
+  }
+};
+
 struct PlanesOptions {
   PlaneSource planes = PlaneSource::kGiven;
   double camera_height_m = 1.65;
   bool parallel = true;
-  double detection_sigma_fraction = 0.02;
-  double view_correlation_deg = 20.0;
-  double huber_delta = 1.0;
-  double camera_roll_sigma_deg = 5.0;
-  double camera_pitch_sigma_deg = 30.0;
-  bool verticals = true;
-  double vertical_sigma_deg = 1.0;
-  double vertical_min_length_px = 30.0;
+  UprightOptions upright{.axes_weight = 0.0};
+  CameraTilt tilt;
+  VerticalOptions verticals;
   double odometry_rotation_sigma_deg = 0.2;
   double odometry_translation_sigma_m = 0.003;
   bool refine_poses = true;
@@ -52,19 +87,15 @@ struct PlanesOptions {
     visit.OnlyWhere({{"planes", {"estimated", "where_missing"}}}, [&] {
       visit.Group("Estimated planes");
       visit.Flag("parallel", &parallel, "all planes have the same normal, as horizontal ones do");
-      visit.Real("detection_sigma_fraction", &detection_sigma_fraction, {1e-4, 1.0},
-                 "standard deviation of a detector's box edge, as a fraction of the box's "
-                 "width or height; at least 1 px");
-      visit.Real("view_correlation_deg", &view_correlation_deg, {0.0, 180.0},
-                 "boxes from viewpoints closer than this angle at the object share what "
-                 "the label's shape cannot explain, so that they count as one; so do the attitudes "
-                 "of cameras that look less than this apart; 0: all are independent");
-      visit.Real("huber_delta", &huber_delta, {1e-9, 1e9},
-                 "edges farther off than this many standard deviations count linearly");
-      visit.Real("camera_roll_sigma_deg", &camera_roll_sigma_deg, {1e-3, 1e3},
-                 "standard deviation of the tilt of the cameras' x axes; large: unknown");
-      visit.Real("camera_pitch_sigma_deg", &camera_pitch_sigma_deg, {1e-3, 1e3},
-                 "standard deviation of the tilt of the cameras' optical axes; large: unknown");
+      upright.DescribeSigma(visit);
+      upright.DescribeViewCorrelation(
+          visit,
+          "boxes from viewpoints closer than this angle at the object share what the label's shape "
+          "cannot explain, so that they count as one; so do the attitudes of cameras that look "
+          "less than this apart; 0: all are independent");
+      upright.DescribeLoss(visit,
+                           "edges farther off than this many standard deviations count linearly");
+      tilt.Describe(visit);
       visit.Real("height_sigma_fraction", &height_sigma_fraction, {0.0, 10.0},
                  "standard deviation of the height of an object's lowest point over its "
                  "plane, as a fraction of the object's height, for bodies that are not of their "
@@ -83,15 +114,9 @@ struct PlanesOptions {
                    "planes are not given, it alone holds the scale");
       });
       visit.Group("Verticals (vertical edges in the images)");
-      visit.Flag("verticals", &verticals,
-                 "look for vertical edges in the images, where there are any");
-      visit.OnlyWhere({{"verticals", {"true"}}}, [&] {
-        visit.Real("vertical_sigma_deg", &vertical_sigma_deg, {1e-3, 90.0},
-                   "standard deviation of the direction of an edge; those off by more than "
-                   "three are of other edges");
-        visit.Real("vertical_min_length_px", &vertical_min_length_px, {1.0, 1e5},
-                   "shorter edges are not used");
-      });
+      verticals.Describe(visit,
+                         "standard deviation of the direction of an edge; those off by more than "
+                         "three are of other edges");
       visit.Real("odometry_rotation_sigma_deg", &odometry_rotation_sigma_deg, {0.0, 90.0},
                  "standard deviation of the odometry between two frames about each "
                  "horizontal axis; its drift is taken out before planes are estimated; 0: it has "

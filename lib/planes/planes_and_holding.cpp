@@ -46,12 +46,6 @@ std::vector<Eigen::Vector2d> SolveChain(double stiffness, std::vector<Eigen::Vec
   return tilts;
 }
 
-UpPrior HeldPrior(const std::vector<Rigid3d>& world_from_camera, double correlation_rad,
-                  CameraHolding holding, const PlanesOptions& options) {
-  return UpPriorFromCameras(world_from_camera, options.camera_roll_sigma_deg * kRadPerDeg,
-                            options.camera_pitch_sigma_deg * kRadPerDeg, correlation_rad, holding);
-}
-
 std::vector<Rigid3d> Joined(const std::vector<Rigid3d>& drifted,
                             const std::vector<Eigen::Vector3d>& ups) {
   std::vector<Rigid3d> levelled = {drifted.front()};
@@ -63,53 +57,6 @@ std::vector<Rigid3d> Joined(const std::vector<Rigid3d>& drifted,
   }
   return levelled;
 }
-
-}  // namespace
-
-LevelTrajectory Level(const std::vector<SegmentView>& views, CameraHolding holding,
-                      const PlanesOptions& options) {
-  const double correlation = options.view_correlation_deg * kRadPerDeg;
-  const double vertical_sigma = options.vertical_sigma_deg * kRadPerDeg;
-  const double odometry_sigma = options.odometry_rotation_sigma_deg * kRadPerDeg;
-  const std::vector<Rigid3d> poses = PosesOf(views);
-  const UpPrior mean = WithVerticals(HeldPrior(poses, correlation, holding, options), views,
-                                     vertical_sigma, correlation, kMaxLevelTilt);
-  if (!(odometry_sigma > 0.0)) return {poses, mean};
-
-  const std::vector<double> shares = CameraWeights(poses, correlation);
-  const Basis level = LevelAxes(mean.up_in_world);
-  const double stiffness = 1.0 / (odometry_sigma * odometry_sigma);
-  std::vector<Eigen::Vector3d> ups(views.size(), mean.up_in_world);
-  Eigen::Matrix2d information_of_first;
-  for (int round = 0; round < kMaxLevelRounds; ++round) {
-    std::vector<Eigen::Matrix2d> information;
-    std::vector<Eigen::Vector2d> right_side;
-    for (size_t i = 0; i < views.size(); ++i) {
-      const Eigen::Matrix3d all =
-          shares[i] * (HeldPrior({poses[i]}, 0.0, holding, options).information +
-                       InformationOfVerticals(views[i], vertical_sigma, ups[i]));
-      information.push_back(level.transpose() * all * level);
-      right_side.push_back(-level.transpose() * all * mean.up_in_world);
-    }
-    const std::vector<Eigen::Vector2d> tilts =
-        SolveChain(stiffness, std::move(right_side), &information);
-    information_of_first = information.front();
-    double largest = 0.0;
-    for (size_t i = 0; i < ups.size(); ++i) {
-      const Eigen::Vector3d before = ups[i];
-      ups[i] = (mean.up_in_world + level * tilts[i]).normalized();
-      largest = std::max(largest, (ups[i] - before).norm());
-    }
-    if (largest < kLevelTolerance) break;
-  }
-  const Basis about_first = LevelAxes(ups.front());
-  const Eigen::Matrix2d turned = about_first.transpose() * level;
-  return {
-      Joined(poses, ups),
-      {about_first * (turned * information_of_first * turned.transpose()) * about_first.transpose(),
-       ups.front()}};
-}
-namespace {
 
 constexpr double kSameAxis = 1e-9;  // one minus a cosine
 // Hypotheses whose cost after the fit of bodies is higher than this are dropped before planes are
@@ -127,7 +74,8 @@ LevelTrajectory LevelFrames(const Sequence& sequence, const std::vector<SegmentV
                             const PlanesOptions& options, CameraHolding holding) {
   if (!views.empty()) return Level(views, holding, options);
   const std::vector<Rigid3d> poses = PosesOf(sequence);
-  return {poses, HeldPrior(poses, options.view_correlation_deg * kRadPerDeg, holding, options)};
+  return {poses,
+          UpPriorFromCameras(poses, options.tilt, options.upright.ViewCorrelation(), holding)};
 }
 
 Sequence WithPoses(Sequence sequence, const std::vector<Rigid3d>& world_from_camera) {
@@ -168,19 +116,6 @@ HoldingEvidence EvidenceOf(const HoldingEvidence& of_bodies, const PlanesAndHold
   return evidence;
 }
 
-// Copies the costs of a hypothesis with the opposite up direction, which are equal, as upright
-// bodies have no up or down side.
-bool TakeOppositeCosts(const std::vector<Hypothesis>& known, Hypothesis* hypothesis) {
-  const Eigen::Vector3d down = -hypothesis->evidence.up_in_world;
-  for (const Hypothesis& other : known) {
-    if (other.evidence.up_in_world.dot(down) < 1.0 - kSameAxis) continue;
-    hypothesis->evidence.object_costs = other.evidence.object_costs;
-    hypothesis->expected_cost = other.expected_cost;
-    return true;
-  }
-  return false;
-}
-
 // Adds the hypothesis of one camera holding with the costs of upright bodies of free height, unless
 // an earlier hypothesis has the same up.
 void AddHypothesis(const Sequence& sequence, const LevelTrajectory& trajectory,
@@ -194,7 +129,14 @@ void AddHypothesis(const Sequence& sequence, const LevelTrajectory& trajectory,
   if (is_known) return;
   Hypothesis hypothesis{holding, 0.0, trajectory, std::nullopt};
   hypothesis.evidence.up_in_world = up;
-  if (!TakeOppositeCosts(*hypotheses, &hypothesis)) {
+  // Upright bodies have no up or down side: the costs of the opposite up direction are equal.
+  const auto opposite = std::ranges::find_if(*hypotheses, [&](const Hypothesis& other) {
+    return !(other.evidence.up_in_world.dot(-up) < 1.0 - kSameAxis);
+  });
+  if (opposite != hypotheses->end()) {
+    hypothesis.evidence.object_costs = opposite->evidence.object_costs;
+    hypothesis.expected_cost = opposite->expected_cost;
+  } else {
     const BodyCosts costs = CostsOfUprightBodies(WithPoses(sequence, trajectory.world_from_camera),
                                                  priors, trajectory.up_prior, options, threads);
     hypothesis.evidence.object_costs = costs.of_objects;
@@ -265,14 +207,6 @@ bool IsIgnoringVerticalsUseless(const std::vector<Hypothesis>& hypotheses, size_
   return false;
 }
 
-// True if a followed hypothesis has the same up: different holdings may converge to one up.
-bool LeadsToKnownUp(const std::vector<Hypothesis>& followed, const Hypothesis& hypothesis) {
-  return std::ranges::any_of(followed, [&](const Hypothesis& other) {
-    return other.planes && hypothesis.planes &&
-           IsSameUp(other.evidence.up_in_world, hypothesis.evidence.up_in_world);
-  });
-}
-
 // `tried`: all hypotheses, including those dropped for the cost of their bodies, which are not in
 // `followed`; `place_in_tried`: the place of each followed one.
 PlanesAndHolding MostProbable(std::vector<TriedHolding> tried,
@@ -297,6 +231,50 @@ PlanesAndHolding MostProbable(std::vector<TriedHolding> tried,
 
 }  // namespace
 
+LevelTrajectory Level(const std::vector<SegmentView>& views, CameraHolding holding,
+                      const PlanesOptions& options) {
+  const double correlation = options.upright.ViewCorrelation();
+  const double vertical_sigma = options.verticals.Sigma();
+  const double odometry_sigma = options.odometry_rotation_sigma_deg * kRadPerDeg;
+  const std::vector<Rigid3d> poses = PosesOf(views);
+  const UpPrior mean = WithVerticals(UpPriorFromCameras(poses, options.tilt, correlation, holding),
+                                     views, vertical_sigma, correlation, kMaxLevelTilt);
+  if (!(odometry_sigma > 0.0)) return {poses, mean};
+
+  const std::vector<double> shares = CameraWeights(poses, correlation);
+  const Basis level = LevelAxes(mean.up_in_world);
+  const double stiffness = 1.0 / (odometry_sigma * odometry_sigma);
+  std::vector<Eigen::Vector3d> ups(views.size(), mean.up_in_world);
+  Eigen::Matrix2d information_of_first;
+  for (int round = 0; round < kMaxLevelRounds; ++round) {
+    std::vector<Eigen::Matrix2d> information;
+    std::vector<Eigen::Vector2d> right_side;
+    for (size_t i = 0; i < views.size(); ++i) {
+      const Eigen::Matrix3d all =
+          shares[i] * (UpPriorFromCameras({poses[i]}, options.tilt, 0.0, holding).information +
+                       InformationOfVerticals(views[i], vertical_sigma, ups[i]));
+      information.push_back(level.transpose() * all * level);
+      right_side.push_back(-level.transpose() * all * mean.up_in_world);
+    }
+    const std::vector<Eigen::Vector2d> tilts =
+        SolveChain(stiffness, std::move(right_side), &information);
+    information_of_first = information.front();
+    double largest = 0.0;
+    for (size_t i = 0; i < ups.size(); ++i) {
+      const Eigen::Vector3d before = ups[i];
+      ups[i] = (mean.up_in_world + level * tilts[i]).normalized();
+      largest = std::max(largest, (ups[i] - before).norm());
+    }
+    if (largest < kLevelTolerance) break;
+  }
+  const Basis about_first = LevelAxes(ups.front());
+  const Eigen::Matrix2d turned = about_first.transpose() * level;
+  return {
+      Joined(poses, ups),
+      {about_first * (turned * information_of_first * turned.transpose()) * about_first.transpose(),
+       ups.front()}};
+}
+
 PlanesAndHolding EstimatePlanesAndHolding(const Sequence& sequence,
                                           const std::vector<SegmentView>& views,
                                           const std::vector<std::optional<ShapePrior>>& priors,
@@ -313,7 +291,12 @@ PlanesAndHolding EstimatePlanesAndHolding(const Sequence& sequence,
     if (by_bodies.costs[i] > kMaxHypothesisCost) continue;
     if (IsIgnoringVerticalsUseless(hypotheses, i, by_bodies.costs)) continue;
     EstimatePlanesOf(sequence, priors, options, threads, &hypotheses[i]);
-    if (LeadsToKnownUp(followed, hypotheses[i])) continue;
+    // Different holdings may converge to one up.
+    const bool is_known = std::ranges::any_of(followed, [&](const Hypothesis& other) {
+      return other.planes && hypotheses[i].planes &&
+             IsSameUp(other.evidence.up_in_world, hypotheses[i].evidence.up_in_world);
+    });
+    if (is_known) continue;
     followed.push_back(hypotheses[i]);
     place_in_tried.push_back(i);
   }

@@ -3,7 +3,6 @@
 
 #include <Eigen/Dense>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -38,6 +37,60 @@ Eigen::Matrix<double, kLandmarkDof, 3> MotionJacobian(const Plane& plane,
   d_motion.block<3, 2>(3, 0) = -Skew(landmark.Centre() - pivot) * level.leftCols<2>();
   d_motion.block<3, 1>(3, 2) = plane.normal;
   return d_motion;
+}
+
+constexpr int kMaxIterations = 60;
+constexpr double kNegligiblePlaneDecrease = 1e-9;
+
+// Two turns, and the height of each plane.
+Eigen::VectorXd NoMotion(const StandingBodies& standing) {
+  return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(standing.planes.size()) + 2);
+}
+
+// The cost of all bodies and of the cameras' up prior to second order in the planes' motions.
+QuadraticModel<Eigen::Dynamic> ModelOf(const StandingBodies& standing,
+                                       const Eigen::Vector3d& pivot) {
+  const Eigen::VectorXd zero = NoMotion(standing);
+  QuadraticModel<Eigen::Dynamic> sum{0.0, zero, Eigen::MatrixXd::Zero(zero.size(), zero.size())};
+  const auto add = [&](const PlaneEvidence& evidence, int plane) {
+    const std::array<Eigen::Index, 3> at = {0, 1, 2 + plane};
+    sum.cost += evidence.cost;
+    sum.gradient(at) += evidence.gradient;
+    sum.information(at, at) += evidence.information;
+  };
+  add(EvidenceOf(standing.up_prior, standing.planes.front()), 0);
+  for (size_t i = 0; i < standing.bodies.size(); ++i) {
+    const StandingBody& body = standing.bodies[i];
+    const double sigma = HeightSigma(body, standing.height_sigma_fraction);
+    add(WithHeightNoise(EvidenceOf(body, pivot), sigma), standing.plane_of[i]);
+  }
+  return sum;
+}
+
+PlaneMotion MotionOfPlane(const Eigen::VectorXd& step, int plane) {
+  return {step(0), step(1), step(2 + plane)};
+}
+
+// All planes moved with their bodies, which are then fitted again; none when a fit fails.
+std::optional<StandingBodies> Stepped(const StandingBodies& standing, const Eigen::Vector3d& pivot,
+                                      const Eigen::VectorXd& step, int threads) {
+  StandingBodies stepped = standing;
+  for (size_t i = 0; i < standing.planes.size(); ++i) {
+    stepped.planes[i] = Moved(standing.planes[i], pivot, MotionOfPlane(step, static_cast<int>(i)));
+  }
+  std::vector<std::optional<StandingBody>> settled(standing.bodies.size());
+  ParallelFor(standing.bodies.size(), threads, [&](size_t i) {
+    const int plane = standing.plane_of[i];
+    StandingBody body = standing.bodies[i];
+    body.landmark = Moved(standing.planes[plane], pivot, MotionOfPlane(step, plane), body.landmark);
+    body.evidence.plane = stepped.planes[plane];
+    settled[i] = FitOnPlane(std::move(body));
+  });
+  for (size_t i = 0; i < settled.size(); ++i) {
+    if (!settled[i]) return std::nullopt;
+    stepped.bodies[i] = std::move(*settled[i]);
+  }
+  return stepped;
 }
 
 }  // namespace
@@ -93,65 +146,6 @@ std::optional<StandingBody> FitBodyAtFreeHeight(ObjectEvidence evidence,
   }
   return std::nullopt;
 }
-
-namespace {
-
-constexpr int kMaxIterations = 60;
-constexpr double kNegligiblePlaneDecrease = 1e-9;
-
-// Two turns, and the height of each plane.
-Eigen::VectorXd NoMotion(const StandingBodies& standing) {
-  return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(standing.planes.size()) + 2);
-}
-
-// The cost of all bodies and of the cameras' up prior to second order in the planes' motions.
-QuadraticModel<Eigen::Dynamic> ModelOf(const StandingBodies& standing,
-                                       const Eigen::Vector3d& pivot) {
-  const Eigen::VectorXd zero = NoMotion(standing);
-  QuadraticModel<Eigen::Dynamic> sum{0.0, zero, Eigen::MatrixXd::Zero(zero.size(), zero.size())};
-  const auto add = [&](const PlaneEvidence& evidence, int plane) {
-    const std::array<Eigen::Index, 3> at = {0, 1, 2 + plane};
-    sum.cost += evidence.cost;
-    sum.gradient(at) += evidence.gradient;
-    sum.information(at, at) += evidence.information;
-  };
-  add(EvidenceOf(standing.up_prior, standing.planes.front()), 0);
-  for (size_t i = 0; i < standing.bodies.size(); ++i) {
-    const StandingBody& body = standing.bodies[i];
-    const double sigma = HeightSigma(body, standing.height_sigma_fraction);
-    add(WithHeightNoise(EvidenceOf(body, pivot), sigma), standing.plane_of[i]);
-  }
-  return sum;
-}
-
-PlaneMotion MotionOfPlane(const Eigen::VectorXd& step, int plane) {
-  return {step(0), step(1), step(2 + plane)};
-}
-
-// All planes moved with their bodies, which are then fitted again; none when a fit fails.
-std::optional<StandingBodies> Stepped(const StandingBodies& standing, const Eigen::Vector3d& pivot,
-                                      const Eigen::VectorXd& step, int threads) {
-  StandingBodies stepped = standing;
-  for (size_t i = 0; i < standing.planes.size(); ++i) {
-    stepped.planes[i] = Moved(standing.planes[i], pivot, MotionOfPlane(step, static_cast<int>(i)));
-  }
-  std::vector<std::optional<StandingBody>> settled(standing.bodies.size());
-  ParallelFor(static_cast<int>(standing.bodies.size()), threads, [&](int i) {
-    const auto index = static_cast<size_t>(i);
-    const int plane = standing.plane_of[index];
-    StandingBody body = standing.bodies[index];
-    body.landmark = Moved(standing.planes[plane], pivot, MotionOfPlane(step, plane), body.landmark);
-    body.evidence.plane = stepped.planes[plane];
-    settled[index] = FitOnPlane(std::move(body));
-  });
-  for (size_t i = 0; i < settled.size(); ++i) {
-    if (!settled[i]) return std::nullopt;
-    stepped.bodies[i] = std::move(*settled[i]);
-  }
-  return stepped;
-}
-
-}  // namespace
 
 PlaneEvidence EvidenceOf(const UpPrior& up_prior, const Plane& plane) {
   const Eigen::Matrix<double, 3, 2> d_turns = UpByTurns(plane.normal);

@@ -12,7 +12,6 @@
 #include "geometry/angles.h"
 #include "geometry/landmark.h"
 #include "initialisation/fit_object.h"
-#include "initialisation/view_weights.h"
 
 namespace soslam {
 
@@ -46,6 +45,13 @@ Eigen::Vector3d LowestCostUp(const Eigen::Matrix3d& information, const Eigen::Ve
   const Eigen::Vector3d up = eigen.eigenvectors().col(0);
   return up.dot(above) < 0.0 ? -up : up;
 }
+
+// Search of up before boxes are used: steps, and initial guesses, farther apart than neighbours of
+// the grid.
+constexpr double kTiltStep = 7.5 * kRadPerDeg;
+constexpr size_t kStarts = 4;
+constexpr double kBetweenStarts = 1.6 * kTiltStep;
+constexpr double kYawStepOfSearch = 6.0 * kRadPerDeg;
 
 constexpr double kBound = 3.0;         // standard deviations
 constexpr double kUnitOfHeight = 0.1;  // length of weight 1, as a share of the image's height
@@ -137,15 +143,15 @@ std::vector<Eigen::Vector3d> HalfSphere() {
 }
 
 // The axes of all cameras that are level when they are held so.
-LevelDirections AxesOfCameras(const std::vector<Rigid3d>& world_from_camera, double roll_sigma,
-                              double pitch_sigma, double correlation_rad, CameraHolding holding) {
+LevelDirections AxesOfCameras(const std::vector<Rigid3d>& world_from_camera, const CameraTilt& tilt,
+                              double correlation_rad, CameraHolding holding) {
   const HeldAxes held = AxesOf(holding);
   const std::vector<double> shares = CameraWeights(world_from_camera, correlation_rad);
   std::vector<LevelDirection> axes;
   for (size_t i = 0; i < shares.size(); ++i) {
     const Eigen::Quaterniond& rotation = world_from_camera[i].rotation;
-    axes.push_back({rotation * held.level, roll_sigma, shares[i]});
-    axes.push_back({rotation * held.up.cross(held.level), pitch_sigma, shares[i]});
+    axes.push_back({rotation * held.level, tilt.RollSigma(), shares[i]});
+    axes.push_back({rotation * held.up.cross(held.level), tilt.PitchSigma(), shares[i]});
   }
   return LevelDirections(std::move(axes));
 }
@@ -159,19 +165,18 @@ Eigen::Vector3d AboveCameras(const std::vector<Rigid3d>& world_from_camera, Came
 
 }  // namespace
 
-UpPrior UpPriorFromCameras(const std::vector<Rigid3d>& world_from_camera, double roll_sigma,
-                           double pitch_sigma, double correlation_rad, CameraHolding holding) {
+UpPrior UpPriorFromCameras(const std::vector<Rigid3d>& world_from_camera, const CameraTilt& tilt,
+                           double correlation_rad, CameraHolding holding) {
   const Eigen::Matrix3d information =
-      AxesOfCameras(world_from_camera, roll_sigma, pitch_sigma, correlation_rad, holding)
+      AxesOfCameras(world_from_camera, tilt, correlation_rad, holding)
           .Information(Eigen::Vector3d::Zero());
   return {information, LowestCostUp(information, AboveCameras(world_from_camera, holding))};
 }
 
-UpPrior RobustUpPriorFromCameras(const std::vector<Rigid3d>& world_from_camera, double roll_sigma,
-                                 double pitch_sigma, double correlation_rad,
+UpPrior RobustUpPriorFromCameras(const std::vector<Rigid3d>& world_from_camera,
+                                 const CameraTilt& tilt, double correlation_rad,
                                  CameraHolding holding) {
-  const LevelDirections axes =
-      AxesOfCameras(world_from_camera, roll_sigma, pitch_sigma, correlation_rad, holding);
+  const LevelDirections axes = AxesOfCameras(world_from_camera, tilt, correlation_rad, holding);
   const std::vector<Eigen::Vector3d> half = HalfSphere();
   Eigen::Vector3d lowest =
       *std::ranges::min_element(half, {}, [&](const Eigen::Vector3d& up) { return axes.Cost(up); });
@@ -208,26 +213,6 @@ UpPrior WithVerticals(const UpPrior& up_prior, const std::vector<SegmentView>& v
   }
   return normals.Descend(up_prior.information, best);
 }
-
-namespace {
-
-// Search of up before boxes are used: steps, and initial guesses, farther apart than neighbours of
-// the grid.
-constexpr double kTiltStep = 7.5 * kRadPerDeg;
-constexpr size_t kStarts = 4;
-constexpr double kBetweenStarts = 1.6 * kTiltStep;
-constexpr double kYawStepOfSearch = 6.0 * kRadPerDeg;
-
-double CostOf(const Eigen::Vector3d& up, const UpPrior& up_prior,
-              const std::vector<std::optional<ObjectEvidence>>& observations) {
-  double cost = 0.5 * up.dot(up_prior.information * up);
-  for (const auto& observation : observations) {
-    if (observation) cost += CostOfUprightBody(up, *observation).value_or(kCostWithoutBody);
-  }
-  return cost;
-}
-
-}  // namespace
 
 std::vector<Eigen::Vector3d> UpDirections(const UpPrior& prior, double step) {
   constexpr double kMaxSigmas = 2.5;
@@ -280,9 +265,12 @@ std::vector<Eigen::Vector3d> SearchUp(
     int threads) {
   const std::vector<Eigen::Vector3d> candidates = UpDirections(up_prior, kTiltStep);
   std::vector<double> costs(candidates.size());
-  ParallelFor("directions of up", static_cast<int>(candidates.size()), threads, [&](int i) {
-    const auto index = static_cast<size_t>(i);
-    costs[index] = CostOf(candidates[index], up_prior, observations);
+  ParallelFor("directions of up", candidates.size(), threads, [&](size_t i) {
+    const Eigen::Vector3d& up = candidates[i];
+    costs[i] = 0.5 * up.dot(up_prior.information * up);
+    for (const auto& observation : observations) {
+      if (observation) costs[i] += CostOfUprightBody(up, *observation).value_or(kCostWithoutBody);
+    }
   });
   return LowestApart(candidates, costs, kBetweenStarts, kStarts);
 }

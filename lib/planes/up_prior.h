@@ -11,6 +11,7 @@
 #include "initialisation/object_evidence.h"
 #include "model/sequence.h"
 #include "planes/camera_holding.h"
+#include "planes/options.h"
 
 namespace soslam {
 
@@ -35,14 +36,14 @@ std::vector<double> CameraWeights(const std::vector<Rigid3d>& world_from_camera,
 // Prior on up from the way people and vehicles hold cameras. Level cameras have nearly level x
 // axes, and less exactly level optical axes; for other holdings see AxesOf. At least one pose;
 // sigmas in radians. The sign of up is that of most cameras.
-UpPrior UpPriorFromCameras(const std::vector<Rigid3d>& world_from_camera, double roll_sigma,
-                           double pitch_sigma, double correlation_rad,
-                           CameraHolding holding = CameraHolding::kLevel);
+UpPrior UpPriorFromCameras(const std::vector<Rigid3d>& world_from_camera, const CameraTilt& tilt,
+                           double correlation_rad, CameraHolding holding = CameraHolding::kLevel);
 
 // The same where some cameras may be turned in any way: their axes have a bounded loss
 // (Geman-McClure). Where most are held less evenly than the sigmas say, the information is smaller.
-UpPrior RobustUpPriorFromCameras(const std::vector<Rigid3d>& world_from_camera, double roll_sigma,
-                                 double pitch_sigma, double correlation_rad, CameraHolding holding);
+UpPrior RobustUpPriorFromCameras(const std::vector<Rigid3d>& world_from_camera,
+                                 const CameraTilt& tilt, double correlation_rad,
+                                 CameraHolding holding);
 
 // Straight edges in one image.
 struct SegmentView {

@@ -18,12 +18,9 @@
 #include "base/text.h"
 #include "cli/command_line.h"
 #include "evaluation/result_checks.h"
-#include "initialisation/cuboids.h"
-#include "initialisation/multi_view.h"
+#include "initialisation/estimates_of_sequence.h"
 #include "initialisation/object_points.h"
 #include "initialisation/options.h"
-#include "initialisation/svd.h"
-#include "initialisation/yaw_sweep.h"
 #include "orientation/options.h"
 #include "orientation/refine_by_profile.h"
 #include "orientation/refine_by_turning.h"
@@ -76,13 +73,6 @@ std::vector<Finding> ReportMissingLabels(const Sequence& sequence, const Semanti
   return findings;
 }
 
-// True if the ratios of objects are those of their labels.
-bool UsesTable(const InitialiseOptions& options) {
-  return options.method != InitialisationMethod::kSvd &&
-         options.method != InitialisationMethod::kCuboidProposals &&
-         options.ratio_prior == RatioPrior::kTable;
-}
-
 // The estimates of the method that the options name.
 LandmarkEstimates Initialise(const Sequence& sequence, const SemanticTable& table,
                              const std::optional<PointsInFrames>& points,
@@ -98,12 +88,10 @@ LandmarkEstimates Initialise(const Sequence& sequence, const SemanticTable& tabl
   }
   const auto priors = ObjectPriors(sequence, table, options.ratio_prior, options.shape);
   if (options.method == InitialisationMethod::kMultiView) {
-    return InitialiseMultiView(sequence, priors, options.upright, options.view_correlation_deg,
-                               threads);
+    return InitialiseMultiView(sequence, priors, options.upright, threads);
   }
   return InitialiseUpright(sequence, priors, options.upright, threads,
-                           YawPriors(sequence, priors, options.yaw_prior, options.upright,
-                                     options.view_correlation_deg, threads),
+                           YawPriors(sequence, priors, options.yaw_prior, options.upright, threads),
                            points ? &*points : nullptr);
 }
 
@@ -120,7 +108,11 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
   const Sequence sequence = ReadSequence(files.at("sequence"));
   const SemanticTable table = ReadSemanticTable(files.at("table"));
   std::vector<Finding> of_labels;
-  if (UsesTable(options)) of_labels = ReportMissingLabels(sequence, table, files.at("table"));
+  const bool has_ratios = options.method != InitialisationMethod::kSvd &&
+                          options.method != InitialisationMethod::kCuboidProposals;
+  if (has_ratios && options.ratio_prior == RatioPrior::kTable) {
+    of_labels = ReportMissingLabels(sequence, table, files.at("table"));
+  }
   const auto points = PointsInFramesOf(options.points, sequence, files);
   const LandmarkEstimates estimates = Initialise(sequence, table, points, options, files, threads);
   const auto failures = CountFailures(estimates);
@@ -181,8 +173,7 @@ std::vector<RefinedObservation> RefineAll(const Sequence& sequence,
   std::map<int, FrameInUse> frames;  // keyed by index
   for (size_t i = 0; i < initial.size(); ++i) frames[detection_of(i).frame_index].Expect();
   std::vector<RefinedObservation> refined(initial.size());
-  ParallelFor("landmarks", static_cast<int>(initial.size()), threads, [&](int index) {
-    const auto i = static_cast<size_t>(index);
+  ParallelFor("landmarks", initial.size(), threads, [&](size_t i) {
     const Detection& detection = detection_of(i);
     const auto edges = frames.at(detection.frame_index).Take(edges_of, sequence.FrameOf(detection));
     const auto& prior = priors[detection.object_index];

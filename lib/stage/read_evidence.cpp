@@ -99,12 +99,12 @@ SegmentView ReadSegmentView(const Sequence& sequence, const FrameImageReader& re
 
 }  // namespace
 
-std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, double min_length_px,
+std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, const VerticalOptions& options,
                                          const StageFiles& files, int threads,
                                          std::vector<std::filesystem::path>* inputs) {
   const bool has_images =
       std::ranges::any_of(sequence.frames, [](const Frame& frame) { return !frame.image.empty(); });
-  if (!has_images) return {};
+  if (!options.are_used || !has_images) return {};
   if (!files.contains("dataset")) {
     throw SettingsError(
         "verticals is true; expected --dataset with the images, or verticals = false");
@@ -117,10 +117,10 @@ std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, double min_le
     views.push_back({sequence.CameraOf(frame), {}, frame.world_from_camera});
   }
   const FrameImageReader reader(sequence);
-  ParallelFor("images", static_cast<int>(images.size()), threads, [&](int i) {
+  ParallelFor("images", images.size(), threads, [&](size_t i) {
     const FrameImage& image = images[i];
     views[image.frame - sequence.frames.data()] =
-        ReadSegmentView(sequence, reader, image, min_length_px);
+        ReadSegmentView(sequence, reader, image, options.min_length_px);
   });
   return views;
 }
@@ -161,10 +161,9 @@ std::vector<SegmentView> SegmentsOf(const std::vector<FrameImage>& images, int t
                                     const Sequence& sequence) {
   const FrameImageReader reader(sequence);
   std::vector<SegmentView> views(images.size());
-  ParallelFor(static_cast<int>(images.size()), threads, [&](int i) {
-    const auto index = static_cast<size_t>(i);
+  ParallelFor(images.size(), threads, [&](size_t i) {
     try {
-      views[index] = ReadSegmentView(sequence, reader, images[index], kMinSegmentPx);
+      views[i] = ReadSegmentView(sequence, reader, images[i], kMinSegmentPx);
     } catch (const InputError&) {
     }
   });

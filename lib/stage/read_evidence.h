@@ -56,9 +56,10 @@ class FrameImageReader {
   std::optional<ImageUndistorter> undistorter_;
 };
 
-// Line segments of at least `min_length_px` in the images of folder "dataset", per frame; none if
-// no frame has an image. The images are added to `inputs`. Throws SettingsError without a folder.
-std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, double min_length_px,
+// Line segments in the images of folder "dataset", per frame; none if vertical edges are not used
+// or no frame has an image. The images are added to `inputs`. Throws SettingsError without a
+// folder.
+std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, const VerticalOptions& options,
                                          const StageFiles& files, int threads,
                                          std::vector<std::filesystem::path>* inputs);
 

@@ -41,16 +41,6 @@ std::string DescribeTracks(const Association& association) {
   return CountsInWords(counts);
 }
 
-// Finding of the first segment whose up direction is ambiguous.
-std::vector<Finding> CheckUpOfSegments(const Association& association) {
-  std::vector<Finding> findings;
-  for (const auto& [segment, up] : association.up_of_segments) {
-    findings = CheckUp(up.holding, up.holdings, up.holding_tilt_variance);
-    if (!findings.empty()) break;
-  }
-  return findings;
-}
-
 }  // namespace
 
 void RunAssociate(const AssociateOptions& options, const StageFiles& files, int threads) {
@@ -68,9 +58,11 @@ void RunAssociate(const AssociateOptions& options, const StageFiles& files, int 
                                          DescribeTracks(association)));
   }
   const Agreement agreement = CompareWithGiven(sequence, association, options.min_observations);
-  const ArtefactInfo info = {OptionsToJson(options),
-                             {files.at("sequence"), files.at("table")},
-                             CheckUpOfSegments(association)};
+  ArtefactInfo info = {OptionsToJson(options), {files.at("sequence"), files.at("table")}};
+  for (const auto& [segment, up] : association.up_of_segments) {
+    info.findings = CheckUp(up.holding, up.holdings, up.holding_tilt_variance);
+    if (!info.findings.empty()) break;  // the first segment whose up direction is ambiguous
+  }
   const Sequence associated = AssociatedSequence(sequence, association, agreement);
   ReportFindings("associate", info.findings);
   WriteAssociations(files.at("associations"), sequence, association, agreement, info);
@@ -97,14 +89,11 @@ MapEstimate Adjusted(const Sequence& sequence, std::vector<std::optional<ShapePr
                      const PlanesOptions& options, int threads) {
   OptimiseOptions optimise;
   optimise.detection_model = DetectionModel::kTangency;
-  optimise.detection_sigma_fraction = options.detection_sigma_fraction;
-  optimise.view_correlation_deg = options.view_correlation_deg;
-  optimise.huber_delta = options.huber_delta;
+  optimise.upright = options.upright;  // whose axes of the scene are not known yet
   optimise.odometry_translation_sigma_m = options.odometry_translation_sigma_m;
   if (options.odometry_rotation_sigma_deg > 0.0) {
     optimise.odometry_rotation_sigma_deg = options.odometry_rotation_sigma_deg;
   }
-  optimise.axes_weight = 0.0;  // the planes of the scene's axes are not known yet
   std::vector<bool> may_lean;
   for (auto& prior : priors) {
     may_lean.push_back(prior && prior->attitude == Attitude::kFree);
@@ -196,11 +185,8 @@ Result FromBoxes(const Sequence& sequence, const PlanesOptions& options, const S
   Result result;
   result.inputs = {files.at("table")};
   const SemanticTable table = ReadSemanticTable(files.at("table"));
-  std::vector<SegmentView> views;
-  if (options.verticals) {
-    views =
-        ViewsOfSegments(sequence, options.vertical_min_length_px, files, threads, &result.inputs);
-  }
+  const std::vector<SegmentView> views =
+      ViewsOfSegments(sequence, options.verticals, files, threads, &result.inputs);
   const auto priors = ObjectPriors(sequence, table, RatioPrior::kTable);
   PlanesAndHolding held = EstimatePlanesAndHolding(sequence, views, priors, options, threads);
   if (options.refine_poses) {
@@ -209,7 +195,7 @@ Result FromBoxes(const Sequence& sequence, const PlanesOptions& options, const S
   result.estimate = std::move(held.estimate);
   result.sequence = WithPlanes(std::move(held.level), result.estimate);
   result.sequence.frames = sequence.frames;  // odometry stays what was measured
-  SetSceneAxes(views, options.view_correlation_deg * kRadPerDeg, &result.sequence);
+  SetSceneAxes(views, options.upright.ViewCorrelation(), &result.sequence);
   return result;
 }
 
@@ -288,13 +274,6 @@ std::string ScaleInWords(const std::optional<WorldScale>& scale) {
                      contradictions.empty() ? "" : ", uncertain: ", contradictions);
 }
 
-void PrintGroundSummary(const Sequence& sequence, const GroundEstimate& estimate,
-                        const std::optional<WorldScale>& scale) {
-  fmt::print("{}: up +- {:.1f} degrees (one standard deviation), {}, {}\n", sequence.name,
-             kDegPerRad * estimate.tilt_sigma, ScaleInWords(scale),
-             Counted(estimate.planes.size(), "support plane"));
-}
-
 }  // namespace
 
 void RunGround(const GroundOptions& options, const StageFiles& files, int threads) {
@@ -305,10 +284,8 @@ void RunGround(const GroundOptions& options, const StageFiles& files, int thread
   CheckOneSegment(sequence, files.at("sequence"));
   ArtefactInfo info = {OptionsToJson(options),
                        {files.at("sequence"), files.at("points"), files.at("table")}};
-  std::vector<SegmentView> views;
-  if (options.verticals) {
-    views = ViewsOfSegments(sequence, options.vertical_min_length_px, files, threads, &info.inputs);
-  }
+  std::vector<SegmentView> views =
+      ViewsOfSegments(sequence, options.verticals, files, threads, &info.inputs);
   const GroundEstimate estimate =
       EstimateGround(sequence, ReadPoints(files.at("points")), views,
                      ReadSemanticTable(files.at("table")), options, threads);
@@ -324,9 +301,11 @@ void RunGround(const GroundOptions& options, const StageFiles& files, int thread
   for (size_t i = 0; i < views.size(); ++i) {
     views[i].world_from_camera = grounded.frames[i].world_from_camera;
   }
-  SetSceneAxes(views, options.view_correlation_deg * kRadPerDeg, &grounded);
+  SetSceneAxes(views, options.upright.ViewCorrelation(), &grounded);
   WriteSequence(files.at("output"), grounded, info);
-  PrintGroundSummary(sequence, estimate, WorldScaleOf(estimate, info.findings));
+  fmt::print("{}: up +- {:.1f} degrees (one standard deviation), {}, {}\n", sequence.name,
+             kDegPerRad * estimate.tilt_sigma, ScaleInWords(WorldScaleOf(estimate, info.findings)),
+             Counted(estimate.planes.size(), "support plane"));
 }
 
 }  // namespace soslam

@@ -129,12 +129,12 @@ TEST_F(BoxLikelihoodTest, NothingIsExpectedBehindTheCamera) {
 TEST(BoxLikelihoodCalibrationTest, DistancesAreInStandardDeviations) {
   AssociateOptions options = EstimatedAssociation();
   options.cut_edge_probability = 0.0;
-  options.view_correlation_deg = 0.0;  // errors are independent
+  options.upright.view_correlation_deg = 0.0;  // errors are independent
   double sum = 0.0;
   int count = 0;
   for (int seed = 0; seed < 12; ++seed) {
     Scene scene = RandomScene(seed, 6, 30, {Shape::kBox});
-    scene.noise.box_edge_sigma = options.box_sigma_fraction;
+    scene.noise.box_edge_sigma = options.upright.detection_sigma_fraction;
     Sequence sequence = SyntheticSequence(scene, true);
     for (Frame& frame : sequence.frames) frame.world_from_camera = *frame.true_world_from_camera;
     const BoxLikelihood likelihood(sequence, options);

@@ -129,8 +129,8 @@ Sequence SequenceOf(const std::vector<Eigen::Quaterniond>& rotations) {
 // The horizon of one camera leans as it is rolled, about its x axis it may be pitched.
 TEST(UpEstimateTest, OneCameraIsAsUncertainAsItIsHeld) {
   AssociateOptions options;
-  options.camera_roll_sigma_deg = 4.0;
-  options.camera_pitch_sigma_deg = 20.0;
+  options.tilt.roll_sigma_deg = 4.0;
+  options.tilt.pitch_sigma_deg = 20.0;
   const UpEstimate up = UpOfSegments(SequenceOf({LevelCamera()}), SemanticTable(), options).at(0);
   EXPECT_NEAR((up.up_in_world - Eigen::Vector3d::UnitZ()).norm(), 0.0, 1e-12);
   const Eigen::Vector3d variances = Eigen::Vector3d(4.0, 20.0, 0.0).array().square();
@@ -148,7 +148,7 @@ TEST(UpEstimateTest, ErrorsAreAsLargeAsTheCovarianceSays) {
     for (int i = 0; i < 6; ++i) {
       const Eigen::AngleAxisd heading(i * std::numbers::pi / 3.0, Eigen::Vector3d::UnitZ());
       const Eigen::AngleAxisd pitch(-45.0 * kRadPerDeg, Eigen::Vector3d::UnitX());
-      const Eigen::AngleAxisd roll(options.camera_roll_sigma_deg * kRadPerDeg * RandomNormal(),
+      const Eigen::AngleAxisd roll(options.tilt.roll_sigma_deg * kRadPerDeg * RandomNormal(),
                                    Eigen::Vector3d::UnitZ());
       rotations.push_back(heading * LevelCamera() * pitch * roll);
     }

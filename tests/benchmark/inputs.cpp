@@ -8,7 +8,7 @@
 #include "base/process.h"
 #include "geometry/angles.h"
 #include "geometry/iou.h"
-#include "initialisation/yaw_sweep.h"
+#include "initialisation/estimates_of_sequence.h"
 #include "support/scene.h"
 #include "synthesis/render.h"
 #include "synthesis/scene.h"
@@ -65,7 +65,7 @@ const std::vector<std::shared_ptr<const FrameEdges>>& EdgesOfTwelveViews() {
     const Scene scene = ArcScene();
     const std::vector<Frame>& frames = TwelveViews().frames;
     std::vector<std::shared_ptr<const FrameEdges>> result(frames.size());
-    ParallelFor(static_cast<int>(frames.size()), ThisMachine().cores, [&](int i) {
+    ParallelFor(frames.size(), ThisMachine().cores, [&](int i) {
       const auto frame = static_cast<size_t>(i);
       cv::Mat grey;
       cv::cvtColor(RenderFrame(scene, *frames[frame].true_world_from_camera), grey,

@@ -25,9 +25,9 @@ OptimiseOptions OptionsOfProblem() {
   options.ratio = false;
   options.odometry_rotation_sigma_deg = 0.5;
   options.odometry_translation_sigma_m = 0.01;
-  options.view_correlation_deg = 0.0;
-  options.axes_weight = 0.0;
-  options.huber_delta = 1e6;  // no outliers, but far initial_landmarks
+  options.upright.view_correlation_deg = 0.0;
+  options.upright.axes_weight = 0.0;
+  options.upright.huber_delta = 1e6;  // no outliers, but far initial_landmarks
   options.covariances = false;
   return options;
 }

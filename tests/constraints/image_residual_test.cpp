@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "constraints/image_residual.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
+#include "constraints/landmark_cost.h"
 #include "constraints/parameters.h"
 #include "support/jacobians.h"
 #include "support/random_scene.h"

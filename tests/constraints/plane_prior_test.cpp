@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "constraints/plane_prior.h"
-
 #include <gtest/gtest.h>
 
+#include "constraints/standing_on_plane.h"
 #include "support/jacobians.h"
 #include "support/random.h"
 

@@ -136,11 +136,11 @@ struct Derivatives {
   double first;
   double information;
 };
-template <typename Cost>
-Derivatives DerivativesAtDistance(double distance, double prior, const PointOptions& options) {
+Derivatives DerivativesAtDistance(double distance, double prior, const PointOptions& options,
+                                  PointCost::SecondDerivatives second_derivatives) {
   const auto [point, cuboid] = AtDistance(distance, prior);
   LandmarkModel model;
-  Cost({point}, cuboid, 1.0, options, 1.0).AddTo(cuboid, &model);
+  PointCost({point}, cuboid, 1.0, options, 1.0, second_derivatives).AddTo(cuboid, &model);
   // The parameter is the x of the centre, which moves along the normal.
   return {model.gradient[3], model.information(3, 3)};
 }
@@ -149,6 +149,7 @@ Derivatives DerivativesAtDistance(double distance, double prior, const PointOpti
 // is that of the squares of the derivative, as it is for any density. Steps of the solver take for
 // known which points are of the object, so that theirs is more.
 TEST(PointCostTest, CovariancesHaveTheFisherInformation) {
+  using enum PointCost::SecondDerivatives;
   constexpr double kStepM = 2e-3;
   PointOptions options;
   options.point_range_fraction = 0.0;
@@ -157,10 +158,11 @@ TEST(PointCostTest, CovariancesHaveTheFisherInformation) {
     for (double distance = -2.0; distance < 1.0; distance += kStepM) {
       const double density = std::exp(-CostAtDistance(distance, prior, 1.0, options));
       const auto [first, fisher] =
-          DerivativesAtDistance<PointInformation>(distance, prior, options);
+          DerivativesAtDistance(distance, prior, options, kFisherInformation);
       squares += density * first * first;
       information += density * fisher;
-      for_steps += density * DerivativesAtDistance<PointCost>(distance, prior, options).information;
+      for_steps +=
+          density * DerivativesAtDistance(distance, prior, options, kMaximisation).information;
     }
     EXPECT_NEAR(information, squares, 0.01 * squares);
     EXPECT_GT(for_steps, 1.2 * squares);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "constraints/scale_ratio.h"
-
 #include <gtest/gtest.h>
 
+#include "constraints/quadric_constraints.h"
 #include "support/jacobians.h"
 #include "support/random.h"
 

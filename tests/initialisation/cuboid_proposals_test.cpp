@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "initialisation/cuboid_proposals.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 
 #include "geometry/iou.h"
 #include "geometry/wireframe.h"
+#include "initialisation/cuboids.h"
 #include "support/random.h"
 #include "support/shape_exponents.h"
 #include "support/upright_bodies.h"

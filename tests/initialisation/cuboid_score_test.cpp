@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "initialisation/cuboid_score.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include "geometry/angles.h"
 #include "geometry/iou.h"
 #include "geometry/wireframe.h"
+#include "initialisation/cuboids.h"
 #include "support/random.h"
 #include "support/upright_bodies.h"
 

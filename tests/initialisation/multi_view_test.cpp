@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "initialisation/multi_view.h"
-
 #include <gtest/gtest.h>
 
 #include "geometry/angles.h"
 #include "geometry/iou.h"
 #include "initialisation/body_at_yaw.h"
+#include "initialisation/estimates_of_sequence.h"
 #include "initialisation/fit_object.h"
 #include "initialisation/svd.h"
 #include "support/cuboid_map.h"
@@ -41,7 +40,8 @@ struct World {
             truth.shape_exponents};
   }
   ObjectEvidence Evidence(const std::optional<ShapePrior>& prior) const {
-    return EvidenceInWorld(sequence, DetectionsByObject(sequence)[0], prior, kSigmaFraction);
+    return EvidenceInWorld(sequence, DetectionsByObject(sequence)[0], prior,
+                           {.detection_sigma_fraction = kSigmaFraction, .axes_weight = 0.0});
   }
   double TrueYaw() const { return Yaw(Eigen::Vector3d::UnitZ(), truth.frame_from_object.rotation); }
 
@@ -202,7 +202,7 @@ TEST(InitialiseMultiView, NeedsNoWideBaseline) {
       const auto& landmark = estimates.objects.at(0).landmark_in_world;
       return landmark ? BoxIou(*landmark, world.truth) / kWorlds : 0.0;
     };
-    multi_view += iou(InitialiseMultiView(world.sequence, {world.Prior(0.1)}, options, 20.0, 1));
+    multi_view += iou(InitialiseMultiView(world.sequence, {world.Prior(0.1)}, options, 1));
     svd += iou(InitialiseSvd(world.sequence));
   }
   EXPECT_GT(multi_view, 0.7);
@@ -212,7 +212,7 @@ TEST(InitialiseMultiView, NeedsNoWideBaseline) {
 TEST(InitialiseMultiView, SaysWhichObjectsAreNotDetermined) {
   World world(kCuboidExponent, {LookingAt({3.0, 1.0, 1.5}, {0, 0, 0.4})});
   const LandmarkEstimates estimates =
-      InitialiseMultiView(world.sequence, {std::nullopt}, UprightOptions(), 20.0, 1);
+      InitialiseMultiView(world.sequence, {std::nullopt}, UprightOptions(), 1);
   ASSERT_EQ(estimates.objects.size(), 1u);
   EXPECT_FALSE(estimates.objects[0].landmark_in_world);
   EXPECT_EQ(estimates.objects[0].failure, "not_determined_by_its_views");

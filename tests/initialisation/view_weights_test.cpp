@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "initialisation/view_weights.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <vector>
 
 #include "geometry/angles.h"
+#include "initialisation/object_evidence.h"
 #include "support/random.h"
 
 namespace soslam {

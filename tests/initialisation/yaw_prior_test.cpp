@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "geometry/angles.h"
+#include "initialisation/estimates_of_sequence.h"
 #include "initialisation/object_evidence.h"
-#include "initialisation/yaw_sweep.h"
 
 namespace soslam {
 namespace {
@@ -59,8 +59,7 @@ double TrueYaw(const Detection& detection) {
 }
 
 std::vector<std::optional<YawPrior>> Priors(const Sequence& sequence, YawPriorSource source) {
-  return YawPriors(sequence, {kCar}, {.source = source}, UprightOptions(),
-                   /*view_correlation_deg=*/0.0, 2);
+  return YawPriors(sequence, {kCar}, {.source = source}, {.view_correlation_deg = 0.0}, 2);
 }
 
 // Degrees, of the middle frame.

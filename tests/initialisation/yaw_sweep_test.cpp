@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "initialisation/yaw_sweep.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <numbers>
 
+#include "initialisation/estimates_of_sequence.h"
 #include "support/level_sequence.h"
 #include "support/scene.h"
 #include "support/shape_exponents.h"

@@ -13,8 +13,7 @@
 #include "evaluation/landmark_errors.h"
 #include "evaluation/statistics.h"
 #include "geometry/angles.h"
-#include "initialisation/multi_view.h"
-#include "initialisation/yaw_sweep.h"
+#include "initialisation/estimates_of_sequence.h"
 #include "mapping/back_end.h"
 #include "mapping/initial_landmarks.h"
 #include "support/one_body.h"
@@ -73,8 +72,8 @@ Landmark Estimate(const Sequence& sequence, const ShapePrior& prior) {
   options.detection_model = DetectionModel::kTangency;
   options.hold_poses = true;
   options.covariances = false;
-  options.axes_weight = 0.0;
-  options.view_correlation_deg = 0.0;  // errors are independent
+  options.upright.axes_weight = 0.0;
+  options.upright.view_correlation_deg = 0.0;  // errors are independent
   BackEndInput input{sequence, {}, {prior}, {}, {}};
   const LandmarkEstimates initial = InitialiseUpright(sequence, {prior}, UprightOptions(), 1);
   input.initial_landmarks = ChooseInitialUprightLandmarks(input, initial, options, 1);
@@ -123,7 +122,7 @@ TEST(SlowAnyFace, SeveralViewsAloneTellTheFace) {
     const Sequence sequence = Observe(truth, Views());
     ShapePrior prior = PriorOf(half_axes, 0.1, Attitude::kAnyFace);
     prior.height_m = LogNormal{2.0 * half_axes.z(), 0.1};
-    const auto of_views = InitialiseMultiView(sequence, {prior}, UprightOptions(), 20.0, 1);
+    const auto of_views = InitialiseMultiView(sequence, {prior}, UprightOptions(), 1);
     EXPECT_EQ(of_views.objects[0].landmark_in_world.value().rests_on, face);
     std::vector<int> all(sequence.detections.size());
     std::iota(all.begin(), all.end(), 0);

@@ -31,9 +31,9 @@ OptimiseOptions ModelOptions() {
   options.detection_model = DetectionModel::kTangency;
   options.odometry_rotation_sigma_deg = 0.1;
   options.odometry_translation_sigma_m = 0.003;
-  options.huber_delta = 1e6;           // errors are Gaussian
-  options.view_correlation_deg = 0.0;  // and independent
-  options.axes_weight = 0.0;           // yaws are any
+  options.upright.huber_delta = 1e6;           // errors are Gaussian
+  options.upright.view_correlation_deg = 0.0;  // and independent
+  options.upright.axes_weight = 0.0;           // yaws are any
   return options;
 }
 
@@ -101,8 +101,8 @@ Sequence Observe(const Truth& truth, const OptimiseOptions& options) {
       sequence.frames[i].world_from_camera = sequence.frames[i - 1].world_from_camera * step;
     }
     Box& box = sequence.detections[i].box;
-    const double sigma_x = options.detection_sigma_fraction * box.Width();
-    const double sigma_y = options.detection_sigma_fraction * box.Height();
+    const double sigma_x = options.upright.detection_sigma_fraction * box.Width();
+    const double sigma_y = options.upright.detection_sigma_fraction * box.Height();
     box = {box.x_min + RandomNormal(sigma_x), box.y_min + RandomNormal(sigma_y),
            box.x_max + RandomNormal(sigma_x), box.y_max + RandomNormal(sigma_y)};
   }
@@ -176,7 +176,7 @@ TEST(Calibration, CovariancesAreHonestWhereTheModelHolds) {
 // A loss that forgives outliers costs next to nothing where there are none.
 TEST(Calibration, HoldsUnderTheHuberLoss) {
   Case c;
-  c.assumed.huber_delta = OptimiseOptions().huber_delta;
+  c.assumed.upright.huber_delta = OptimiseOptions().upright.huber_delta;
   ExpectHonest(MeanNees(c), c.scenes);
 }
 
@@ -201,7 +201,7 @@ TEST(PoseCorrections, AreFarOnlyWhereOdometryIsWorseThanItsNoise) {
   worse.odometry_rotation_sigma_deg *= 30.0;
   worse.odometry_translation_sigma_m *= 30.0;
   OptimiseOptions robust = model;
-  robust.huber_delta = OptimiseOptions().huber_delta;
+  robust.upright.huber_delta = OptimiseOptions().upright.huber_delta;
   EXPECT_GE(ScenesWithFarPoses(worse, model), 45);
   EXPECT_GE(ScenesWithFarPoses(worse, robust), 45);
 }
@@ -209,7 +209,7 @@ TEST(PoseCorrections, AreFarOnlyWhereOdometryIsWorseThanItsNoise) {
 // The cases of the table in docs/shapes.md where it does not hold.
 TEST(Calibration, IsCautiousWhereErrorsAreIndependentButTakenForShared) {
   Case c;
-  c.assumed.view_correlation_deg = OptimiseOptions().view_correlation_deg;
+  c.assumed.upright.view_correlation_deg = OptimiseOptions().upright.view_correlation_deg;
   const Nees nees = MeanNees(c);
   for (const double mean : {nees.centre, nees.size, nees.yaw}) {
     EXPECT_GT(mean, 0.4);
@@ -221,7 +221,7 @@ TEST(SlowCalibration, IsOverconfidentForAWrongShapeButLessWithSharedErrors) {
   Case c;
   c.shape_exponents = 1.3;  // and taken for a cuboid
   const Nees independent = MeanNees(c);
-  c.assumed.view_correlation_deg = OptimiseOptions().view_correlation_deg;
+  c.assumed.upright.view_correlation_deg = OptimiseOptions().upright.view_correlation_deg;
   const Nees shared = MeanNees(c);
   EXPECT_GT(independent.size, 50.0);
   EXPECT_GT(independent.centre, 10.0);
@@ -328,7 +328,7 @@ Nees MeanNeesWithPoints(const PointCase& with) {
   Case c;
   c.arc_rad = with.arc_rad;
   c.ratio_log_sigma = 0.2;
-  c.actual.detection_sigma_fraction = c.assumed.detection_sigma_fraction = 0.04;
+  c.actual.upright.detection_sigma_fraction = c.assumed.upright.detection_sigma_fraction = 0.04;
   const PointOptions& options = c.assumed.points;
   c.assumed.points.point_range_fraction = with.range_fraction;
   c.points = [&](const Truth& truth) {

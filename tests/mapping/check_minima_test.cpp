@@ -17,7 +17,7 @@ namespace {
 OptimiseOptions Options() {
   OptimiseOptions options;
   options.detection_model = DetectionModel::kTangency;
-  options.axes_weight = 0.0;
+  options.upright.axes_weight = 0.0;
   return options;
 }
 

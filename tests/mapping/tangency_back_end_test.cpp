@@ -8,7 +8,7 @@
 #include "evaluation/metrics.h"
 #include "evaluation/result_checks.h"
 #include "geometry/angles.h"
-#include "initialisation/multi_view.h"
+#include "initialisation/estimates_of_sequence.h"
 #include "mapping/initial_landmarks.h"
 #include "support/cuboid_map.h"
 #include "support/random.h"
@@ -62,8 +62,7 @@ TEST(TangencyBackEnd, StaysWhereTheFitOfAllViewsEnded) {
   OptimiseOptions options;
   options.detection_model = DetectionModel::kTangency;
   options.hold_poses = true;
-  const LandmarkEstimates fitted = InitialiseMultiView(sequence, input.priors, UprightOptions(),
-                                                       options.view_correlation_deg, 1);
+  const LandmarkEstimates fitted = InitialiseMultiView(sequence, input.priors, options.upright, 1);
   for (size_t i = 0; i < fitted.objects.size(); ++i) {
     input.initial_landmarks[i] = fitted.objects[i].landmark_in_world;
   }
@@ -286,7 +285,7 @@ TEST(TangencyBackEnd, ViewsFromAboutOneSideShareTheirWeight) {
     sum_of_weights += 1.0 / similar;
   }
   OptimiseOptions options = TangencyOptions();
-  options.view_correlation_deg = kCorrelationDeg;
+  options.upright.view_correlation_deg = kCorrelationDeg;
   const SolverSummary solver = OptimiseMap(TruthInput(sequence), options).solver;
   EXPECT_LT(sum_of_weights, 0.9 * static_cast<double>(sequence.detections.size()));
   EXPECT_NEAR(solver.expected_box_cost, 0.5 * 4.0 * sum_of_weights, 1e-6);
@@ -302,7 +301,7 @@ TEST(TangencyBackEnd, BoxesOfExchangedObjectsCostFarMoreThanTheirNoise) {
     }
   }
   OptimiseOptions options = TangencyOptions();
-  options.view_correlation_deg = 20.0;
+  options.upright.view_correlation_deg = 20.0;
   const SolverSummary solver = OptimiseMap(TruthInput(right), options).solver;
   EXPECT_GT(solver.box_cost, 0.0);
   EXPECT_LT(solver.box_cost, solver.final_cost);

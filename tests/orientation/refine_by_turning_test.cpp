@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "geometry/angles.h"
-#include "orientation/symmetry_samples.h"
+#include "orientation/texture_asymmetry.h"
 #include "support/random.h"
 #include "support/scene.h"
 #include "synthesis/render.h"

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "orientation/symmetry_samples.h"
-
 #include <gtest/gtest.h>
 
 #include "geometry/mirror_mapping.h"
+#include "orientation/texture_asymmetry.h"
 #include "support/random.h"
 
 namespace soslam {

@@ -20,9 +20,9 @@ constexpr double kLogSigma = 0.1;
 PlanesOptions ModelOptions() {
   PlanesOptions options;
   options.planes = PlaneSource::kEstimated;
-  options.view_correlation_deg = 0.0;
+  options.upright.view_correlation_deg = 0.0;
   options.height_sigma_fraction = 0.0;
-  options.huber_delta = 1e6;
+  options.upright.huber_delta = 1e6;
   return options;
 }
 
@@ -31,7 +31,7 @@ Scene CuboidScene(int seed, int objects) {
 }
 
 UpPrior CamerasUp(const Sequence& sequence) {
-  return UpPriorFromCameras(PosesOf(sequence), 5.0 * kRadPerDeg, 30.0 * kRadPerDeg, 0.3);
+  return UpPriorFromCameras(PosesOf(sequence), CameraTilt(), 0.3);
 }
 
 PlanesEstimate Estimate(const Sequence& sequence, const PlanesOptions& options = ModelOptions()) {

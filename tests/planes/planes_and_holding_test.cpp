@@ -21,7 +21,7 @@ constexpr double kRatioLogSigma = 0.1;
 PlanesOptions HoldingOptions() {
   PlanesOptions options;
   options.planes = PlaneSource::kEstimated;
-  options.view_correlation_deg = 10.0;
+  options.upright.view_correlation_deg = 10.0;
   return options;
 }
 

@@ -209,7 +209,7 @@ ObjectEvidence RandomEvidence(int seed, bool noise = true) {
   scene.noise.box_edge_sigma = 0.02;
   const Sequence sequence = SyntheticSequence(scene, noise);
   return EvidenceInWorld(sequence, DetectionsByObject(sequence)[0],
-                         TrueCuboidPriors(sequence, 0.1)[0], 0.02);
+                         TrueCuboidPriors(sequence, 0.1)[0], {.axes_weight = 0.0});
 }
 
 // After a body is carried along, it is as upright on its plane as before.

@@ -49,8 +49,7 @@ SegmentView ViewOfEdges(const Rigid3d& world_from_camera,
   return view;
 }
 
-constexpr double kRollSigma = 5.0 * kRadPerDeg;
-constexpr double kPitchSigma = 30.0 * kRadPerDeg;
+const CameraTilt kTilt;
 constexpr double kCorrelation = 20.0 * kRadPerDeg;
 
 // Looks along a heading about z, this far downwards, x level.
@@ -62,8 +61,7 @@ Rigid3d LevelCamera(double heading, double downwards) {
 }
 
 double AngleToUp(const std::vector<Rigid3d>& poses) {
-  const Eigen::Vector3d up =
-      UpPriorFromCameras(poses, kRollSigma, kPitchSigma, kCorrelation).up_in_world;
+  const Eigen::Vector3d up = UpPriorFromCameras(poses, kTilt, kCorrelation).up_in_world;
   EXPECT_NEAR(up.norm(), 1.0, 1e-12);
   return std::atan2(up.head<2>().norm(), up.z());
 }
@@ -86,8 +84,8 @@ TEST(UpPriorFromCameras, HeadingsApartFindUpWhereverTheyLookDown) {
 
 TEST(UpPriorFromCameras, ManyCamerasInOneDirectionCountAsOne) {
   const auto information = [](size_t count, double correlation) {
-    return UpPriorFromCameras(std::vector<Rigid3d>(count, LevelCamera(1.0, 0.2)), kRollSigma,
-                              kPitchSigma, correlation)
+    return UpPriorFromCameras(std::vector<Rigid3d>(count, LevelCamera(1.0, 0.2)), kTilt,
+                              correlation)
         .information;
   };
   EXPECT_LT((information(7, kCorrelation) - information(1, kCorrelation)).norm(), 1e-9);
@@ -107,8 +105,7 @@ TEST(RobustUpPriorFromCameras, SomeCamerasMayBeTurnedInAnyWay) {
           Eigen::Quaterniond(Eigen::AngleAxisd(RandomUniform(0.5, 1.0), Eigen::Vector3d::UnitZ()));
     }
     const auto robust = [](const std::vector<Rigid3d>& poses) {
-      return RobustUpPriorFromCameras(poses, kRollSigma, kPitchSigma, kCorrelation,
-                                      CameraHolding::kLevel);
+      return RobustUpPriorFromCameras(poses, kTilt, kCorrelation, CameraHolding::kLevel);
     };
     const UpPrior up = robust(turned);
     EXPECT_GT(up.up_in_world.z(), std::cos(3.0 * kRadPerDeg));
@@ -129,9 +126,8 @@ TEST(UpPriorFromCameras, RolledCamerasHaveTheUpOfLevelOnes) {
       const Rigid3d level = LevelCamera(i * 30.0 * kRadPerDeg, 20.0 * kRadPerDeg);
       poses.push_back({level.rotation * roll, level.translation});
     }
-    const auto up = UpPriorFromCameras(poses, kRollSigma, kPitchSigma, kCorrelation,
-                                       kCameraHoldings.at(quarters))
-                        .up_in_world;
+    const auto up =
+        UpPriorFromCameras(poses, kTilt, kCorrelation, kCameraHoldings.at(quarters)).up_in_world;
     EXPECT_LT(std::atan2(up.head<2>().norm(), up.z()), 3.0 * kRadPerDeg) << quarters;
   }
 }
@@ -139,8 +135,7 @@ TEST(UpPriorFromCameras, RolledCamerasHaveTheUpOfLevelOnes) {
 TEST(UpPriorFromCameras, CamerasThatLookDownHaveUpBehindThem) {
   const std::vector<Rigid3d> poses = {LevelCamera(0.3, 80.0 * kRadPerDeg)};
   for (const auto holding : {CameraHolding::kLookingDown, CameraHolding::kLookingDownRolled90}) {
-    const auto up =
-        UpPriorFromCameras(poses, kRollSigma, kPitchSigma, kCorrelation, holding).up_in_world;
+    const auto up = UpPriorFromCameras(poses, kTilt, kCorrelation, holding).up_in_world;
     EXPECT_NEAR(std::acos(up.z()), 10.0 * kRadPerDeg, 1e-9);
   }
 }
@@ -162,7 +157,7 @@ std::vector<SegmentView> Room(const std::vector<Eigen::Vector3d>& directions, in
 }
 
 UpPrior HeldUp(const std::vector<SegmentView>& views) {
-  return UpPriorFromCameras(PosesOf(views), kRollSigma, kPitchSigma, kCorrelation);
+  return UpPriorFromCameras(PosesOf(views), kTilt, kCorrelation);
 }
 
 // Edges are exact, so only those of other directions and the cameras' up prior disturb: far less
@@ -193,7 +188,7 @@ constexpr double kDrift = 0.15 * kRadPerDeg;  // between two frames, all of it t
 
 LevelTrajectory LevelInRoom(const std::vector<SegmentView>& views, double odometry_sigma_deg) {
   PlanesOptions options;
-  options.view_correlation_deg = 0.0;
+  options.upright.view_correlation_deg = 0.0;
   options.odometry_rotation_sigma_deg = odometry_sigma_deg;
   return Level(views, CameraHolding::kLevel, options);
 }

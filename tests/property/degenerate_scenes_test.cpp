@@ -8,10 +8,9 @@
 
 #include "association/association.h"
 #include "base/error.h"
-#include "initialisation/multi_view.h"
+#include "initialisation/estimates_of_sequence.h"
 #include "initialisation/single_frame.h"
 #include "initialisation/svd.h"
-#include "initialisation/yaw_sweep.h"
 #include "mapping/back_end.h"
 #include "mapping/initial_landmarks.h"
 #include "planes/estimate_planes.h"
@@ -247,7 +246,7 @@ TEST_P(DegenerateTest, SweepOverYaw) {
 TEST_P(DegenerateTest, SeveralViews) {
   ExpectAnswerOrRefusal([](const Sequence& sequence, const Priors& priors) {
     ExpectDefined(InitialiseSvd(sequence));
-    ExpectDefined(InitialiseMultiView(sequence, priors, {}, 20.0, 1));
+    ExpectDefined(InitialiseMultiView(sequence, priors, {}, 1));
   });
 }
 
@@ -286,7 +285,7 @@ TEST_P(DegenerateTest, Association) {
 TEST_P(DegenerateTest, SupportPlanes) {
   ExpectAnswerOrRefusal(
       [](const Sequence& sequence, const Priors& priors) {
-        const UpPrior up_prior = UpPriorFromCameras(PosesOf(sequence), 0.1, 0.5, 0.3);
+        const UpPrior up_prior = UpPriorFromCameras(PosesOf(sequence), {6.0, 30.0}, 0.3);
         const auto estimate =
             FindPlanes(sequence, priors, up_prior, PlanesOptions(), /*threads=*/1);
         if (!estimate) throw NothingUsableError("no planes");

@@ -27,7 +27,7 @@ class RunOptimiseTest : public FolderTest {
  protected:
   RunOptimiseTest() {
     options_.detection_model = DetectionModel::kTangency;
-    options_.axes_weight = 0.0;  // random yaws
+    options_.upright.axes_weight = 0.0;  // random yaws
     options_.covariances = false;
     LandmarkEstimates truth;
     truth.observations.resize(sequence_.detections.size());

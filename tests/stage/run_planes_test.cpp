@@ -30,7 +30,7 @@ class RunPlanesTest : public FolderTest {
  protected:
   RunPlanesTest() {
     options_.planes = PlaneSource::kEstimated;
-    options_.verticals = false;  // there are no images
+    options_.verticals.are_used = false;  // there are no images
     for (const Object& object : sequence_.objects) WriteLabel(object);
     WriteTable();
     WriteSequence(File("sequence"), sequence_, {});
@@ -153,7 +153,7 @@ TEST_F(RunPlanesTest, RefusesSettingsThatItCannotFollow) {
   PlanesOptions given = options_, verticals = options_, sizes = options_;
   given.planes = PlaneSource::kGiven;
   expect_refused(given, {"given", "estimated, where_missing or camera_height"});
-  verticals.verticals = true;
+  verticals.verticals.are_used = true;
   expect_refused(verticals, {"--dataset", "verticals = false"});
   sizes.size_prior = true;
   expect_refused(sizes, {"size_prior", "refine_poses = false"});
@@ -191,7 +191,7 @@ class RunGroundTest : public FolderTest {
  protected:
   RunGroundTest() {
     options_.ground = GroundSource::kEstimated;
-    options_.verticals = false;  // there are no images
+    options_.verticals.are_used = false;  // there are no images
     WriteSequence(files_.at("sequence"), scene_.sequence, {});
     WritePoints(files_.at("points"), scene_.points, {});
   }

@@ -83,8 +83,8 @@ inline void ExpectThatTheMapMovesWithTheWorld(const BackEndInput& input,
 inline OptimiseOptions TangencyOptions() {
   OptimiseOptions options;
   options.detection_model = DetectionModel::kTangency;
-  options.view_correlation_deg = 0.0;  // exact boxes
-  options.axes_weight = 0.0;           // random yaws
+  options.upright.view_correlation_deg = 0.0;  // exact boxes
+  options.upright.axes_weight = 0.0;           // random yaws
   options.covariances = false;
   return options;
 }
