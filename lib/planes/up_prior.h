@@ -34,8 +34,8 @@ std::vector<double> CameraWeights(const std::vector<Rigid3d>& world_from_camera,
                                   double correlation_rad);
 
 // Prior on up from the way people and vehicles hold cameras. Level cameras have nearly level x
-// axes, and less exactly level optical axes; for other holdings see AxesOf. At least one pose;
-// sigmas in radians. The sign of up is that of most cameras.
+// axes, and less exactly level optical axes; for other holdings see AxesOf. At least one pose.
+// The sign of up is that of most cameras.
 UpPrior UpPriorFromCameras(const std::vector<Rigid3d>& world_from_camera, const CameraTilt& tilt,
                            double correlation_rad, CameraHolding holding = CameraHolding::kLevel);
 
