@@ -54,38 +54,6 @@ int FramesInSight(const AssociationModel& model, const Track& track, double bord
   return frames;
 }
 
-// What the detections of a track show of the object.
-struct Shown {
-  int three_edges = 0;  // detections that show at least three of its edges
-  bool is_whole = false;
-  double best_score = 0.0;
-};
-
-Shown ShownBy(const AssociationModel& model, const Track& track) {
-  Shown shown;
-  for (const int index : track.detections) {
-    const Detection& detection = model.DetectionAt(index);
-    const auto hidden_edges = std::ranges::count(detection.is_one_sided, true);
-    if (hidden_edges <= 1) ++shown.three_edges;
-    if (hidden_edges == 0) shown.is_whole = true;
-    shown.best_score = std::max(shown.best_score, detection.score);
-  }
-  return shown;
-}
-
-TrackFate FateOf(const AssociationModel& model, const Track& track, const Shown& shown) {
-  const auto detections = static_cast<double>(track.detections.size());
-  if (shown.three_edges < model.options().min_observations) return TrackFate::kTooFewDetections;
-  if (!shown.is_whole) return TrackFate::kNeverWhole;
-  if (!track.fit) return TrackFate::kNoLandmark;
-  if (!track.has_support) return TrackFate::kNoSupport;
-  if (model.Moves(track)) return TrackFate::kMoves;
-  if (shown.best_score < model.options().min_best_score) return TrackFate::kLowScores;
-  return detections < model.options().min_detection_share * track.frames_in_sight.value()
-             ? TrackFate::kRarelyDetected
-             : TrackFate::kObject;
-}
-
 class TrackMerger {
  public:
   TrackMerger(const AssociationModel& model, int threads, Association* association)
@@ -261,10 +229,31 @@ void DropFalseTracks(const AssociationModel& model, int threads, Association* as
   ParallelFor("tracks", association->tracks.size(), threads, [&](size_t i) {
     Track& track = association->tracks[i];
     if (track.fate == TrackFate::kMerged) return;
-    const Shown shown = ShownBy(model, track);
-    const bool is_candidate = track.fit && shown.three_edges >= model.options().min_observations;
-    if (is_candidate) track.frames_in_sight = FramesInSight(model, track, border_px);
-    track.fate = FateOf(model, track, shown);
+    int three_edges = 0;  // detections that show at least three of its edges
+    bool is_whole = false;
+    double best_score = 0.0;
+    for (const int index : track.detections) {
+      const Detection& detection = model.DetectionAt(index);
+      const auto hidden_edges = std::ranges::count(detection.is_one_sided, true);
+      if (hidden_edges <= 1) ++three_edges;
+      if (hidden_edges == 0) is_whole = true;
+      best_score = std::max(best_score, detection.score);
+    }
+    const AssociateOptions& options = model.options();
+    const bool has_detections = three_edges >= options.min_observations;
+    if (track.fit && has_detections) track.frames_in_sight = FramesInSight(model, track, border_px);
+    const auto fate = [&] {
+      if (!has_detections) return TrackFate::kTooFewDetections;
+      if (!is_whole) return TrackFate::kNeverWhole;
+      if (!track.fit) return TrackFate::kNoLandmark;
+      if (!track.has_support) return TrackFate::kNoSupport;
+      if (model.Moves(track)) return TrackFate::kMoves;
+      if (best_score < options.min_best_score) return TrackFate::kLowScores;
+      const double least = options.min_detection_share * track.frames_in_sight.value();
+      return static_cast<double>(track.detections.size()) < least ? TrackFate::kRarelyDetected
+                                                                  : TrackFate::kObject;
+    };
+    track.fate = fate();
   });
 }
 

@@ -13,18 +13,6 @@ namespace {
 
 constexpr double kCostOfViewBehind = 1e6;
 
-// Adds a weak equation of each view's depth, for rays that are almost parallel: at this depth an
-// object of the prior's height is as high in the image as the box.
-void AddDepthsOfSize(const ObjectEvidence& evidence, PointOnPlanes* point) {
-  constexpr double kWeight = 1e-4;  // relative to a ray
-  for (const BoxView& view : evidence.views) {
-    const Eigen::Vector3d axis =
-        view.camera_from_reference.rotation.conjugate() * Eigen::Vector3d::UnitZ();
-    const double depth = evidence.prior->height_m->median / HeightAtUnitDepth(view);
-    point->Add({axis, view.camera_from_reference.translation.z() - depth}, kWeight);
-  }
-}
-
 // Costs that do not depend on the boxes.
 LandmarkCosts PriorCosts(const ObjectEvidence& evidence) {
   LandmarkCosts costs;
@@ -126,7 +114,15 @@ Eigen::Vector3d NearestToAllRays(const ObjectEvidence& evidence) {
                  middle.normalized().dot(view.camera_from_reference.translation)});
     }
   }
-  if (evidence.HasSize()) AddDepthsOfSize(evidence, &point);
+  // A weak equation of each view's depth, for rays that are almost parallel: at this depth an
+  // object of the prior's height is as high in the image as the box.
+  constexpr double kWeight = 1e-4;  // relative to a ray
+  for (size_t i = 0; evidence.HasSize() && i < evidence.views.size(); ++i) {
+    const auto& [rotation, translation] = evidence.views[i].camera_from_reference;
+    const Eigen::Vector3d axis = rotation.conjugate() * Eigen::Vector3d::UnitZ();
+    const double depth = evidence.prior->height_m->median / HeightAtUnitDepth(evidence.views[i]);
+    point.Add({axis, translation.z() - depth}, kWeight);
+  }
   if (!evidence.height_is_free) point.Add(evidence.plane);
   return point.Solve();
 }

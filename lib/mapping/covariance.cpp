@@ -17,26 +17,22 @@ constexpr double kLeastIndependentShare = 1e-12;
 
 using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// Sets rows of the Jacobian to zero that solvers need and covariances do not.
-void ClearCurvatureRows(const ceres::Problem& problem, ceres::CRSMatrix* jacobian) {
-  std::vector<ceres::ResidualBlockId> residuals;
-  problem.GetResidualBlocks(&residuals);
-  size_t row = 0;  // the first one after the present block
-  for (const ceres::ResidualBlockId residual : residuals) {
-    const ceres::CostFunction* cost = problem.GetCostFunctionForResidualBlock(residual);
-    row += static_cast<size_t>(cost->num_residuals());
-    if (dynamic_cast<const TangencyResidual*>(cost) == nullptr) continue;
-    std::fill(jacobian->values.begin() + jacobian->rows[row - TangencyResidual::kCurvatureRows],
-              jacobian->values.begin() + jacobian->rows[row], 0.0);
-  }
-}
-
+// Without the curvature rows, which solvers need and covariances do not.
 Eigen::SparseMatrix<double> Jacobian(const std::vector<double*>& blocks, ceres::Problem* problem) {
   ceres::Problem::EvaluateOptions options;
   options.parameter_blocks = blocks;
   ceres::CRSMatrix rows;
   if (!problem->Evaluate(options, nullptr, nullptr, nullptr, &rows)) return {};
-  ClearCurvatureRows(*problem, &rows);
+  std::vector<ceres::ResidualBlockId> residuals;
+  problem->GetResidualBlocks(&residuals);
+  size_t row = 0;  // the first one after the present block
+  for (const ceres::ResidualBlockId residual : residuals) {
+    const ceres::CostFunction* cost = problem->GetCostFunctionForResidualBlock(residual);
+    row += static_cast<size_t>(cost->num_residuals());
+    if (dynamic_cast<const TangencyResidual*>(cost) == nullptr) continue;
+    std::fill(rows.values.begin() + rows.rows[row - TangencyResidual::kCurvatureRows],
+              rows.values.begin() + rows.rows[row], 0.0);
+  }
   return Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>>(
       rows.num_rows, rows.num_cols, static_cast<int>(rows.values.size()), rows.rows.data(),
       rows.cols.data(), rows.values.data());

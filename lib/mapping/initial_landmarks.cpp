@@ -121,14 +121,6 @@ std::vector<Landmark> BestOfEachYaw(const std::vector<Landmark>& landmarks,
   return starts;
 }
 
-// The body a quarter turn on, and the same body called by its other horizontal axis.
-std::vector<Landmark> QuarterTurns(const Landmark& body) {
-  const Landmark turned = RotatedAboutZ(body, 0.5 * std::numbers::pi);
-  Landmark renamed = turned;
-  std::swap(renamed.half_axes.x(), renamed.half_axes.y());
-  return {turned, renamed};
-}
-
 // Hypotheses of any face are tried on all faces that the object may rest on, as a body seen from
 // few sides may be called by either name.
 std::optional<Landmark> ChooseLandmark(const BackEndInput& input, size_t object_index,
@@ -152,7 +144,11 @@ std::optional<Landmark> ChooseLandmark(const BackEndInput& input, size_t object_
     AddPoints(input, object_index, point_size_m, options.points, &on_face);
     fits.push_back(FitObject(on_face, BestOfEachYaw(hypotheses, on_face), {}));
     if (fits.back().empty()) continue;
-    fits.push_back(FitObject(on_face, QuarterTurns(fits.back().front().landmark), {}));
+    // The body a quarter turn on, and the same body called by its other horizontal axis.
+    const Landmark turned = RotatedAboutZ(fits.back().front().landmark, 0.5 * std::numbers::pi);
+    Landmark renamed = turned;
+    std::swap(renamed.half_axes.x(), renamed.half_axes.y());
+    fits.push_back(FitObject(on_face, {turned, renamed}, {}));
   }
   const auto best = Joined(std::move(fits), 1);
   return best.empty() ? std::nullopt : std::optional(best.front().landmark);

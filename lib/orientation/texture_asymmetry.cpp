@@ -31,15 +31,6 @@ double Scale(const Landmark& landmark, Descriptor descriptor, const TextureOptio
   }
 }
 
-std::vector<double> MirrorPlanePlaces(double range) {
-  if (!(range > 0.0)) return {0.0};
-  std::vector<double> places;
-  for (int i = -kMirrorPlaneSteps; i <= kMirrorPlaneSteps; ++i) {
-    places.push_back(range * i / kMirrorPlaneSteps);
-  }
-  return places;
-}
-
 }  // namespace
 
 void ForEachSample(const SymmetryImage& image, const SymmetryOptions& options,
@@ -97,11 +88,12 @@ void CheckMirrorPlane(const TextureOptions& options, Descriptor descriptor) {
 TextureAsymmetry::TextureAsymmetry(const SymmetryImage& image, const Camera& camera,
                                    const TextureOptions& options,
                                    const SymmetryOptions& symmetry_options)
-    : image_(image),
-      camera_(camera),
-      options_(options),
-      symmetry_options_(symmetry_options),
-      places_(MirrorPlanePlaces(options.mirror_plane_range)) {}
+    : image_(image), camera_(camera), options_(options), symmetry_options_(symmetry_options) {
+  const int steps = options.mirror_plane_range > 0.0 ? kMirrorPlaneSteps : 0;
+  for (int i = -steps; i <= steps; ++i) {
+    places_.push_back(options.mirror_plane_range * i / kMirrorPlaneSteps);
+  }
+}
 
 double TextureAsymmetry::Cost(const Landmark& landmark_in_camera) const {
   const auto texture = Find(landmark_in_camera);

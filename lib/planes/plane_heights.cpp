@@ -82,20 +82,6 @@ class Partition {
   std::vector<size_t> begin_;  // first height of the last level of the first n
 };
 
-// Height of an object at a tilt, if it shares its plane with no other.
-Height HeightAt(const PlaneEvidence& evidence, double height, const Eigen::Vector2d& tilt) {
-  const double information = evidence.information(2, 2);
-  const double slope = evidence.gradient(2) + evidence.information.row(2).head<2>().dot(tilt);
-  return {height - slope / information, information};
-}
-
-double CostAt(const PlaneEvidence& evidence, const Eigen::Vector2d& tilt) {
-  const double slope = evidence.gradient(2) + evidence.information.row(2).head<2>().dot(tilt);
-  return evidence.gradient.head<2>().dot(tilt) +
-         0.5 * tilt.dot(evidence.information.topLeftCorner<2, 2>() * tilt) -
-         0.5 * slope * slope / evidence.information(2, 2);
-}
-
 }  // namespace
 
 PlaneEvidence WithHeightNoise(const PlaneEvidence& evidence, double height_sigma) {
@@ -120,8 +106,14 @@ PlaneHeights ClusterPlaneHeights(const std::vector<PlaneEvidence>& evidence,
       double cost = prior.gradient.head<2>().dot(tilt) +
                     0.5 * tilt.dot(prior.information.topLeftCorner<2, 2>() * tilt);
       for (size_t n = 0; n < evidence.size(); ++n) {
-        cost += CostAt(evidence[n], tilt);
-        at_tilt[n] = HeightAt(evidence[n], heights[n], tilt);
+        const Eigen::Vector3d& gradient = evidence[n].gradient;
+        const Eigen::Matrix3d& information = evidence[n].information;
+        const double slope = gradient(2) + information.row(2).head<2>().dot(tilt);
+        cost += gradient.head<2>().dot(tilt) +
+                0.5 * tilt.dot(information.topLeftCorner<2, 2>() * tilt) -
+                0.5 * slope * slope / information(2, 2);
+        // If it shares its plane with no other.
+        at_tilt[n] = {heights[n] - slope / information(2, 2), information(2, 2)};
       }
       const Partition partition(at_tilt, new_level_cost);
       cost += partition.Cost();
