@@ -138,7 +138,9 @@ json ParseJsonText(std::istream& text, const std::string& name) {
   } catch (const json::exception& error) {
     std::string begin(kFileKindSize, '\0');
     text.clear();
-    text.seekg(0).read(begin.data(), static_cast<std::streamsize>(begin.size()));
+    text.seekg(0);
+    text >> std::ws;
+    text.read(begin.data(), static_cast<std::streamsize>(begin.size()));
     begin.resize(static_cast<size_t>(text.gcount()));
     const std::string kind = FileKind(begin);
     if (kind != "JSON") {

@@ -38,14 +38,14 @@ constexpr std::pair<const char*, const char*> kRecordFiles[] = {{"run.json", "ca
 void RefuseFilesOfOthers(const fs::path& folder) {
   for (const auto& [name, field] : kRecordFiles) {
     const fs::path file = folder / name;
-    if (!IsFile(file)) continue;
+    if (!IsFile(file) || fs::is_empty(file)) continue;
     try {
       if (ParseJsonFile(file).contains(field)) continue;
     } catch (const InputError&) {
     }
     throw SettingsError(fmt::format(
         "{}: is no record of soslam, and one of this run would replace it; expected an output in "
-        "another folder, or that file under another name",
+        "another folder, or that file under another name; a damaged record is to be removed",
         file.string()));
   }
 }

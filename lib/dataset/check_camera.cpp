@@ -94,15 +94,17 @@ std::vector<Finding> CheckIntrinsics(const Camera& camera) {
        advice.cause, advice.remedy}};
 }
 
-// Checks that the lens model has an inverse at the middle of each side of the image, which is
-// within what a calibration covers, and moves it towards the principal point by no more than a
-// quarter of the distance, which is several times the strongest pincushion distortion of lenses.
+// Checks that the lens model has an inverse four fifths of the way to the middle of each side of
+// the image, as calibrations of wide-angle lenses end near the sides, and moves that point towards
+// the principal point by no more than a quarter of the distance, which is several times the
+// strongest pincushion distortion of lenses.
 std::vector<Finding> CheckLens(const Camera& camera, const Distortion& distortion) {
   constexpr double kLeastRatio = 0.75;
   const Eigen::Vector2d centre(camera.cx, camera.cy);
   const double right = camera.width - 0.5, bottom = camera.height - 0.5;
-  const std::vector<Eigen::Vector2d> sides = {
+  std::vector<Eigen::Vector2d> sides = {
       {-0.5, camera.cy}, {right, camera.cy}, {camera.cx, -0.5}, {camera.cx, bottom}};
+  for (Eigen::Vector2d& side : sides) side = centre + 0.8 * (side - centre);
   const auto undistorted = UndistortPixels(camera, distortion, sides);
   for (size_t i = 0; i < sides.size(); ++i) {
     if (undistorted[i] &&
@@ -111,12 +113,12 @@ std::vector<Finding> CheckLens(const Camera& camera, const Distortion& distortio
     }
     return {
         {"camera_lens", Severity::kWarning,
-         fmt::format("lens model with coefficients {:g}, by which the pixel ({:g}, {:g}) {}",
+         fmt::format("lens model with coefficients {:g}, by which the pixel ({:.0f}, {:.0f}) {}",
                      fmt::join(DistortionCoefficients(distortion), " "), sides[i].x(), sides[i].y(),
                      undistorted[i] ? fmt::format("is ({:.0f}, {:.0f}) without distortion",
                                                   undistorted[i]->x(), undistorted[i]->y())
                                     : "has no undistorted one"),
-         "a model that holds up to the sides of the image", kAdviceOnLens.cause,
+         "a model that holds near the sides of the image", kAdviceOnLens.cause,
          kAdviceOnLens.remedy}};
   }
   return {};

@@ -85,11 +85,10 @@ std::optional<bool> DoImagesMove(const ImportView& view, const PoseRun& run) {
 }
 
 // Whether most objects that are seen over half of a run or more move by more than a fifth of half
-// the diagonals of their boxes. They rest up to a tenth, three times the noise of boxes whose edges
-// are off by 2 % of a side; none in between, and for few objects.
-std::optional<bool> DoBoxesMove(const std::vector<TrackedObject>& objects, const PoseRun& run) {
+// the diagonals of their boxes. False for few objects.
+bool DoBoxesMove(const std::vector<TrackedObject>& objects, const PoseRun& run) {
   constexpr size_t kFewestObjects = 3;
-  constexpr double kAtRest = 0.1, kMoves = 0.2;
+  constexpr double kMoves = 0.2;
   std::vector<double> shares;
   for (const TrackedObject& object : objects) {
     std::vector<TrackedRay> rays;
@@ -102,10 +101,7 @@ std::optional<bool> DoBoxesMove(const std::vector<TrackedObject>& objects, const
     shares.push_back(AngleBetweenDeg(first.ray_in_camera, last.ray_in_camera) /
                      first.half_diagonal_deg);
   }
-  if (shares.size() < kFewestObjects) return std::nullopt;
-  const double share = *MedianOf(shares);
-  if (share > kAtRest && share <= kMoves) return std::nullopt;
-  return share > kMoves;
+  return shares.size() >= kFewestObjects && *MedianOf(shares) > kMoves;
 }
 
 }  // namespace
@@ -125,11 +121,9 @@ std::vector<Finding> CheckRepeatedPoses(const ImportView& view) {
                            [](const PoseRun& run) { return run.last - run.first; });
   runs.resize(std::min(all, kMostRuns));
   const std::vector<TrackedObject> objects = TrackedObjects(view);
-  // Things may move before a camera at rest: what says that it rests decides.
   std::erase_if(runs, [&](const PoseRun& run) {
-    const auto do_boxes_move = DoBoxesMove(objects, run);
-    return !do_boxes_move.value_or(true) ||
-           !DoImagesMove(view, run).value_or(do_boxes_move.has_value());
+    const auto do_images_move = DoImagesMove(view, run);
+    return !(do_images_move ? *do_images_move : DoBoxesMove(objects, run));
   });
   if (runs.empty()) return {};
   std::ranges::sort(runs, {}, &PoseRun::first);

@@ -51,13 +51,15 @@ constexpr const char* kTracks =
 // What a table without all columns is likely to be, as the end of a message.
 std::string LikelyTable(const std::vector<std::string>& header) {
   const auto has = [&](const char* name) { return std::ranges::count(header, name) > 0; };
-  if (std::ranges::any_of(kSizes, has)) return fmt::format("; {}", kTracks);
   std::vector<std::string> likely;
+  bool has_label = has("label");
   for (const auto& [name, others] : kLikelyNames) {
     const auto other = std::ranges::find_if(others, has);
-    if (other != others.end() && !has(name))
-      likely.push_back(fmt::format("{} for {}", *other, name));
+    if (other == others.end() || has(name)) continue;
+    has_label = has_label || std::string_view(name) == "label";
+    likely.push_back(fmt::format("{} for {}", *other, name));
   }
+  if (!has_label && std::ranges::any_of(kSizes, has)) return fmt::format("; {}", kTracks);
   return likely.empty() ? "" : fmt::format("; it may have {}", fmt::join(likely, ", "));
 }
 
@@ -211,7 +213,7 @@ std::optional<double> NumberOf(const JsonEntry& entry, const char* name) {
 // The four numbers of a box, which has no angle. Throws InputError naming what was `expected`.
 Eigen::Vector4d BoxNumbers(const JsonEntry& entry, const char* expected) {
   for (const char* angle : kAngles) {
-    if (NumberOf(entry, angle).value_or(0.0) != 0.0) entry.Refuse(angle, kUprightBoxes);
+    if (HasValue(entry, angle) && NumberOf(entry, angle) != 0.0) entry.Refuse(angle, kUprightBoxes);
   }
   const json& bbox = entry.Field("bbox");
   if (bbox.is_array() && bbox.size() == 5) {

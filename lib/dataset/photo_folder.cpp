@@ -70,8 +70,9 @@ void FindDuplicates(std::vector<Photo>* photos) {
   std::map<std::string, int> counts;
   for (const Photo& photo : *photos) ++counts[PatternOfName(photo)];
   for (const auto& [digest, same] : by_content) {
-    const Photo* original = *std::ranges::max_element(
-        same, {}, [&](const Photo* photo) { return counts.at(PatternOfName(*photo)); });
+    const Photo* original = *std::ranges::min_element(same, {}, [&](const Photo* photo) {
+      return std::pair(-counts.at(PatternOfName(*photo)), photo->path.native().size());
+    });
     for (Photo* photo : same) {
       if (photo != original) photo->original = original->path.filename().string();
     }
@@ -103,8 +104,8 @@ bool CounterBeganAnew(const std::vector<const Photo*>& photos) {
   return widest_back > widest_on;
 }
 
-// True if each name first differs from the next in a number of its own: 01_door, 02_window. The
-// digits of hashes touch letters.
+// True if each name first differs from the next in a counter before a word: 01_door, 02_window. A
+// counter has at most four digits; hashes and dates are none.
 bool AreNumbered(const std::vector<const Photo*>& photos) {
   for (size_t i = 1; i < photos.size(); ++i) {
     const std::string one = photos[i - 1]->path.stem().string();
@@ -112,10 +113,14 @@ bool AreNumbered(const std::vector<const Photo*>& photos) {
     const auto same = std::ranges::mismatch(one, next).in1 - one.begin();
     const size_t begin = one.substr(0, same).find_last_not_of(kDigits) + 1;
     const auto number = [&](const std::string& name) {
+      constexpr size_t kMostDigits = 4;
+      constexpr std::string_view kSeparators = " _-.,()";
       const size_t end = std::min(name.find_first_not_of(kDigits, begin), name.size());
-      const bool ends = end == name.size() ||
-                        std::string_view(" _-.,()").find(name[end]) != std::string_view::npos;
-      return ends ? name.substr(begin, end - begin) : "";
+      const size_t word = std::min(name.find_first_not_of(kSeparators, end), name.size());
+      const bool is_counter =
+          end - begin <= kMostDigits &&
+          (word == name.size() || (word > end && kDigits.find(name[word]) == kDigits.npos));
+      return is_counter ? name.substr(begin, end - begin) : "";
     };
     if (number(one).empty() || number(next).empty() || number(one) == number(next)) return false;
   }

@@ -189,12 +189,12 @@ bool VideoReader::ReadPacket() {
   for (av_packet_unref(&packet); av_read_frame(decoder_->format, &packet) >= 0;
        av_packet_unref(&packet)) {
     const AVStream& stream = *format.streams[packet.stream_index];
-    const std::int64_t stamp = packet.pts == AV_NOPTS_VALUE ? packet.dts : packet.pts;
-    if (stamp != AV_NOPTS_VALUE) {
-      const auto end = static_cast<double>(stamp + packet.duration);
-      end_s_ = std::max(end_s_, end * av_q2d(stream.time_base));
-    }
     if (IsOfFrames(stream) || stream.codecpar->codec_type == AVMEDIA_TYPE_AUDIO) {
+      const std::int64_t stamp = packet.pts == AV_NOPTS_VALUE ? packet.dts : packet.pts;
+      if (stamp != AV_NOPTS_VALUE) {
+        const auto end = static_cast<double>(stamp + packet.duration);
+        end_s_ = std::max(end_s_, end * av_q2d(stream.time_base));
+      }
       announced_s_ = std::max(announced_s_, AnnouncedDuration(format, stream));
     }
     const bool is_whole = (packet.flags & AV_PKT_FLAG_CORRUPT) == 0;

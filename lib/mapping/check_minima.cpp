@@ -22,7 +22,8 @@ struct Solved {
   double cost_of_start;  // without images
 };
 
-// The minimum near a start, and its cost with residuals made for it. None where there is none.
+// The minimum near a start; in all rounds but the first, residuals are made for the landmark of the
+// round before. None where there is none.
 std::optional<Solved> SolveFrom(BackEndInput input, size_t index, const Landmark& start,
                                 const OptimiseOptions& options, int rounds = 2) {
   std::ranges::fill(input.initial_landmarks, std::nullopt);
@@ -52,6 +53,7 @@ OptimiseOptions AloneOptions(OptimiseOptions options) {
   options.hold_poses = true;
   options.refine_planes = false;
   options.covariances = false;
+  options.check_inputs = false;
   return options;
 }
 

@@ -29,8 +29,9 @@ std::vector<ObjectMinimum> CheckMinima(const BackEndInput& input, const Optimise
 
 // The probability of each object of a map that its x axis, modulo half a turn, is rather a quarter
 // turn on. The object is solved alone, as in CheckMinima, from its landmark, and from the same body
-// with the horizontal axes exchanged; 0 where that is no minimum of its own. None for objects
-// without a landmark. `dispersion`: SolverSummary::Dispersion() of the map.
+// with the horizontal axes exchanged. Where that is no minimum of its own, the costs of both as
+// they are count, without images. None for objects without a landmark. `dispersion`:
+// SolverSummary::Dispersion() of the map.
 std::vector<std::optional<double>> QuarterTurnProbabilities(const BackEndInput& input,
                                                             const OptimiseOptions& options,
                                                             double dispersion, int threads);

@@ -47,6 +47,7 @@ struct OptimiseOptions {
   PointOptions points;
   SymmetryOptions symmetry_options;
   bool covariances = true;
+  bool check_inputs = true;
   int max_iterations = 500;
 
   OdometryNoise Odometry() const {
@@ -123,6 +124,10 @@ struct OptimiseOptions {
     visit.Integer("max_iterations", &max_iterations, {1, 10000},
                   "Levenberg-Marquardt iterations, of all solves together");
     visit.Flag("covariances", &covariances, "compute the covariance of every landmark");
+    visit.OnlyWhere({{"detection_model", {"tangency"}}}, [&] {
+      visit.Flag("check_inputs", &check_inputs,
+                 "warn where boxes fit clearly better with another focal length or other planes");
+    });
   }
 };
 

@@ -91,12 +91,12 @@ TEST_F(DatasetChecksTest, AFocalLengthOfAnotherImage) {
 // A lens whose model ends at a radius of 0.26 within the image, and one that is no lens.
 TEST_F(DatasetChecksTest, LensModelsThatEndWithinTheImage) {
   options_.folder.distortion = "-5 0 0 0";
-  ExpectAmongWarnings(
-      {"camera_lens: ", "-5 0 0 0 0", "the pixel (-0.5, 239.5) has no undistorted"});
+  ExpectAmongWarnings({"camera_lens: ", "-5 0 0 0 0", "the pixel (64, 240) has no undistorted"});
   options_.folder.distortion = "5 0 0 0";
-  ExpectAmongWarnings({"camera_lens: ", "(-0.5, 239.5) is (132, 240)"});
-  for (const char* real : {"-0.4 0.2 0.001 -0.001", "0.2624 -0.9531 -0.0054 0.0026 1.1633",
-                           "0.2 0 0 0", "5.2 1.1 0 0 0.02 5.5 2.9 0.25"}) {
+  ExpectAmongWarnings({"camera_lens: ", "(64, 240) is (154, 240)"});
+  for (const char* real :
+       {"-0.25761402 0.0877087 -0.00025697 -0.00059339 -0.01521941", "-0.4 0.2 0.001 -0.001",
+        "0.2624 -0.9531 -0.0054 0.0026 1.1633", "0.2 0 0 0", "5.2 1.1 0 0 0.02 5.5 2.9 0.25"}) {
     options_.folder.distortion = real;
     EXPECT_THAT(Warnings(), testing::Not(testing::Contains(HasSubstr("camera_lens")))) << real;
   }

@@ -129,9 +129,14 @@ TEST_F(PhotoFolderTest, OriginalsKeepTheirPlaceInTheOrder) {
   EXPECT_THAT(Fields(ListPhotos(folder_.path()), &Photo::original),
               testing::ElementsAre("IMG_0003.jpg", "", "", "", "", "IMG_0002.jpg"));
   const TemporaryFolder other;
-  for (const char* name : {"a door.jpg", "b.jpg", "c.jpg"}) WritePhoto(other / name, DrawnView(0));
+  for (int i = 1; i <= 3; ++i) {
+    const std::string name = fmt::format("IMG_{}", i);
+    WritePhoto(other / (name + ".jpg"), DrawnView(i));
+    std::filesystem::copy_file(other / (name + ".jpg"), other / (name + " (1).jpg"));
+  }
   EXPECT_THAT(Fields(ListPhotos(other.path()), &Photo::original),
-              testing::ElementsAre("", "a door.jpg", "a door.jpg"));
+              testing::ElementsAre("IMG_1.jpg", "", "IMG_2.jpg", "", "IMG_3.jpg", ""))
+      << "each photo twice";
 }
 
 TEST_F(PhotoFolderTest, TimesOrderNamesWithoutOrder) {
@@ -187,6 +192,8 @@ TEST_F(PhotoFolderTest, NumbersBeforeWordsAreAnOrder) {
   EXPECT_TRUE(is_by_time({"door_01.jpg", "table_10.jpg", "window_02.jpg"}));
   EXPECT_TRUE(is_by_time({"2024_door.jpg", "2024_table.jpg", "2024_window.jpg"}));
   EXPECT_TRUE(is_by_time({"03ab-11.jpg", "9f1c-12.jpg", "77e0-13.jpg"}));
+  EXPECT_TRUE(is_by_time({"01-02-2024_c.jpg", "30-01-2024_a.jpg", "31-01-2024_b.jpg"}));
+  EXPECT_TRUE(is_by_time({"53012345690_a1b2.jpg", "53012345712_c3d4.jpg", "53012346001_e.jpg"}));
 }
 
 TEST_F(PhotoFolderTest, CountersMayBeginAnew) {

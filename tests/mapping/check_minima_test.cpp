@@ -59,8 +59,8 @@ TEST(QuarterTurnProbabilities, AreThoseOfTheRatio) {
   BackEndInput input = TruthInput(sequence);
   input.priors[0]->log_sigma.setConstant(std::log(4.0 / 3.0));
   OptimiseOptions options = Options();
-  options.detection_sigma_fraction = 1e-3;
-  options.view_correlation_deg = 0.0;
+  options.upright.detection_sigma_fraction = 1e-3;
+  options.upright.view_correlation_deg = 0.0;
   for (const double dispersion : {1.0, 2.0}) {
     EXPECT_NEAR(QuarterTurnProbabilities(input, options, dispersion, 1)[0].value(),
                 1.0 / (1.0 + std::exp(1.0 / dispersion)), 0.01);

@@ -78,7 +78,7 @@ Sequence EqualThings() {
 TEST(InputAlternativesTest, EqualThingsMayAllDifferFromTheTable) {
   constexpr double kLogSigma = 0.2;
   OptimiseOptions options = TangencyOptions();
-  options.view_correlation_deg = OptimiseOptions().view_correlation_deg;
+  options.upright.view_correlation_deg = OptimiseOptions().upright.view_correlation_deg;
   for (int i = 0; i < 2; ++i) {
     const Sequence sequence = EqualThings();
     BackEndInput input = TruthInput(sequence, kLogSigma);

@@ -103,6 +103,20 @@ TEST_F(RunOptimiseTest, ShapeIsTheTablesOrTheOptions) {
   }
 }
 
+// The true ratios tell the axes of cuboids that are longer than wide; no ratios tell nothing.
+TEST_F(RunOptimiseTest, MapsSayHowProbableAQuarterTurnIs) {
+  WriteTable(kCuboidExponent, /*factor_of_a=*/1.0);
+  for (const ObjectEstimate& object : Run().objects) {
+    EXPECT_LT(object.quarter_turn.value(), 0.5);
+  }
+  options_.ratio = false;
+  for (const ObjectEstimate& object : Run().objects) {
+    EXPECT_NEAR(object.quarter_turn.value(), 0.5, 0.01);
+  }
+  options_.detection_model = DetectionModel::kQuadric;
+  for (const ObjectEstimate& object : Run().objects) EXPECT_FALSE(object.quarter_turn);
+}
+
 TEST_F(RunOptimiseTest, SymmetryNeedsADescriptorWithADerivative) {
   options_.symmetry = true;
   const StageFiles files = {{"edges", "edges.h5"}};
