@@ -62,9 +62,10 @@ constexpr int kFewestToJudge = 6;
 
 bool IsMoreThanAThird(int part, int all) { return all >= kFewestToJudge && 3 * part > all; }
 
-// The findings about the video, more than a third of the images left out for one reason, and times
-// that contradict the order of more than a third of the photos.
-std::vector<Finding> CheckFrames(const ChosenFrames& chosen, const std::vector<Photo>& photos) {
+// The findings about the video, more than a third of the images left out for one reason, times that
+// contradict the order of more than a third of the photos, and stored photos that EXIF turns.
+std::vector<Finding> CheckFrames(const FrameOptions& options, const ChosenFrames& chosen,
+                                 const std::vector<Photo>& photos) {
   const FramesRecord& record = chosen.record;
   std::vector<Finding> findings = chosen.findings;
   const int all = static_cast<int>(record.frames.size());
@@ -93,6 +94,18 @@ std::vector<Finding> CheckFrames(const ChosenFrames& chosen, const std::vector<P
          "numbers in names that do not count, or clocks that were set",
          "if the times are right, rename the photos: exiftool '-FileName<DateTimeOriginal' -d "
          "%Y%m%d_%H%M%S%%-c.%%e FOLDER"});
+  }
+  const auto turned = std::ranges::count_if(
+      photos, [](const Photo& photo) { return photo.header.orientation > 1; });
+  if (turned > 0 && options.image_orientation == ImageOrientation::kStored) {
+    findings.push_back(
+        {"image_orientation", Severity::kWarning,
+         fmt::format("{} of {} photos are turned by EXIF, and used as they are stored", turned,
+                     photos.size()),
+         "stored photos that are upright: which way is up is sought as if they were",
+         "photos of a phone that was held upright or upside down, and a model of the stored ones",
+         "compare up in planes.json with the photos; if it is wrong, turn the photos (exiftran "
+         "-ai) and reconstruct them again, or give planes.json"});
   }
   return findings;
 }
@@ -173,7 +186,7 @@ void RunFrames(const FrameOptions& options, const StageFiles& files, int threads
       is_video ? ChooseFromVideo(options, images) : ChoosePhotos(options, images, threads, &photos);
   const FramesRecord& record = chosen.record;
   CheckEnough(record, images);
-  const std::vector<Finding> findings = CheckFrames(chosen, photos);
+  const std::vector<Finding> findings = CheckFrames(options, chosen, photos);
   ReportFindings("frames", findings);
   fs::create_directory(output.Temporary() / "rgb");
   if (is_video) WriteVideoFrames(record, images, options.max_image_px, output);

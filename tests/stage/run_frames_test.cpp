@@ -86,6 +86,7 @@ TEST_F(RunFramesTest, StoredPhotosAreCopiedAndBoxesTurned) {
   const json frames = ReadArtefact(output_ / "frames.json", "frames");
   EXPECT_EQ(frames.at("width"), 200);
   EXPECT_EQ(frames.at("height"), 100);
+  EXPECT_EQ(frames.at("findings").at(0).at("check"), "image_orientation");
   EXPECT_EQ(FileBytes(output_ / "rgb/0.jpg"), FileBytes(photos_ / "0.jpg"));
   const auto boxes = ReadDetectionsCsv(output_ / "detections.csv");
   // The upright photos are 100 x 200 pixels; their pixel (x, y) is stored at (y, 99 - x) and at

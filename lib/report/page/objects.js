@@ -25,7 +25,7 @@ function objectNumbers(page, variant, index) {
     rows.push(["sigma of half axes, %", list(estimate.sigma_log_half_axes.map((value) => 100 * value), 1)]);
     rows.push(["sigma of yaw, °", number(estimate.sigma_yaw_deg, 2)]);
   }
-  if (estimate.quarter_turn !== undefined) rows.push(["probability of x a quarter turn on", number(estimate.quarter_turn, 2)]);
+  if (estimate.quarter_turn !== undefined) rows.push(["probability that depth and width are exchanged", number(estimate.quarter_turn, 2)]);
   if (estimate.points) {
     rows.push(["points", `${estimate.points.count}, of which ${number(estimate.points.of_object, 0)} are of it`]);
   }
