@@ -270,14 +270,16 @@ std::optional<int> ParseTrack(const JsonEntry& entry, const std::optional<JsonEn
   if (!attributes || !HasValue(*attributes, "track_id")) return std::nullopt;
   const json& track = attributes->Field("track_id");
   if (!track.is_string()) return attributes->Integer("track_id");
-  if (track == "") return std::nullopt;
-  return ParseInteger(track.get<std::string>(), attributes->place(), "track_id");
+  const auto text = track.get<std::string>();
+  if (text.empty()) return std::nullopt;
+  return ParseInteger(text, attributes->place(), "track_id");
 }
 
 bool IsTrue(const JsonEntry& entry, const char* name) {
   if (!entry.Has(name)) return false;
   const json& value = entry.Field(name);
-  if (!value.is_string()) return value == true || value == 1;
+  if (value.is_boolean()) return value.get<bool>();
+  if (!value.is_string()) return value == 1;
   const std::string word = LowerCase(value.get<std::string>());
   return word == "true" || word == "1";
 }
