@@ -99,8 +99,7 @@ std::vector<std::optional<double>> QuarterTurnProbabilities(const BackEndInput& 
                                                             double dispersion, int threads) {
   const OptimiseOptions alone = AloneOptions(options);
   std::vector<std::optional<double>> probabilities(input.initial_landmarks.size());
-  ParallelFor("quarter turns", static_cast<int>(probabilities.size()), threads, [&](int index) {
-    const auto i = static_cast<size_t>(index);
+  ParallelFor("quarter turns", probabilities.size(), threads, [&](size_t i) {
     if (!input.initial_landmarks[i]) return;
     const Landmark& in_map = *input.initial_landmarks[i];
     Landmark turned = RotatedAboutZ(in_map, 0.5 * std::numbers::pi);

@@ -76,6 +76,7 @@ bool Add(const Sequence& sequence, const std::set<double*>& blocks, const std::v
       std::max(1.0, (alternatives->front().box_cost - gain) / problem->summary().expected_box_cost);
   // Mean and two standard deviations of chi-square.
   const double twice_by_chance = degrees + 2.0 * std::sqrt(2.0 * degrees);
+  // A step that would raise the cost is not taken, and tells nothing of the correction.
   const bool is_refused = problem->variables().values() == before;
   const bool is_promising =
       2.0 * gain > twice_by_chance * dispersion &&
