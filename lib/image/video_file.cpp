@@ -186,10 +186,12 @@ VideoReader::~VideoReader() = default;
 bool VideoReader::ReadPacket() {
   AVPacket& packet = *decoder_->packet;
   const AVFormatContext& format = *decoder_->format;
+  // MKV announces one duration, that of all streams, subtitles among them.
+  const bool all_count = decoder_->stream->duration == AV_NOPTS_VALUE;
   for (av_packet_unref(&packet); av_read_frame(decoder_->format, &packet) >= 0;
        av_packet_unref(&packet)) {
     const AVStream& stream = *format.streams[packet.stream_index];
-    if (IsOfFrames(stream) || stream.codecpar->codec_type == AVMEDIA_TYPE_AUDIO) {
+    if (all_count || IsOfFrames(stream) || stream.codecpar->codec_type == AVMEDIA_TYPE_AUDIO) {
       const std::int64_t stamp = packet.pts == AV_NOPTS_VALUE ? packet.dts : packet.pts;
       if (stamp != AV_NOPTS_VALUE) {
         const auto end = static_cast<double>(stamp + packet.duration);
