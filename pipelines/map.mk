@@ -35,16 +35,17 @@ $(steps)/dataset: $(steps)/frames $(steps)/camera.txt
 	@test -z "$$MAP_CAMERA" || cp -- "$$MAP_CAMERA" $(folder).new/camera.json
 	$(call step,dataset,rm -rf $(folder) && mv $(folder).new $(folder))
 
-# COLMAP's own files stay beside the dataset: it goes on from them.
-$(steps)/reconstructed: $(steps)/dataset $(steps)/model.txt
+# COLMAP's own files stay beside the dataset: it goes on from them. A finished model is turned as the boxes are.
+$(steps)/reconstructed: $(steps)/dataset $(steps)/model.txt $(if $(MAP_DETECT_OPTIONS),$(steps)/detected)
 	$(call step,reconstruct,$(BIN)/soslam-reconstruct --dataset $(folder) --output $(MAP_ROOT)/reconstruction \
-	  $${MAP_MODEL:+--model "$$MAP_MODEL"} $${MAP_CAMERA:+--calibration given} $$MAP_ORIENTATION \
-	  --threads $(MAP_THREADS) $(QUIET) && \
+	  $${MAP_MODEL:+--model "$$MAP_MODEL"} $${MAP_CAMERA:+--calibration given} --threads $(MAP_THREADS) \
+	  $$(head -n 1 $(folder)/detections.csv 2> /dev/null | grep --quiet "$$MAP_STORED" && \
+	    echo --image_orientation stored) $(QUIET) && \
 	  cp $(addprefix $(MAP_ROOT)/reconstruction/,camera.json odometry.txt points.h5 reconstruction.json) $(folder))
 
 $(steps)/detected: $(steps)/dataset $(steps)/network.txt
 	@mkdir -p $(MAP_ROOT)/detections
 	$(call step,detect,test -z "$$MAP_NETWORK" || { \
 	  $(BIN)/soslam-detect --dataset $(folder) --network "$$MAP_NETWORK" \
-	  --output $(MAP_ROOT)/detections/detections.csv $$MAP_ORIENTATION --threads $(MAP_THREADS) $(QUIET) && \
+	  --output $(MAP_ROOT)/detections/detections.csv $$MAP_DETECT_OPTIONS --threads $(MAP_THREADS) $(QUIET) && \
 	  cp $(MAP_ROOT)/detections/detections.csv $(folder); })

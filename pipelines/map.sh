@@ -64,14 +64,15 @@ listed() {
   find -L "$(realpath -- "$1")" -maxdepth 2 -type f -printf '%P %s %T@\n' | LC_ALL=C sort
 }
 
-# A model or camera of others refers to the images as they are; a model does so for all of them.
+# A model or camera of others refers to the images as they are; a model does so for all of them, and
+# may be of the stored ones, so that their EXIF data are needed.
 options=''
 [[ -z $MAP_CAMERA$MAP_MODEL ]] || options+=' --max_image_px 16384'
-[[ -z $MAP_MODEL ]] || options+=' --max_frames 10000 --min_motion 0 --min_sharpness 0'
-# COLMAP reads photos as they are stored, also those that EXIF turns, and its model refers to these.
-orientation=${MAP_MODEL:+ --image_orientation stored}
-options+=$orientation
-export MAP_FRAMES_OPTIONS=$options MAP_ORIENTATION=$orientation
+[[ -z $MAP_MODEL ]] || options+=' --max_frames 10000 --min_motion 0 --min_sharpness 0 --keep_exif_turn'
+# These may be wrong, as where the camera looked down: the network tells, unless a camera is given, of upright images.
+detect_options=''
+[[ -z $MAP_MODEL || -n $MAP_CAMERA ]] || detect_options='--image_orientation surer'
+export MAP_FRAMES_OPTIONS=$options MAP_DETECT_OPTIONS=$detect_options
 
 # The list of photos and boxes, which begins with the path of the photos: if nothing else differs from the list of the
 # map that is there, the photos have moved.
@@ -85,11 +86,17 @@ listed "$MAP_CAMERA" | keep "$MAP_ROOT/steps/camera.txt"
 listed "$MAP_MODEL" | keep "$MAP_ROOT/steps/model.txt"
 listed "$MAP_NETWORK" | keep "$MAP_ROOT/steps/network.txt"
 
-# The settings: those of all maps of photos.
+# The settings: those of all maps of photos, with the orientation that the boxes refer to.
 mkdir -p "$MAP_ROOT"/pipelines/{variants,datasets,priors}
-sed "s/\"ground\": \"estimated\"/&, \"scale\": ${MAP_SCALE:-0}, \"camera_height_m\": ${MAP_CAMERA_HEIGHT:-0}/
-  s/\"odometry_has_own_scale\": true/&${MAP_MODEL:+, \"image_orientation\": \"stored\"}/" \
-  pipelines/photos/base.json | keep "$MAP_ROOT/pipelines/base.json"
+export MAP_STORED='^# {.*"image_orientation":"stored"'
+keep_base() {
+  local stored=''
+  ! head -n 1 "$MAP_ROOT/data/$MAP_NAME/detections.csv" 2> /dev/null | grep --quiet "$MAP_STORED" ||
+    stored=', "image_orientation": "stored"'
+  sed "s/\"ground\": \"estimated\"/&, \"scale\": ${MAP_SCALE:-0}, \"camera_height_m\": ${MAP_CAMERA_HEIGHT:-0}/
+    s/\"odometry_has_own_scale\": true/&$stored/" pipelines/photos/base.json | keep "$MAP_ROOT/pipelines/base.json"
+}
+keep_base
 # Poses are held, so that odometry has no noise.
 for file in variants/*.json priors/semantic_table.json; do
   for from in pipelines/$file; do sed '/"odometry_[rt]/d' "$from" | keep "$MAP_ROOT/${from}"; done
@@ -101,6 +108,7 @@ for folder in "$MAP_ROOT/results/$MAP_NAME"/*/; do
 done
 
 $MAKE --no-print-directory -f pipelines/map.mk
+keep_base
 $MAKE --no-print-directory run-built DATASET="$MAP_NAME" DATA_ROOT="$MAP_ROOT/data" RESULTS="$MAP_ROOT/results" \
   PIPELINES="$MAP_ROOT/pipelines" VARIANT="$MAP_VARIANT" THREADS="$MAP_THREADS" BUILD="$BUILD"
 "$BIN/soslam-pages" --results "$MAP_ROOT/results"

@@ -158,30 +158,4 @@ void DatasetFolder::Replace() {
   fs::remove_all(old, error);
 }
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FocalHint, focal_px, images)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SourceFrame, source, frame_number, time_s, sharpness)
-
-std::string FramesText(const std::filesystem::path& path, const FramesRecord& record,
-                       const ArtefactInfo& info) {
-  using nlohmann::json;
-  json body = {{"name", record.name},
-               {"width", record.width},
-               {"height", record.height},
-               {"focal_hint", record.focal_hint},
-               {"ordered_by", record.ordered_by},
-               {"frames", json::array()},
-               {"left_out", json::array()}};
-  for (const SourceFrame& frame : record.frames) {
-    json entry = frame;
-    if (frame.rejection) {
-      entry["reason"] = kFrameRejectionNames[static_cast<size_t>(*frame.rejection)];
-      entry["detail"] = frame.detail;
-    } else {
-      entry["image"] = frame.image;
-    }
-    body[frame.rejection ? "left_out" : "frames"].push_back(std::move(entry));
-  }
-  return ArtefactText(path, "frames", info, std::move(body));
-}
-
 }  // namespace soslam

@@ -9,18 +9,14 @@
 #include <vector>
 
 #include "artefact/json_file.h"
-#include "association/agreement.h"
-#include "association/association.h"
-#include "evaluation/map_quality.h"
-#include "evaluation/metrics.h"
-#include "ground/estimate_ground.h"
-#include "ground/ground_checks.h"
+#include "model/associations.h"
 #include "model/estimates.h"
 #include "model/map_points.h"
+#include "model/metrics.h"
 #include "model/reconstruction.h"
 #include "model/semantic_table.h"
 #include "model/sequence.h"
-#include "planes/planes_estimate.h"
+#include "model/world.h"
 
 namespace soslam {
 
@@ -41,7 +37,7 @@ void WriteSequence(const std::filesystem::path& path, const Sequence& sequence,
 // Kind "reconstruction".
 void WriteReconstruction(const std::filesystem::path& path, const ReconstructionSummary& summary,
                          const ArtefactInfo& info);
-ReconstructionSummary ReadReconstruction(const std::filesystem::path& path);
+Artefact<ReconstructionSummary> ReadReconstruction(const std::filesystem::path& path);
 
 // Writes points.h5 (layout: schemas/hdf5-layout.md) atomically, points and observations in the
 // given order. Throws SettingsError when it cannot be written.
@@ -51,27 +47,14 @@ void WritePoints(const std::filesystem::path& path, const std::vector<MapPoint>&
 // "points" or too new, when its arrays do not fit each other, or a number is not possible.
 std::vector<MapPoint> ReadPoints(const std::filesystem::path& path);
 
-// Kind "associations": the decision and its reason for each detection, track and object, and the
-// agreement of the objects with those of the sequence. Objects have the ids that AssociatedSequence
-// gives them.
-void WriteAssociations(const std::filesystem::path& path, const Sequence& sequence,
-                       const Association& association, const Agreement& agreement,
+// Kinds "associations", "planes" and "world".
+void WriteAssociations(const std::filesystem::path& path, const Associations& associations,
                        const ArtefactInfo& info);
-
-// Kind "planes". `given`: the sequence that the planes were estimated from, with its given planes.
-void WritePlanes(const std::filesystem::path& path, const PlanesEstimate& estimate,
-                 const Sequence& given, const ArtefactInfo& info);
-// Kind "world".
-void WriteWorld(const std::filesystem::path& path, const GroundEstimate& estimate,
-                const Sequence& input, const ArtefactInfo& info);
-// The scale of a world.json that was read; none where it is unknown.
-std::optional<WorldScale> ScaleOfWorld(const nlohmann::json& world);
-// Why up may be wrong by more than its standard deviation, in words; empty where nothing says so.
-std::string DoubtOfUp(const nlohmann::json& world);
-// True if the lengths of a sequence without a world.json are in metres.
-inline bool IsInMetresWithoutWorld(const Sequence& sequence) {
-  return sequence.odometry_world != OdometryWorld::kOwnWithScale;
-}
+void WritePlanes(const std::filesystem::path& path, const PlanesReport& report,
+                 const ArtefactInfo& info);
+void WriteWorld(const std::filesystem::path& path, const WorldReport& report,
+                const ArtefactInfo& info);
+Artefact<WorldReport> ReadWorld(const std::filesystem::path& path);
 
 // A semantic table, written by people or by soslam-learn-priors; written as kind "semantic_table".
 SemanticTable ReadSemanticTable(const std::filesystem::path& path);
@@ -84,9 +67,6 @@ void WriteSemanticRows(const std::filesystem::path& path, const SemanticRows& ro
 LandmarkEstimates ReadLandmarks(const std::filesystem::path& path, const Sequence& sequence);
 void WriteLandmarks(const std::filesystem::path& path, const LandmarkEstimates& estimates,
                     const Sequence& sequence, const ArtefactInfo& info);
-// Number of observations and objects with a failure, per reason.
-std::map<std::string, int> CountFailures(const LandmarkEstimates& estimates);
-
 // Kind "map". `sequence` is the one that the map was made from. ReadMap throws InputError also for
 // an object that the sequence lacks, and for a trajectory that does not have exactly its frames.
 MapEstimate ReadMap(const std::filesystem::path& path, const Sequence& sequence);

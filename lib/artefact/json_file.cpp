@@ -8,13 +8,9 @@
 #include <fstream>
 #include <set>
 #include <stdexcept>
-#include <valijson/adapters/nlohmann_json_adapter.hpp>
-#include <valijson/schema.hpp>
-#include <valijson/schema_parser.hpp>
-#include <valijson/validator.hpp>
 
 #include "artefact/atomic_file.h"
-#include "artefact/model_json.h"
+#include "artefact/kinds.h"
 #include "base/paths.h"
 #include "base/run_log.h"
 #include "base/text.h"
@@ -24,48 +20,6 @@ namespace soslam {
 namespace {
 
 using nlohmann::json;
-using Adapter = valijson::adapters::NlohmannJsonAdapter;
-
-// JSON pointer of valijson's context: ("<root>", "[objects]", "[0]") is /objects/0.
-json::json_pointer Place(const std::vector<std::string>& context) {
-  json::json_pointer place;
-  for (size_t i = 1; i < context.size(); ++i) {
-    place /= context[i].substr(1, context[i].size() - 2);
-  }
-  return place;
-}
-
-}  // namespace
-
-std::optional<std::string> ViolationOf(const json& document, const json& schema_document) {
-  valijson::Schema schema;
-  valijson::SchemaParser(valijson::SchemaParser::kDraft7)
-      .populateSchema(Adapter(schema_document), schema);
-
-  valijson::Validator validator;
-  valijson::ValidationResults results;
-  if (validator.validate(schema, Adapter(document), &results)) return std::nullopt;
-  // The deepest error is reported first; later ones are its consequences further up.
-  const valijson::ValidationResults::Error& error = *results.begin();
-  const json::json_pointer place = Place(error.context);
-  return fmt::format("{} is {}: {}", place.empty() ? "the document" : place.to_string(),
-                     Excerpt(document.at(place)), error.description);
-}
-
-std::optional<std::string> SchemaViolation(const json& document, const std::string& kind) {
-  const auto text = EmbeddedSchemas().find(kind);
-  if (text == EmbeddedSchemas().end()) throw std::logic_error("no schema of kind " + kind);
-  return ViolationOf(document, json::parse(text->second));
-}
-
-void ValidateAgainstSchema(const json& document, const std::string& kind, const std::string& file) {
-  if (const auto violation = SchemaViolation(document, kind)) {
-    throw InputError(file + ": " + *violation);
-  }
-}
-
-namespace {
-
 // [major, minor] of all schemas. A reader refuses newer ones, and files that lack what is required.
 const std::vector<int> kSchemaVersion = {1, 10};
 
@@ -156,6 +110,16 @@ std::string JsonText(const json& document, int indent) {
   return document.dump(indent, ' ', /*ensure_ascii=*/false, json::error_handler_t::replace);
 }
 
+std::string DigestViolation(const std::string& sha256) {
+  const bool is_digest =
+      sha256.size() == 64 && sha256.find_first_not_of("0123456789abcdef") == sha256.npos;
+  return is_digest ? "" : fmt::format("sha256 is \"{}\"; expected 64 hexadecimal digits", sha256);
+}
+
+std::vector<Finding> FindingsOf(const json& artefact) {
+  return DescribedFromJson<std::vector<Finding>>(artefact.value("findings", json::array()));
+}
+
 std::string Excerpt(const json& value) {
   constexpr size_t kMaxLength = 60;
   const std::string text =
@@ -219,8 +183,9 @@ const std::vector<RowIds> kRowIds = {{"landmarks", "observations", {"frame", "ob
                                      {"planes", "planes", {"plane"}},
                                      {"planes", "objects", {"object"}}};
 
-// The first row whose ids an earlier one has as well, in words.
-std::optional<std::string> RowListedTwice(const json& document, const std::string& kind) {
+}  // namespace
+
+void internal::RefuseRowsTwice(const json& document, const std::string& kind) {
   for (const RowIds& ids : kRowIds) {
     if (ids.kind != kind) continue;
     const json& rows = document.at(ids.list);
@@ -233,47 +198,62 @@ std::optional<std::string> RowListedTwice(const json& document, const std::strin
       for (const char* key : ids.keys) {
         names.push_back(fmt::format("{} {}", key, rows[i].at(key).dump()));
       }
-      return fmt::format("/{}/{} is the second row of {}; expected one", ids.list, i,
-                         fmt::join(names, ", "));
+      throw InputError(fmt::format("/{}/{} is the second row of {}; expected one", ids.list, i,
+                                   fmt::join(names, ", ")));
     }
   }
-  return std::nullopt;
 }
 
-}  // namespace
-
-json ReadArtefact(const std::filesystem::path& path, const std::string& kind) {
+json internal::ParseArtefact(const std::filesystem::path& path, const std::string& kind) {
   json document = ParseJsonFile(path);
   const json header = document.is_object() ? document.value("artefact", json()) : json();
   CheckArtefactHeader(header, kind, path.string());
-  if (!EmbeddedSchemas().contains(kind)) {
-    throw InputError(
-        fmt::format("{}: artefact kind is \"{}\"; expected one that is JSON", path.string(), kind));
-  }
-  if (const auto violation = SchemaViolation(document, kind)) {
-    const json& version = header["schema_version"];
+  return document;
+}
+
+void internal::ReadInFile(const std::filesystem::path& path, const json& document,
+                          const std::function<void()>& read) {
+  try {
+    read();
+  } catch (const InputError& error) {
+    const json version =
+        document.value("/artefact/schema_version"_json_pointer, json(kSchemaVersion));
     throw InputError(fmt::format(
-        "{}: {}{}", path.string(), *violation,
+        "{}: {}{}", path.string(), error.what(),
         version == json(kSchemaVersion)
             ? ""
             : fmt::format("; its schema version is {}, that of this software [{}]: run the stage "
                           "that made it again",
                           version.dump(), fmt::join(kSchemaVersion, ", "))));
   }
-  if (const auto twice = RowListedTwice(document, kind)) {
-    throw InputError(fmt::format("{}: {}", path.string(), *twice));
+}
+
+json ReadArtefact(const std::filesystem::path& path, const std::string& kind) {
+  json document = internal::ParseArtefact(path, kind);
+  const ArtefactKind* const described = FindArtefactKind(kind);
+  if (described == nullptr) {
+    throw InputError(
+        fmt::format("{}: artefact kind is \"{}\"; expected one that is JSON", path.string(), kind));
   }
+  internal::ReadInFile(path, document, [&] {
+    described->check(document);
+    internal::RefuseRowsTwice(document, kind);
+  });
   return document;
 }
 
 std::string ArtefactText(const std::filesystem::path& path, const std::string& kind,
                          const ArtefactInfo& info, json body) {
   body["artefact"] = ArtefactHeader(kind, info);
-  if (!info.findings.empty()) body["findings"] = info.findings;
+  if (!info.findings.empty()) body["findings"] = DescribedToJson(info.findings);
   RefuseNonFinite(body, json::json_pointer(), path.string());
-  if (const auto violation = SchemaViolation(body, kind)) {
+  const ArtefactKind* const described = FindArtefactKind(kind);
+  if (described == nullptr) throw std::logic_error("no artefacts are of kind " + kind);
+  try {
+    described->check(body);
+  } catch (const InputError& error) {
     throw std::logic_error(fmt::format("{}: would break the schema of kind '{}': {}", path.string(),
-                                       kind, *violation));
+                                       kind, error.what()));
   }
   return JsonText(body, 1) + "\n";
 }

@@ -14,7 +14,6 @@
 
 #include "artefact/atomic_file.h"
 #include "artefact/json_file.h"
-#include "artefact/model_json.h"
 #include "base/error.h"
 
 namespace soslam {
@@ -63,10 +62,27 @@ Software ThisSoftware() {
            {"openssl", OpenSSL_version(OPENSSL_VERSION_STRING)}}};
 }
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunSetting, value, origin)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunFile, argument, relative_to, path, sha256)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(RunRecord, stage, settings, allow_outside_paths, seed, folders,
-                                   inputs, outputs, exit_code, timing)
+// The header of run.json, which has settings and inputs of its own.
+struct RunHeader {
+  std::string kind;
+  std::array<int, 2> schema_version;
+  std::string software;
+};
+template <typename Visitor>
+void Describe(Visitor& visit, RunHeader& header) {
+  visit.Field("kind", &header.kind, "run");
+  visit.Field("schema_version", &header.schema_version, "major, minor", kNotNegative);
+  visit.Field("software", &header.software, "name and version");
+}
+struct RunDocument {
+  RunHeader header;
+  RunRecord record;
+};
+template <typename Visitor>
+void Describe(Visitor& visit, RunDocument& run) {
+  visit.Field("artefact", &run.header, "what this file is");
+  Describe(visit, run.record);
+}
 
 namespace {
 
@@ -86,35 +102,27 @@ void CheckBases(const std::vector<RunFile>& files, const RunRecord& record,
   }
 }
 
-RunRecord RunFromJson(const json& document) {
-  auto record = document.get<RunRecord>();
-  record.software = {document.at("artefact").at("software"), document.at("compiler"),
-                     document.at("libraries")};
-  record.called_in = document.at("called_in").get<std::string>();
-  CheckBases(record.inputs, record, "/inputs");
-  CheckBases(record.outputs, record, "/outputs");
-  if (!document.at("error").is_null()) record.error = document.at("error");
-  return record;
-}
-
 }  // namespace
 
 void WriteRun(const std::filesystem::path& path, const RunRecord& record) {
-  json document = record;
-  document.update({{"artefact", HeaderOfKind(kRunKind)},
-                   {"compiler", record.software.compiler},
-                   {"libraries", record.software.libraries},
-                   {"called_in", record.called_in.string()},
-                   {"error", NullIfEmpty(record.error)}});
-  if (const auto violation = SchemaViolation(document, kRunKind)) {
-    throw std::logic_error(
-        fmt::format("{}: would break its schema: {}", path.string(), *violation));
-  }
+  json document = DescribedToJson(record);
+  document["artefact"] = HeaderOfKind(kRunKind);
   WriteTextFile(path, JsonText(document, 2) + "\n");
 }
 
+nlohmann::ordered_json RunSchema() { return SchemaWriter::Of<RunDocument>(); }
+
 RunRecord ReadRun(const std::filesystem::path& path) {
-  return ReadArtefactAs(path, kRunKind, &RunFromJson);
+  const json document = internal::ParseArtefact(path, kRunKind);
+  RunRecord record;
+  internal::ReadInFile(path, document, [&] {
+    auto [header, read] = DescribedFromJson<RunDocument>(document);
+    record = std::move(read);
+    record.software.version = header.software;
+    CheckBases(record.inputs, record, "/inputs");
+    CheckBases(record.outputs, record, "/outputs");
+  });
+  return record;
 }
 
 }  // namespace soslam

@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "artefact/json_file.h"
+#include "base/description.h"
 
 namespace soslam {
 
@@ -56,6 +63,60 @@ struct RunRecord {
   std::string error;      // empty after success
   nlohmann::json timing;  // schemas/timing.schema.json without the stage
 };
+
+template <typename Visitor>
+void Describe(Visitor& visit, RunFile& file) {
+  visit.Field("argument", &file.argument, "that names the file, or the folder it is in");
+  visit.Field(
+      "relative_to", &file.relative_to,
+      "where the path begins: \"run\", the folder of run.json; \"call\", the folder that the "
+      "program was called in; else one of folders");
+  visit.Field("path", &file.path, "relative to that", kNotEmpty);
+  visit.Field("sha256", &file.sha256, "SHA-256 of its bytes, 64 hexadecimal digits");
+  visit.Check([&] { return DigestViolation(file.sha256); });
+}
+
+template <typename Visitor>
+void Describe(Visitor& visit, RunSetting& setting) {
+  visit.Field("value", &setting.value, "number, text or truth value");
+  visit.Field("origin", &setting.origin, "default, settings file or command line");
+  visit.Check([&] {
+    const std::array known = {"default", "settings file", "command line"};
+    return std::ranges::find(known, setting.origin) != known.end()
+               ? std::string()
+               : fmt::format("origin is \"{}\"; expected default, settings file or command line",
+                             setting.origin);
+  });
+}
+
+template <typename Visitor>
+void Describe(Visitor& visit, RunRecord& record) {
+  visit.Field("stage", &record.stage, "name of the executable");
+  visit.Check([&] {
+    const bool is_name =
+        record.stage.starts_with("soslam-") && std::ranges::all_of(record.stage, [](char letter) {
+          return letter == '-' || (letter >= 'a' && letter <= 'z');
+        });
+    return is_name ? std::string()
+                   : fmt::format("/stage is \"{}\"; expected soslam-...", record.stage);
+  });
+  visit.Field("compiler", &record.software.compiler, "that built it, with its version");
+  visit.Field("libraries", &record.software.libraries,
+              "versions by name; of those that cannot be asked at run time, of the headers");
+  visit.Field("settings", &record.settings, "every option by name; null when they were not valid");
+  visit.Field("allow_outside_paths", &record.allow_outside_paths, "it was called with this option");
+  visit.Field("seed", &record.seed, "of the random numbers; null where none are drawn");
+  visit.Field("called_in", &record.called_in, "folder in which relative paths begin");
+  visit.Field("folders", &record.folders, "paths of the arguments that are folders, as called");
+  visit.Field("inputs", &record.inputs, "files that were read, as they were then");
+  visit.Field("outputs", &record.outputs, "files that were written");
+  visit.Field("exit_code", &record.exit_code, "of the program", {0.0, 255.0});
+  visit.OrNull("error", &record.error, "why it failed; null after success");
+  visit.Field("timing", &record.timing, "as in timing.json");
+}
+
+// The schema of run.json, with its header.
+nlohmann::ordered_json RunSchema();
 
 // Throws SettingsError when the file cannot be written.
 void WriteRun(const std::filesystem::path& path, const RunRecord& record);

@@ -14,25 +14,6 @@ namespace {
 // Labels that are less probable are not kept.
 constexpr double kNegligibleProbability = 0.01;
 
-struct Pair {
-  int object;
-  int given;
-  int shared;  // detections
-};
-
-// All pairs that share detections, those with the most first.
-std::vector<Pair> PairsByShare(const Sequence& sequence, const Association& association) {
-  std::map<std::pair<int, int>, int> shared;
-  for (size_t i = 0; i < association.detections.size(); ++i) {
-    const int object = association.detections[i].object;
-    if (object >= 0) ++shared[{object, sequence.detections[i].object_index}];
-  }
-  std::vector<Pair> pairs;
-  for (const auto& [pair, count] : shared) pairs.push_back({pair.first, pair.second, count});
-  std::ranges::stable_sort(pairs, std::ranges::greater(), &Pair::shared);
-  return pairs;
-}
-
 const char* ReasonNotUsed(const Association& association, const DetectionDecision& decision) {
   if (decision.decision == LinkDecision::kDuplicate || decision.superseded) {
     return "duplicate_of_another_box";
@@ -71,17 +52,28 @@ Agreement CompareWithGiven(const Sequence& sequence, const Association& associat
     return sequence.objects[i].is_static && static_cast<int>(given[i].size()) >= min_observations;
   };
   for (size_t i = 0; i < given.size(); ++i) agreement.given_objects += counts(i) ? 1 : 0;
+  std::map<std::pair<int, int>, int> shared;  // number of detections, by object and given object
+  for (size_t i = 0; i < association.detections.size(); ++i) {
+    const int object = association.detections[i].object;
+    if (object >= 0) ++shared[{object, sequence.detections[i].object_index}];
+  }
+  // Pairs that share the most come first.
+  std::vector<std::pair<std::pair<int, int>, int>> pairs(shared.begin(), shared.end());
+  std::ranges::stable_sort(pairs, std::ranges::greater(),
+                           &std::pair<std::pair<int, int>, int>::second);
   std::set<int> taken;
-  for (const Pair& pair : PairsByShare(sequence, association)) {
-    auto& given_of_object = agreement.given_of_object[pair.object];
-    if (given_of_object || !taken.insert(pair.given).second) continue;
-    given_of_object = pair.given;
-    const auto track = static_cast<size_t>(association.objects[static_cast<size_t>(pair.object)]);
+  for (const auto& [pair, shared_detections] : pairs) {
+    const auto [object_index, given_index] = pair;
+    auto& given_of_object = agreement.given_of_object[object_index];
+    if (given_of_object || !taken.insert(given_index).second) continue;
+    given_of_object = given_index;
+    const auto track = static_cast<size_t>(association.objects[static_cast<size_t>(object_index)]);
     const auto estimated_size = static_cast<int>(association.tracks[track].detections.size());
-    const auto given_size = static_cast<int>(given[pair.given].size());
-    if (counts(static_cast<size_t>(pair.given)) &&
-        2 * pair.shared > estimated_size + given_size - pair.shared)
+    const auto given_size = static_cast<int>(given[given_index].size());
+    if (counts(static_cast<size_t>(given_index)) &&
+        2 * shared_detections > estimated_size + given_size - shared_detections) {
       ++agreement.matched;
+    }
   }
   return agreement;
 }
@@ -127,6 +119,59 @@ Sequence AssociatedSequence(const Sequence& sequence, const Association& associa
     return std::tuple(detection.frame_index, detection.object_index);
   });
   return associated;
+}
+
+Associations ReportOf(const Sequence& sequence, const Association& association,
+                      const Agreement& agreement) {
+  const auto name_of = [&](const Detection& detection) {
+    return Associations::DetectionName{sequence.FrameOf(detection).id,
+                                       sequence.ObjectOf(detection).id};
+  };
+  const auto if_any = [](int index, int first_id) {
+    return index >= 0 ? std::optional(index + first_id) : std::nullopt;
+  };
+  Associations report;
+  for (size_t i = 0; i < association.detections.size(); ++i) {
+    const DetectionDecision& decision = association.detections[i];
+    Associations::DetectionRow row = {name_of(sequence.detections[i]), decision.decision};
+    if (decision.decision == LinkDecision::kLinked ||
+        decision.decision == LinkDecision::kRevisited) {
+      row.link = {decision.match.overlap, decision.match.distance, decision.match.cut_edge,
+                  decision.frames_since_seen};
+    }
+    row.track = if_any(decision.track, 0);
+    row.object = if_any(decision.object, 1);
+    row.superseded = decision.superseded;
+    if (decision.duplicate_of >= 0) {
+      row.duplicate_of = name_of(sequence.detections[decision.duplicate_of]);
+    }
+    report.detections.push_back(row);
+  }
+  for (const Track& track : association.tracks) {
+    Associations::TrackRow row = {static_cast<int>(report.tracks.size()), track.fate};
+    if (track.fate == TrackFate::kMerged) {
+      row.merge = {track.merge.into, track.merge.explained, track.merge.tried,
+                   track.merge.shared_frames};
+    }
+    row.linked_detections = track.linked;
+    row.detections = static_cast<int>(track.detections.size());
+    row.frames_in_sight = track.frames_in_sight;
+    report.tracks.push_back(row);
+  }
+  for (size_t i = 0; i < association.objects.size(); ++i) {
+    const Track& track = association.tracks[association.objects[i]];
+    const auto given = agreement.given_of_object[i];
+    report.objects.push_back({static_cast<int>(i) + 1, association.objects[i], LabelOf(track),
+                              track.votes, static_cast<int>(track.detections.size()),
+                              given ? std::optional(sequence.objects[*given].id) : std::nullopt});
+  }
+  report.agreement = {static_cast<int>(agreement.given_of_object.size()),
+                      agreement.given_objects,
+                      agreement.matched,
+                      agreement.Precision(),
+                      agreement.Recall(),
+                      agreement.F1()};
+  return report;
 }
 
 }  // namespace soslam

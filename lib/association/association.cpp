@@ -19,197 +19,136 @@ namespace {
 constexpr size_t kAlwaysFitted = 6;
 constexpr double kFitGrowth = 1.5;
 
-// Assigns, frame by frame, the detections to existing tracks (at most one per track) or to new
-// tracks at the least total cost. Fills Association::detections and Association::tracks.
-class FrameLinker {
- public:
-  FrameLinker(const AssociationModel& model, int threads) : model_(model), threads_(threads) {
-    association_.detections.resize(model.sequence().detections.size());
+// State of a track in addition to its detections.
+struct TrackState {
+  std::optional<Prediction> prediction;  // in the current frame
+  bool was_out_of_image = false;         // since its last detection
+  bool has_changed = false;              // in the current frame
+  size_t fitted_detections = 0;
+  size_t fitted_labels = 0;  // number of different labels
+
+  bool NeedsFit(const Track& track) const {
+    return has_changed && (!track.fit || track.detections.size() <= kAlwaysFitted ||
+                           static_cast<double>(track.detections.size()) >=
+                               kFitGrowth * static_cast<double>(fitted_detections) ||
+                           track.votes.size() != fitted_labels);
   }
-
-  Association Run() {
-    const int frames = static_cast<int>(model_.sequence().frames.size());
-    Progress progress("frames", frames);
-    for (int frame = 0; frame < frames; ++frame) {
-      const std::vector<int> detections = WithoutDuplicates(DetectionsIn(frame));
-      Predict(frame);
-      Link(detections);
-      Fit();
-      progress.Step();
-    }
-    return std::move(association_);
-  }
-
- private:
-  // State of a track in addition to its detections.
-  struct State {
-    std::optional<Prediction> prediction;  // in the current frame
-    bool was_out_of_image = false;         // since its last detection
-    bool has_changed = false;              // in the current frame
-    size_t fitted_detections = 0;
-    size_t fitted_labels = 0;  // number of different labels
-  };
-
-  const Detection& At(int detection) const { return model_.DetectionAt(detection); }
-  DetectionDecision& DecisionOn(int detection) { return association_.detections[detection]; }
-
-  // Indices of the detections of a frame, best score first. Ties are ordered by box and label, so
-  // that the order and ids of the input do not matter.
-  std::vector<int> DetectionsIn(int frame) const {
-    const auto& all = model_.sequence().detections;
-    std::vector<int> detections;
-    for (const Detection& detection : soslam::DetectionsIn(model_.sequence(), frame)) {
-      detections.push_back(static_cast<int>(&detection - all.data()));
-    }
-    const auto key = [&](int index) {
-      const Detection& detection = At(index);
-      const Box& box = detection.box;
-      return std::tuple(-detection.score, box.x_min, box.y_min, box.x_max, box.y_max,
-                        model_.LabelOf(detection));
-    };
-    std::ranges::stable_sort(detections, {}, key);
-    return detections;
-  }
-
-  std::vector<int> WithoutDuplicates(const std::vector<int>& detections) {
-    std::vector<int> kept;
-    for (const int detection : detections) {
-      const auto same = std::ranges::find_if(kept, [&](int other) {
-        return BoxOverlap(At(detection).box, At(other).box) >= model_.options().duplicate_overlap;
-      });
-      if (same == kept.end()) {
-        kept.push_back(detection);
-      } else {
-        DecisionOn(detection).decision = LinkDecision::kDuplicate;
-        DecisionOn(detection).duplicate_of = *same;
-      }
-    }
-    return kept;
-  }
-
-  void Predict(int frame) {
-    const Camera& camera = model_.sequence().CameraOf(model_.sequence().frames[frame]);
-    ParallelFor(states_.size(), threads_, [&](size_t i) {
-      State& state = states_[i];
-      state.prediction = model_.Predict(association_.tracks[i], frame);
-      const bool is_in_image =
-          state.prediction &&
-          DistanceToBorder(state.prediction->outline, camera.width, camera.height) >= 0.0;
-      if (!is_in_image) state.was_out_of_image = true;
-    });
-  }
-
-  void Link(const std::vector<int>& detections) {
-    const auto rows = static_cast<Eigen::Index>(detections.size());
-    const auto columns = static_cast<Eigen::Index>(states_.size());
-    Eigen::MatrixXd costs =
-        Eigen::MatrixXd::Constant(rows, columns, std::numeric_limits<double>::infinity());
-    std::vector<std::vector<std::optional<BoxMatch>>> matches(
-        detections.size(), std::vector<std::optional<BoxMatch>>(states_.size()));
-    Eigen::VectorXd costs_of_new_objects(rows);
-    for (Eigen::Index row = 0; row < rows; ++row) {
-      const Detection& detection = At(detections[row]);
-      costs_of_new_objects[row] = model_.NewObjectCost(detection);
-      for (Eigen::Index track = 0; track < columns; ++track) {
-        const auto& prediction = states_[track].prediction;
-        if (!prediction) continue;
-        auto& match = matches[row][track];
-        match = model_.Match(association_.tracks[track], *prediction, detection);
-        if (match) costs(row, track) = match->cost;
-      }
-    }
-    const std::vector<int> track_of_row = Assign(costs, costs_of_new_objects);
-    for (size_t row = 0; row < detections.size(); ++row) {
-      const int track = track_of_row[row];
-      if (track == kUnassigned) {
-        Start(detections[row]);
-      } else {
-        Extend(track, *matches[row][track], detections[row]);
-      }
-    }
-  }
-
-  void Start(int detection) {
-    DetectionDecision& decision = DecisionOn(detection);
-    decision.decision = LinkDecision::kNewTrack;
-    decision.track = static_cast<int>(association_.tracks.size());
-    association_.tracks.emplace_back();
-    association_.tracks.back().plane_index = model_.PlaneOf(At(detection));
-    states_.emplace_back();
-    Add(decision.track, detection);
-  }
-
-  void Extend(int track_index, const BoxMatch& match, int detection) {
-    Track& track = association_.tracks[track_index];
-    State& state = states_[track_index];
-    DetectionDecision& decision = DecisionOn(detection);
-    decision.decision = state.was_out_of_image ? LinkDecision::kRevisited : LinkDecision::kLinked;
-    decision.track = track_index;
-    decision.match = match;
-    decision.frames_since_seen =
-        At(detection).frame_index - At(track.detections.back()).frame_index;
-    Add(track_index, detection);
-  }
-
-  void Add(int track_index, int detection) {
-    Track& track = association_.tracks[track_index];
-    State& state = states_[track_index];
-    track.detections.push_back(detection);
-    ++track.linked;
-    track.votes[model_.LabelOf(At(detection))] += At(detection).score;
-    state.was_out_of_image = false;
-    state.has_changed = true;
-  }
-
-  bool IsDue(size_t track_index) const {
-    const Track& track = association_.tracks[track_index];
-    const State& state = states_[track_index];
-    const auto detections = static_cast<double>(track.detections.size());
-    return state.has_changed &&
-           (!track.fit || track.detections.size() <= kAlwaysFitted ||
-            detections >= kFitGrowth * static_cast<double>(state.fitted_detections) ||
-            track.votes.size() != state.fitted_labels);
-  }
-
-  void Fit() {
-    std::vector<size_t> due;
-    for (size_t i = 0; i < states_.size(); ++i) {
-      if (IsDue(i)) due.push_back(i);
-      states_[i].has_changed = false;
-    }
-    ParallelFor(due.size(), threads_, [&](size_t i) {
-      const size_t track_index = due[i];
-      Track& track = association_.tracks[track_index];
-      model_.Fit(&track);
-      states_[track_index].fitted_detections = track.detections.size();
-      states_[track_index].fitted_labels = track.votes.size();
-    });
-  }
-
-  const AssociationModel& model_;
-  int threads_;
-  Association association_;
-  std::vector<State> states_;  // one per track
 };
 
-// Fills Association::objects, ordered by the first detection in the sequence.
-void ListObjects(const Sequence& sequence, Association* association) {
-  for (int i = 0; i < static_cast<int>(association->tracks.size()); ++i) {
-    if (association->tracks[i].fate == TrackFate::kObject) {
-      association->objects.push_back(i);
+// Indices of the detections of a frame, best score first, without duplicates, on which it decides.
+// Ties are ordered by box and label, so that the order and ids of the input do not matter.
+std::vector<int> DetectionsToLink(const AssociationModel& model, int frame,
+                                  std::vector<DetectionDecision>* decisions) {
+  std::vector<int> detections;
+  for (const Detection& detection : DetectionsIn(model.sequence(), frame)) {
+    detections.push_back(static_cast<int>(&detection - model.sequence().detections.data()));
+  }
+  std::ranges::stable_sort(detections, {}, [&](int index) {
+    const Detection& detection = model.DetectionAt(index);
+    const Box& box = detection.box;
+    return std::tuple(-detection.score, box.x_min, box.y_min, box.x_max, box.y_max,
+                      model.LabelOf(detection));
+  });
+  std::vector<int> kept;
+  for (const int index : detections) {
+    const auto same = std::ranges::find_if(kept, [&](int other) {
+      return BoxOverlap(model.DetectionAt(index).box, model.DetectionAt(other).box) >=
+             model.options().duplicate_overlap;
+    });
+    if (same == kept.end()) {
+      kept.push_back(index);
+    } else {
+      (*decisions)[index].decision = LinkDecision::kDuplicate;
+      (*decisions)[index].duplicate_of = *same;
     }
   }
-  const auto first_frame = [&](int track) {
-    const int detection = association->tracks[track].detections.front();
-    return sequence.detections[detection].frame_index;
-  };
-  std::ranges::stable_sort(association->objects, {}, first_frame);
-  for (size_t object = 0; object < association->objects.size(); ++object) {
-    const auto track = static_cast<size_t>(association->objects[object]);
-    for (const int detection : association->tracks[track].detections) {
-      association->detections[detection].object = static_cast<int>(object);
+  return kept;
+}
+
+// The track of each detection, or kUnassigned, and its match, at the least total cost.
+std::vector<std::pair<int, BoxMatch>> MatchToTracks(const AssociationModel& model,
+                                                    const std::vector<Track>& tracks,
+                                                    const std::vector<TrackState>& states,
+                                                    const std::vector<int>& detections) {
+  const auto rows = static_cast<Eigen::Index>(detections.size());
+  const auto columns = static_cast<Eigen::Index>(states.size());
+  Eigen::MatrixXd costs =
+      Eigen::MatrixXd::Constant(rows, columns, std::numeric_limits<double>::infinity());
+  std::vector<std::vector<BoxMatch>> matches(detections.size(),
+                                             std::vector<BoxMatch>(states.size()));
+  Eigen::VectorXd costs_of_new_objects(rows);
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    const Detection& detection = model.DetectionAt(detections[row]);
+    costs_of_new_objects[row] = model.NewObjectCost(detection);
+    for (Eigen::Index track = 0; track < columns; ++track) {
+      const auto& prediction = states[track].prediction;
+      const auto match =
+          prediction ? model.Match(tracks[track], *prediction, detection) : std::nullopt;
+      if (!match) continue;
+      matches[row][track] = *match;
+      costs(row, track) = match->cost;
     }
   }
+  std::vector<std::pair<int, BoxMatch>> assigned;
+  for (const int track : Assign(costs, costs_of_new_objects)) {
+    const auto& of_detection = matches[assigned.size()];
+    assigned.emplace_back(track, track == kUnassigned ? BoxMatch() : of_detection[track]);
+  }
+  return assigned;
+}
+
+// Assigns, frame by frame, the detections to existing tracks (at most one per track) or to new
+// tracks. Gives Association::detections and Association::tracks.
+Association LinkFrames(const AssociationModel& model, int threads) {
+  const Sequence& sequence = model.sequence();
+  Association association;
+  association.detections.resize(sequence.detections.size());
+  std::vector<Track>& tracks = association.tracks;
+  std::vector<TrackState> states;  // one per track
+  const auto frames = static_cast<int>(sequence.frames.size());
+  Progress progress("frames", frames);
+  for (int frame = 0; frame < frames; ++frame) {
+    const std::vector<int> detections = DetectionsToLink(model, frame, &association.detections);
+    const Camera& camera = sequence.CameraOf(sequence.frames[frame]);
+    ParallelFor(states.size(), threads, [&](size_t i) {
+      const auto& prediction = states[i].prediction = model.Predict(tracks[i], frame);
+      const bool is_in_image =
+          prediction && DistanceToBorder(prediction->outline, camera.width, camera.height) >= 0.0;
+      if (!is_in_image) states[i].was_out_of_image = true;
+    });
+    const auto matches = MatchToTracks(model, tracks, states, detections);
+    for (size_t i = 0; i < detections.size(); ++i) {
+      const Detection& detection = model.DetectionAt(detections[i]);
+      DetectionDecision& decision = association.detections[detections[i]];
+      std::tie(decision.track, decision.match) = matches[i];
+      if (decision.track == kUnassigned) {
+        decision.track = static_cast<int>(tracks.size());
+        tracks.emplace_back().plane_index = model.PlaneOf(detection);
+        states.emplace_back();
+      } else {
+        decision.decision = states[decision.track].was_out_of_image ? LinkDecision::kRevisited
+                                                                    : LinkDecision::kLinked;
+        const int last = tracks[decision.track].detections.back();
+        decision.frames_since_seen = detection.frame_index - model.DetectionAt(last).frame_index;
+      }
+      Track& track = tracks[decision.track];
+      track.detections.push_back(detections[i]);
+      ++track.linked;
+      track.votes[model.LabelOf(detection)] += detection.score;
+      states[decision.track].was_out_of_image = false;
+      states[decision.track].has_changed = true;
+    }
+    ParallelFor(tracks.size(), threads, [&](size_t i) {
+      if (states[i].NeedsFit(tracks[i])) {
+        model.Fit(&tracks[i]);
+        states[i].fitted_detections = tracks[i].detections.size();
+        states[i].fitted_labels = tracks[i].votes.size();
+      }
+      states[i].has_changed = false;
+    });
+    progress.Step();
+  }
+  return association;
 }
 
 }  // namespace
@@ -223,10 +162,21 @@ Sequence WithoutPlanes(Sequence sequence) {
 Association Associate(const Sequence& sequence, const SemanticTable& table,
                       const AssociateOptions& options, int threads) {
   const AssociationModel model(sequence, table, options);
-  Association association = FrameLinker(model, threads).Run();
+  Association association = LinkFrames(model, threads);
   MergeTracks(model, threads, &association);
   DropFalseTracks(model, threads, &association);
-  ListObjects(sequence, &association);
+  for (int i = 0; i < static_cast<int>(association.tracks.size()); ++i) {
+    if (association.tracks[i].fate == TrackFate::kObject) association.objects.push_back(i);
+  }
+  std::ranges::stable_sort(association.objects, {}, [&](int track) {
+    return sequence.detections[association.tracks[track].detections.front()].frame_index;
+  });
+  for (size_t object = 0; object < association.objects.size(); ++object) {
+    const auto track = static_cast<size_t>(association.objects[object]);
+    for (const int detection : association.tracks[track].detections) {
+      association.detections[detection].object = static_cast<int>(object);
+    }
+  }
   association.up_of_segments = model.up_of_segments();
   return association;
 }

@@ -12,19 +12,11 @@
 #include "association/labels.h"
 #include "association/options.h"
 #include "association/up_estimate.h"
+#include "model/associations.h"
 #include "model/semantic_table.h"
 #include "model/sequence.h"
 
 namespace soslam {
-
-// Result of linking one detection to the tracks of earlier frames.
-enum class LinkDecision {
-  kNewTrack,   // no track fits it better than an unseen object does
-  kLinked,     // to a track that stayed in the image since its last detection
-  kRevisited,  // to a track that left the image since its last detection
-  kDuplicate,  // dropped: a box with a higher score covers the same place
-};
-inline constexpr std::array kLinkDecisionNames = {"new_track", "linked", "revisited", "duplicate"};
 
 struct DetectionDecision {
   LinkDecision decision = LinkDecision::kNewTrack;
@@ -37,22 +29,6 @@ struct DetectionDecision {
   int object = -1;          // index in Association::objects; -1: not used
   bool superseded = false;  // not used: the merged object has a better box in the frame
 };
-
-// Result of a track after merging and removal of false tracks.
-enum class TrackFate {
-  kObject,
-  kMerged,            // into another track that fits enough of its boxes
-  kTooFewDetections,  // false: fewer than min_observations
-  kRarelyDetected,    // false: in less than min_detection_share of the frames that should show it
-  kNoLandmark,        // its boxes determine no landmark
-  kNoSupport,         // its boxes fit better at a free height than on any support plane
-  kMoves,             // its label is one of things that move
-  kLowScores,         // false: none of its detections has min_best_score
-  kNeverWhole,        // false: none of its detections shows all edges
-};
-inline constexpr std::array kTrackFateNames = {
-    "object",     "merged", "too_few_detections", "rarely_detected", "no_landmark",
-    "no_support", "moves",  "low_scores",         "never_whole"};
 
 // Merge of a smaller track into a larger one.
 struct Merge {

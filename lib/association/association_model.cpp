@@ -87,16 +87,6 @@ AssociationModel::AssociationModel(const Sequence& sequence, const SemanticTable
       labels_(LabelsOf(sequence), options),
       moving_labels_(NormalisedLabels("moving_labels", options.moving_labels)) {}
 
-std::vector<Support> AssociationModel::SupportsOf(const Track& track) const {
-  if (sequence_.planes.empty()) return {{kNoPlane, up_of_segments_.at(SegmentOf(track))}};
-  std::vector<Support> supports;
-  for (int i = 0; i < static_cast<int>(sequence_.planes.size()); ++i) {
-    if (sequence_.HasSupports() && i != track.plane_index) continue;
-    supports.push_back({i, sequence_.planes[i].plane_in_world});
-  }
-  return supports;
-}
-
 void AssociationModel::Try(const Track& track, const std::string& label,
                            Hypotheses* hypotheses) const {
   ShapePrior prior = PriorOfLabel(table_, label, options_);
@@ -105,7 +95,13 @@ void AssociationModel::Try(const Track& track, const std::string& label,
   const auto cost_of = [&](const FittedObject& fit) {
     return cost_of_votes + options_.label_evidence_weight * fit.cost;
   };
-  for (const Support& support : SupportsOf(track)) {
+  std::vector<Support> supports;
+  if (sequence_.planes.empty()) supports = {{kNoPlane, up_of_segments_.at(SegmentOf(track))}};
+  for (int i = 0; i < static_cast<int>(sequence_.planes.size()); ++i) {
+    if (sequence_.HasSupports() && i != track.plane_index) continue;
+    supports.push_back({i, sequence_.planes[i].plane_in_world});
+  }
+  for (const Support& support : supports) {
     const double cost_of_plane =
         sequence_.planes.empty() || sequence_.HasSupports()
             ? 0.0

@@ -61,8 +61,6 @@ class AssociationModel {
 
  private:
   int SegmentOf(const Track& track) const;
-  // What the track may stand on.
-  std::vector<Support> SupportsOf(const Track& track) const;
   // Costs of the labels and supports that a track may have; its best fit on a support.
   struct Hypotheses {
     std::map<std::string, double> cost_of_label;

@@ -53,30 +53,7 @@ constexpr double kNoHuber = std::numeric_limits<double>::infinity();
 // more likely. For images of 10^5 x 10^5 px CostOfAnyBox is 91, less than the square of this.
 constexpr double kReach = 10.0;
 
-// Residuals: the distance that the predicted outline extends beyond each box edge (px), with
-// covariance.
-struct Innovation {
-  Eigen::Vector4d residuals;
-  Eigen::Matrix4d covariance;
-};
-
 Eigen::Vector4d Outwards(const Box& box) { return {-box.x_min, -box.y_min, box.x_max, box.y_max}; }
-
-Innovation InnovationOf(const Prediction& prediction, const Box& box,
-                        const std::array<BoxEdge, 4>& edges) {
-  Innovation innovation{Outwards(prediction.outline) - Outwards(box),
-                        prediction.outline_covariance};
-  for (size_t i = 0; i < edges.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    if (edges[i].is_one_sided && innovation.residuals[row] > 0.0) {
-      innovation.residuals[row] = 0.0;
-      innovation.covariance.row(row).setZero();
-      innovation.covariance.col(row).setZero();
-    }
-    innovation.covariance(row, row) += edges[i].sigma_px * edges[i].sigma_px;
-  }
-  return innovation;
-}
 
 // Normal density of a subset of the edges (px).
 struct NormalDensity {
@@ -84,11 +61,12 @@ struct NormalDensity {
   double distance;
 };
 
-NormalDensity DensityOf(const Innovation& innovation, const std::vector<int>& edges) {
+NormalDensity DensityOf(const Eigen::Vector4d& all_residuals, const Eigen::Matrix4d& all_covariance,
+                        const std::vector<int>& edges) {
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 4, 4>;
   using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 4, 1>;
-  const Matrix covariance = innovation.covariance(edges, edges);
-  const Vector residuals = innovation.residuals(edges);
+  const Matrix covariance = all_covariance(edges, edges);
+  const Vector residuals = all_residuals(edges);
   const Matrix lower = covariance.llt().matrixL();
   const double squared_distance =
       lower.triangularView<Eigen::Lower>().solve(residuals).squaredNorm();
@@ -98,22 +76,6 @@ NormalDensity DensityOf(const Innovation& innovation, const std::vector<int>& ed
     cost += std::log(2.0 * std::numbers::pi * lower(row, row) * lower(row, row));
   }
   return {cost, std::sqrt(squared_distance)};
-}
-
-// Covariance (px^2) of the four outline edges that follows from the landmark's. The box equals the
-// outline, so the Jacobian of BoxTerm is that of the outline's edges.
-Eigen::Matrix4d OutlineCovariance(const Prediction& prediction, const Camera& camera,
-                                  const FittedObject& object) {
-  const auto edges = BoxEdges(camera, prediction.outline, {}, 1.0);
-  const RobustViewTerm term(std::make_unique<BoxTerm>(edges, prediction.landmark_in_camera),
-                            prediction.camera_from_world, kNoHuber, 1.0);
-  Eigen::VectorXd residuals(4);
-  LandmarkTerm::Jacobian d_landmark(4, kLandmarkDof);
-  term.Evaluate(object.landmark_in_world, residuals, &d_landmark);
-  for (size_t i = 0; i < edges.size(); ++i) {
-    d_landmark.row(static_cast<Eigen::Index>(i)) *= edges[i].sigma_px;
-  }
-  return d_landmark * object.covariance * d_landmark.transpose();
 }
 
 }  // namespace
@@ -134,10 +96,20 @@ std::optional<Prediction> BoxLikelihood::Predict(const FittedObject& object, int
   const auto outline = OutlineBox(camera, prediction.landmark_in_camera);
   if (!outline) return std::nullopt;
   prediction.outline = *outline;
-  FittedObject drifted = object;
-  drifted.covariance.block<3, 3>(3, 3) +=
+  Covariance9 covariance = object.covariance;
+  covariance.block<3, 3>(3, 3) +=
       drift_.PointCovariance(known_frame_index, frame_index, object.landmark_in_world.Centre());
-  prediction.outline_covariance = OutlineCovariance(prediction, camera, drifted);
+  // The box equals the outline, so the Jacobian of BoxTerm is that of the outline's edges.
+  const auto edges = BoxEdges(camera, prediction.outline, {}, 1.0);
+  const RobustViewTerm term(std::make_unique<BoxTerm>(edges, prediction.landmark_in_camera),
+                            prediction.camera_from_world, kNoHuber, 1.0);
+  Eigen::VectorXd residuals(4);
+  LandmarkTerm::Jacobian d_landmark(4, kLandmarkDof);
+  term.Evaluate(object.landmark_in_world, residuals, &d_landmark);
+  for (size_t i = 0; i < edges.size(); ++i) {
+    d_landmark.row(static_cast<Eigen::Index>(i)) *= edges[i].sigma_px;
+  }
+  prediction.outline_covariance.noalias() = d_landmark * covariance * d_landmark.transpose();
   return prediction;
 }
 
@@ -147,23 +119,34 @@ std::optional<BoxMatch> BoxLikelihood::Match(const Prediction& prediction,
   const Box box = WithoutBias(detection.box, detection.is_one_sided, bias);
   const auto edges = BoxEdges(sequence_.CameraOf(detection), detection.box, detection.is_one_sided,
                               options_.upright.detection_sigma_fraction, bias);
-  const Innovation innovation = InnovationOf(prediction, box, edges);
-  const Eigen::Array4d reach = kReach * innovation.covariance.diagonal().array().sqrt();
-  if ((innovation.residuals.array().abs() > reach).count() > 1) return std::nullopt;
+  // The distance (px) that the predicted outline extends beyond each box edge.
+  Eigen::Vector4d residuals = Outwards(prediction.outline) - Outwards(box);
+  Eigen::Matrix4d covariance = prediction.outline_covariance;
+  for (size_t i = 0; i < edges.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    if (edges[i].is_one_sided && residuals[row] > 0.0) {
+      residuals[row] = 0.0;
+      covariance.row(row).setZero();
+      covariance.col(row).setZero();
+    }
+    covariance(row, row) += edges[i].sigma_px * edges[i].sigma_px;
+  }
+  const Eigen::Array4d reach = kReach * covariance.diagonal().array().sqrt();
+  if ((residuals.array().abs() > reach).count() > 1) return std::nullopt;
   const double p = options_.cut_edge_probability;
   BoxMatch best;
   best.overlap = BoxOverlap(prediction.outline, box);
-  const NormalDensity whole = DensityOf(innovation, {0, 1, 2, 3});
+  const NormalDensity whole = DensityOf(residuals, covariance, {0, 1, 2, 3});
   best.cost = whole.cost - 2.0 * std::log(1.0 - 4.0 * p);
   best.distance = whole.distance;
   for (int cut = 0; cut < 4 && p > 0.0; ++cut) {
     std::vector<int> others = {0, 1, 2, 3};
     std::erase(others, cut);
-    const NormalDensity rest = DensityOf(innovation, others);
+    const NormalDensity rest = DensityOf(residuals, covariance, others);
     const double extent_px =
         cut % 2 == 0 ? prediction.outline.Width() : prediction.outline.Height();
     const double cost = rest.cost - 2.0 * std::log(p / extent_px);
-    if (cost < best.cost) best = {best.overlap, rest.distance, cut, cost};
+    if (cost < best.cost) best = {best.overlap, rest.distance, BoxSide(cut), cost};
   }
   return best;
 }

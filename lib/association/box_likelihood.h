@@ -41,7 +41,7 @@ struct BoxMatch {
   double overlap = 0.0;   // intersection over union of the box and the outline box
   double distance = 0.0;  // Mahalanobis distance of the box to the expected one
   // Edge (left, top, right, bottom) that does not belong to the object, if this is more likely.
-  std::optional<int> cut_edge;
+  std::optional<BoxSide> cut_edge;
   double cost = 0.0;  // -2 log of the probability density of the box (1 / px^4)
 };
 

@@ -54,173 +54,102 @@ int FramesInSight(const AssociationModel& model, const Track& track, double bord
   return frames;
 }
 
-class TrackMerger {
- public:
-  TrackMerger(const AssociationModel& model, int threads, Association* association)
-      : model_(model),
-        threads_(threads),
-        association_(*association),
-        best_(association->tracks.size()),
-        has_changed_(association->tracks.size(), 1) {}
-
-  void Run() {
-    while (MergeOnce()) {
-    }
+// Intersection over union of the boxes in each frame in which both tracks are detected.
+std::vector<double> OverlapsInSharedFrames(const AssociationModel& model, const Track& one,
+                                           const Track& other) {
+  std::vector<double> overlaps;
+  auto next = other.detections.begin();
+  for (const int index : one.detections) {
+    const Detection& detection = model.DetectionAt(index);
+    next = std::ranges::lower_bound(next, other.detections.end(), detection.frame_index, {},
+                                    [&](int i) { return model.DetectionAt(i).frame_index; });
+    if (next == other.detections.end()) break;
+    const Detection& of_other = model.DetectionAt(*next);
+    if (of_other.frame_index != detection.frame_index) continue;
+    overlaps.push_back(BoxOverlap(detection.box, of_other.box));
   }
+  return overlaps;
+}
 
- private:
-  const Detection& At(int detection) const { return model_.DetectionAt(detection); }
-  Track& TrackAt(int track) { return association_.tracks[track]; }
-  const Track& TrackAt(int track) const { return association_.tracks[track]; }
-
-  // Tracks not yet merged, fewest detections first, the youngest first among equals.
-  std::vector<int> SmallestFirst() const {
-    std::vector<int> order;
-    for (int i = 0; i < static_cast<int>(association_.tracks.size()); ++i) {
-      if (TrackAt(i).fate != TrackFate::kMerged) order.push_back(i);
-    }
-    std::ranges::sort(order, {},
-                      [&](int i) { return std::tuple(TrackAt(i).detections.size(), -i); });
-    return order;
+// True if two tracks take up the same place, which two objects cannot: their bodies share a
+// volume and, where depths are uncertain because no support is given, their boxes in the frames
+// that have both overlap as well.
+bool AreAtOnePlace(const AssociationModel& model, const Track& one, const Track& other,
+                   const std::vector<double>& overlaps) {
+  if (overlaps.empty() || !one.fit || !other.fit || !model.MayBeOneObject(one, other)) {
+    return false;
   }
+  const double least = model.options().same_place_overlap;
+  const double sum = std::accumulate(overlaps.begin(), overlaps.end(), 0.0);
+  if (!model.sequence().HasSupports() && sum < least * static_cast<double>(overlaps.size()))
+    return false;
+  const Landmark& a = one.fit->landmark_in_world;
+  const Landmark& b = other.fit->landmark_in_world;
+  const double smaller = 8.0 * std::min(a.half_axes.prod(), b.half_axes.prod());
+  return IntersectionVolume(a, b) >= least * smaller;
+}
 
-  bool HasChanged(int track) const { return has_changed_[track] != 0; }
-
-  // The best track to merge this one into, among those after it in the order. Reuses the previous
-  // result for pairs of tracks that have not changed.
-  std::optional<Merge> BestMerge(const std::vector<int>& order, size_t position) const {
-    const int smaller = order[position];
-    std::optional<Merge> best = best_[smaller];
-    const auto rank = [](const Merge& merge) {
-      return std::tuple(-merge.explained, merge.cost, merge.into);
-    };
-    const bool is_known = !HasChanged(smaller) && !(best && HasChanged(best->into));
-    if (!is_known) best.reset();
-    for (size_t larger = position + 1; larger < order.size(); ++larger) {
-      if (is_known && !HasChanged(order[larger])) continue;
-      const auto merge = TryMerge(order[larger], smaller);
-      if (merge && (!best || rank(*merge) < rank(*best))) best = merge;
-    }
-    return best;
+std::optional<Merge> TryMerge(const AssociationModel& model, const std::vector<Track>& tracks,
+                              int into, int smaller) {
+  const Track& large = tracks[into];
+  const Track& small = tracks[smaller];
+  if (!large.fit) return std::nullopt;
+  if (model.sequence().HasSupports() && large.plane_index != small.plane_index) {
+    return std::nullopt;
   }
-
-  // Finds the best merge of each track and applies those in which neither track has changed in this
-  // round. Returns whether any were applied.
-  bool MergeOnce() {
-    const std::vector<int> order = SmallestFirst();
-    std::vector<std::optional<Merge>> merges(order.size());
-    ParallelFor("tracks", order.size(), threads_,
-                [&](size_t i) { merges[i] = BestMerge(order, i); });
-    std::ranges::fill(has_changed_, 0);
-    std::vector<int> grown;
-    for (size_t i = 0; i < order.size(); ++i) {
-      const auto& merge = best_[order[i]] = merges[i];
-      if (!merge || HasChanged(order[i]) || HasChanged(merge->into)) continue;
-      Apply(*merge, order[i]);
-      for (const int track : {order[i], merge->into}) has_changed_[track] = 1;
-      grown.push_back(merge->into);
-    }
-    ParallelFor(grown.size(), threads_, [&](size_t i) { model_.Fit(&TrackAt(grown[i])); });
-    return !grown.empty();
+  const std::vector<int> boxes =
+      SpreadOver(small.detections, static_cast<size_t>(model.options().max_views));
+  const std::vector<double> overlaps = OverlapsInSharedFrames(model, large, small);
+  const bool are_at_one_place = AreAtOnePlace(model, large, small, overlaps);
+  Merge merge{into, 0, static_cast<int>(boxes.size()), 0, 0.0};
+  const int needed =
+      are_at_one_place
+          ? 0
+          : std::max(1,
+                     static_cast<int>(std::ceil(model.options().merge_share * merge.tried - 1e-9)));
+  for (int i = 0; i < merge.tried; ++i) {
+    if (merge.explained + merge.tried - i < needed) return std::nullopt;
+    const Detection& detection = model.DetectionAt(boxes[i]);
+    const auto prediction = model.Predict(large, detection.frame_index);
+    const auto match = prediction ? model.Match(large, *prediction, detection) : std::nullopt;
+    if (!match) continue;
+    ++merge.explained;
+    merge.cost += match->cost;
   }
+  if (merge.explained < needed) return std::nullopt;
+  merge.shared_frames = static_cast<int>(overlaps.size());
+  const double allowed =
+      model.options().max_shared_frames * static_cast<double>(small.detections.size());
+  if (merge.shared_frames > allowed && !are_at_one_place) return std::nullopt;
+  return merge;
+}
 
-  std::optional<Merge> TryMerge(int into, int smaller) const {
-    const Track& large = TrackAt(into);
-    const Track& small = TrackAt(smaller);
-    if (!large.fit) return std::nullopt;
-    if (model_.sequence().HasSupports() && large.plane_index != small.plane_index) {
-      return std::nullopt;
+void Apply(const AssociationModel& model, const Merge& merge, int smaller,
+           Association* association) {
+  Track& large = association->tracks[merge.into];
+  Track& small = association->tracks[smaller];
+  small.fate = TrackFate::kMerged;
+  small.merge = merge;
+  for (const auto& [label, votes] : small.votes) large.votes[label] += votes;
+  std::vector<int> all;
+  const auto by_frame = [&](int detection) {
+    const Detection& of_track = model.DetectionAt(detection);
+    return std::tuple(of_track.frame_index, -of_track.score);
+  };
+  std::ranges::merge(large.detections, small.detections, std::back_inserter(all), {}, by_frame,
+                     by_frame);
+  large.detections.clear();
+  int last_frame = -1;
+  for (const int detection : all) {
+    const int frame = model.DetectionAt(detection).frame_index;
+    if (frame != last_frame) {
+      large.detections.push_back(detection);
+    } else {
+      association->detections[detection].superseded = true;
     }
-    const std::vector<int> boxes =
-        SpreadOver(small.detections, static_cast<size_t>(model_.options().max_views));
-    const std::vector<double> overlaps = OverlapsInSharedFrames(large, small);
-    const bool are_at_one_place = AreAtOnePlace(large, small, overlaps);
-    Merge merge{into, 0, static_cast<int>(boxes.size()), 0, 0.0};
-    const int needed = are_at_one_place
-                           ? 0
-                           : std::max(1, static_cast<int>(std::ceil(
-                                             model_.options().merge_share * merge.tried - 1e-9)));
-    for (int i = 0; i < merge.tried; ++i) {
-      if (merge.explained + merge.tried - i < needed) return std::nullopt;
-      const Detection& detection = At(boxes[i]);
-      const auto prediction = model_.Predict(large, detection.frame_index);
-      const auto match = prediction ? model_.Match(large, *prediction, detection) : std::nullopt;
-      if (!match) continue;
-      ++merge.explained;
-      merge.cost += match->cost;
-    }
-    if (merge.explained < needed) return std::nullopt;
-    merge.shared_frames = static_cast<int>(overlaps.size());
-    const double allowed =
-        model_.options().max_shared_frames * static_cast<double>(small.detections.size());
-    if (merge.shared_frames > allowed && !are_at_one_place) return std::nullopt;
-    return merge;
+    last_frame = frame;
   }
-
-  // True if two tracks take up the same place, which two objects cannot: their bodies share a
-  // volume and, where depths are uncertain because no support is given, their boxes in the frames
-  // that have both overlap as well.
-  bool AreAtOnePlace(const Track& one, const Track& other,
-                     const std::vector<double>& overlaps) const {
-    if (overlaps.empty() || !one.fit || !other.fit || !model_.MayBeOneObject(one, other)) {
-      return false;
-    }
-    const double least = model_.options().same_place_overlap;
-    const double sum = std::accumulate(overlaps.begin(), overlaps.end(), 0.0);
-    if (!model_.sequence().HasSupports() && sum < least * static_cast<double>(overlaps.size()))
-      return false;
-    const Landmark& a = one.fit->landmark_in_world;
-    const Landmark& b = other.fit->landmark_in_world;
-    const double smaller = 8.0 * std::min(a.half_axes.prod(), b.half_axes.prod());
-    return IntersectionVolume(a, b) >= least * smaller;
-  }
-
-  // Intersection over union of the boxes in each frame in which both tracks are detected.
-  std::vector<double> OverlapsInSharedFrames(const Track& one, const Track& other) const {
-    std::vector<double> overlaps;
-    auto next = other.detections.begin();
-    for (const int index : one.detections) {
-      const Detection& detection = At(index);
-      next = std::ranges::lower_bound(next, other.detections.end(), detection.frame_index, {},
-                                      [this](int i) { return At(i).frame_index; });
-      if (next == other.detections.end()) break;
-      if (At(*next).frame_index != detection.frame_index) continue;
-      overlaps.push_back(BoxOverlap(detection.box, At(*next).box));
-    }
-    return overlaps;
-  }
-
-  void Apply(const Merge& merge, int smaller) {
-    Track& large = TrackAt(merge.into);
-    Track& small = TrackAt(smaller);
-    small.fate = TrackFate::kMerged;
-    small.merge = merge;
-    for (const auto& [label, votes] : small.votes) large.votes[label] += votes;
-    std::vector<int> all;
-    const auto by_frame = [this](int detection) {
-      return std::tuple(At(detection).frame_index, -At(detection).score);
-    };
-    std::ranges::merge(large.detections, small.detections, std::back_inserter(all), {}, by_frame,
-                       by_frame);
-    large.detections.clear();
-    for (const int detection : all) {
-      const bool is_first = large.detections.empty() ||
-                            At(large.detections.back()).frame_index != At(detection).frame_index;
-      if (is_first) {
-        large.detections.push_back(detection);
-      } else {
-        association_.detections[detection].superseded = true;
-      }
-    }
-  }
-
-  const AssociationModel& model_;
-  int threads_;
-  Association& association_;
-  // Per track: the merge found last, and whether the track has changed since.
-  std::vector<std::optional<Merge>> best_;
-  std::vector<char> has_changed_;
-};
+}
 
 }  // namespace
 
@@ -258,7 +187,46 @@ void DropFalseTracks(const AssociationModel& model, int threads, Association* as
 }
 
 void MergeTracks(const AssociationModel& model, int threads, Association* association) {
-  TrackMerger(model, threads, association).Run();
+  std::vector<Track>& tracks = association->tracks;
+  // Per track: the merge found last, and whether the track has changed since.
+  std::vector<std::optional<Merge>> best(tracks.size());
+  std::vector<char> has_changed(tracks.size(), 1);
+  const auto rank = [](const Merge& merge) {
+    return std::tuple(-merge.explained, merge.cost, merge.into);
+  };
+  std::vector<int> grown;
+  do {
+    // Tracks not yet merged, fewest detections first, the youngest first among equals.
+    std::vector<int> order;
+    for (int i = 0; i < static_cast<int>(tracks.size()); ++i) {
+      if (tracks[i].fate != TrackFate::kMerged) order.push_back(i);
+    }
+    std::ranges::sort(order, {},
+                      [&](int i) { return std::tuple(tracks[i].detections.size(), -i); });
+    // Each is merged into one after it in the order. Results for pairs of tracks that have not
+    // changed are those of the round before.
+    ParallelFor("tracks", order.size(), threads, [&](size_t i) {
+      std::optional<Merge>& merge = best[order[i]];
+      const bool is_known = !has_changed[order[i]] && !(merge && has_changed[merge->into]);
+      if (!is_known) merge.reset();
+      for (size_t larger = i + 1; larger < order.size(); ++larger) {
+        if (is_known && !has_changed[order[larger]]) continue;
+        const auto other = TryMerge(model, tracks, order[larger], order[i]);
+        if (other && (!merge || rank(*other) < rank(*merge))) merge = other;
+      }
+    });
+    // Those of which neither track has changed in this round are carried out.
+    std::ranges::fill(has_changed, 0);
+    grown.clear();
+    for (const int smaller : order) {
+      const auto& merge = best[smaller];
+      if (!merge || has_changed[smaller] || has_changed[merge->into]) continue;
+      Apply(model, *merge, smaller, association);
+      for (const int track : {smaller, merge->into}) has_changed[track] = 1;
+      grown.push_back(merge->into);
+    }
+    ParallelFor(grown.size(), threads, [&](size_t i) { model.Fit(&tracks[grown[i]]); });
+  } while (!grown.empty());
 }
 
 }  // namespace soslam

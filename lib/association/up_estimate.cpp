@@ -37,20 +37,6 @@ struct Segment {
   std::map<std::string, std::vector<int>> detections;  // keyed by label
 };
 
-std::map<int, Segment> SegmentsOf(const Sequence& sequence) {
-  std::map<int, Segment> segments;
-  for (const Frame& frame : sequence.frames) {
-    segments[frame.segment].world_from_camera.push_back(frame.world_from_camera);
-  }
-  for (size_t i = 0; i < sequence.detections.size(); ++i) {
-    const Detection& detection = sequence.detections[i];
-    segments[sequence.FrameOf(detection).segment]
-        .detections[sequence.ObjectOf(detection).label]
-        .push_back(static_cast<int>(i));
-  }
-  return segments;
-}
-
 // Per label, single-box observations of an upright body at a free height.
 using BoxesOfLabels = std::vector<std::vector<ObjectEvidence>>;
 
@@ -68,19 +54,6 @@ BoxesOfLabels ObserveLabels(const Sequence& sequence, const Segment& segment,
     }
   }
   return boxes;
-}
-
-UpEstimate UpOf(const UpPrior& up_prior, double tilt_variance) {
-  const Eigen::Vector3d& up = up_prior.up_in_world;
-  // Rotations about these two axes move up by their cross products with it.
-  Eigen::Matrix<double, 3, 2> axes;
-  axes.col(0) = up.unitOrthogonal();
-  axes.col(1) = up.cross(axes.col(0));
-  const Eigen::Matrix<double, 3, 2> d_turns = -Skew(up) * axes;
-  const Eigen::Matrix2d information = d_turns.transpose() * up_prior.information * d_turns;
-  Eigen::Matrix2d covariance = information.inverse();
-  covariance.diagonal().array() += 0.5 * tilt_variance;
-  return {up, axes * covariance * axes.transpose()};
 }
 
 UpEstimate UpOf(const Segment& segment, const BoxesOfLabels& boxes,
@@ -113,7 +86,17 @@ UpEstimate UpOf(const Segment& segment, const BoxesOfLabels& boxes,
   }
   const double expected_cost = 0.5 * static_cast<double>(boxes.size());
   const HoldingChoice choice = ChooseHolding(evidence, expected_cost, kClear);
-  UpEstimate up = UpOf(up_priors[choice.best], choice.tilt_variance);
+  const Eigen::Vector3d& best = up_priors[choice.best].up_in_world;
+  // Rotations about these two axes move up by their cross products with it.
+  Eigen::Matrix<double, 3, 2> axes;
+  axes.col(0) = best.unitOrthogonal();
+  axes.col(1) = best.cross(axes.col(0));
+  const Eigen::Matrix<double, 3, 2> d_turns = -Skew(best) * axes;
+  const Eigen::Matrix2d information =
+      d_turns.transpose() * up_priors[choice.best].information * d_turns;
+  Eigen::Matrix2d covariance = information.inverse();
+  covariance.diagonal().array() += 0.5 * choice.tilt_variance;
+  UpEstimate up{best, axes * covariance * axes.transpose()};
   up.holding = evidence[choice.best].holding;
   up.holding_tilt_variance = choice.tilt_variance;
   for (size_t i = 0; i < evidence.size(); ++i) {
@@ -136,8 +119,18 @@ ShapePrior PriorOfLabel(const SemanticTable& table, const std::string& label,
 
 std::map<int, UpEstimate> UpOfSegments(const Sequence& sequence, const SemanticTable& table,
                                        const AssociateOptions& options) {
+  std::map<int, Segment> segments;
+  for (const Frame& frame : sequence.frames) {
+    segments[frame.segment].world_from_camera.push_back(frame.world_from_camera);
+  }
+  for (size_t i = 0; i < sequence.detections.size(); ++i) {
+    const Detection& detection = sequence.detections[i];
+    segments[sequence.FrameOf(detection).segment]
+        .detections[sequence.ObjectOf(detection).label]
+        .push_back(static_cast<int>(i));
+  }
   std::map<int, UpEstimate> up;
-  for (const auto& [id, segment] : SegmentsOf(sequence)) {
+  for (const auto& [id, segment] : segments) {
     up[id] = UpOf(segment, ObserveLabels(sequence, segment, table, options), options);
   }
   return up;

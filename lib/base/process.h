@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "base/description.h"
+
 namespace soslam {
 
 // Limits of a child process, which is ended when it exceeds them.
@@ -34,6 +36,12 @@ struct Machine {
   std::string cpu;  // model name of the processor; "unknown" if the system does not report it
   int cores = 1;    // available to this process, hyper-threads counted
 };
+
+template <typename Visitor>
+void Describe(Visitor& visit, Machine& machine) {
+  visit.Field("cpu", &machine.cpu, "model name of the processor");
+  visit.Field("cores", &machine.cores, "available to the process", kAtLeastOne);
+}
 
 Machine ThisMachine();
 

@@ -28,13 +28,6 @@ double Width(double sigma_m, double rough_sigma_m) {
          ((2.0 - kRoughShare) * sigma_m + kRoughShare * rough_sigma_m);
 }
 
-// Smallest variance along any direction.
-double LeastVariance(const Eigen::Matrix3d& covariance) {
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>()
-      .computeDirect(covariance, Eigen::EigenvaluesOnly)
-      .eigenvalues()[0];
-}
-
 }  // namespace
 
 double SizeForPoints(const Landmark& landmark) { return 2.0 * MeanHalfAxis(landmark); }
@@ -63,7 +56,10 @@ PointCost::PointCost(const std::vector<ObjectPoint>& points, const Landmark& sta
     Eigen::Vector3d normal;
     SurfaceDistance(start_in_camera, point.position, nullptr, &normal);
     const auto [sigma, rough_sigma] = sigmas_m(normal.dot(point.covariance * normal));
-    const auto [least, rough_least] = sigmas_m(LeastVariance(point.covariance));
+    const auto [least, rough_least] =
+        sigmas_m(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>()
+                     .computeDirect(point.covariance, Eigen::EigenvaluesOnly)
+                     .eigenvalues()[0]);
     const double background = (1.0 - point.prior) / size_m;
     densities_.push_back({point.position, point.index, sigma, rough_sigma,
                           point.prior / Width(sigma, rough_sigma), background,

@@ -32,9 +32,13 @@ struct PlacedCamera {
 // image. Infinite for images of different sizes.
 double DisplacementPx(const LensCamera& one, const LensCamera& other);
 
+// The displacement of image points that boxes do not show: the least standard deviation of a box
+// edge, a pixel, in images of 640 pixels, and in larger images the same angle.
+double UnseenDisplacementPx(const Camera& camera);
+
 // The one camera of all images, of which there is one at least: the mean of the given ones. It is a
 // finding if they are not equal. Throws InputError, naming the place and `remedy`, if one of them
-// displaces image points by a 640th of the image's longer side or more, and a pixel at least.
+// displaces image points by UnseenDisplacementPx or more.
 LensCamera OneCamera(const std::vector<PlacedCamera>& cameras, const std::string& remedy,
                      std::vector<Finding>* findings);
 

@@ -42,27 +42,40 @@ const BoxConvention& ConventionOf(const ImportOptions& options) {
 // Tolerance for detectors and rounding, as a share of the image's sides.
 constexpr double kMargin = 0.03;
 
-// True if the box has an area and lies in the image up to the margin.
-bool IsPlausible(const Box& box, const Camera& camera) {
-  const double margin_x = kMargin * camera.width;
-  const double margin_y = kMargin * camera.height;
-  return box.Width() > 0.0 && box.Height() > 0.0 && box.x_min >= -margin_x &&
-         box.y_min >= -margin_y && box.x_max <= camera.width + margin_x &&
-         box.y_max <= camera.height + margin_y;
+// True if a part of the line between two points is in the area.
+bool Crosses(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
+             const Eigen::AlignedBox2d& area) {
+  if (!area.intersects({from.cwiseMin(to), from.cwiseMax(to)})) return false;
+  const Eigen::Vector2d across = (to - from).unitOrthogonal();
+  return std::abs(across.dot(area.center() - from)) <= across.cwiseAbs().dot(0.5 * area.sizes());
+}
+
+// True if the box has an area, and each of its sides is at least in part in the image, up to the
+// margin: what it is drawn around touches all sides. Upright boxes are then in the image.
+bool IsPlausible(const TurnedBox& turned, const Camera& camera) {
+  const Eigen::Vector2d size(camera.width, camera.height);
+  const Eigen::AlignedBox2d image(-kMargin * size, (1.0 + kMargin) * size);
+  if (!(turned.box.Width() > 0.0 && turned.box.Height() > 0.0)) return false;
+  const auto corners = turned.Corners();
+  for (size_t i = 0; i < corners.size(); ++i) {
+    if (!Crosses(corners[i], corners[(i + 1) % corners.size()], image)) return false;
+  }
+  return true;
 }
 
 // Number of plausible boxes after a linear change of their corners.
-int CountPlausible(const std::vector<Box>& boxes, const Camera& camera,
+int CountPlausible(const std::vector<TurnedBox>& boxes, const Camera& camera,
                    const Eigen::Matrix4d& change) {
-  return static_cast<int>(std::ranges::count_if(boxes, [&](const Box& box) {
-    const Eigen::Vector4d corners =
-        change * Eigen::Vector4d(box.x_min, box.y_min, box.x_max, box.y_max);
-    return IsPlausible({corners[0], corners[1], corners[2], corners[3]}, camera);
+  return static_cast<int>(std::ranges::count_if(boxes, [&](const TurnedBox& turned) {
+    const auto& [x_min, y_min, x_max, y_max] = turned.box;
+    const Eigen::Vector4d corners = change * Eigen::Vector4d(x_min, y_min, x_max, y_max);
+    return IsPlausible({{corners[0], corners[1], corners[2], corners[3]}, turned.angle_deg},
+                       camera);
   }));
 }
 
 // The convention under which nearly all boxes lie in the image; null when there is none.
-const BoxConvention* BetterConvention(const std::vector<Box>& boxes, const Camera& camera,
+const BoxConvention* BetterConvention(const std::vector<TurnedBox>& boxes, const Camera& camera,
                                       const BoxConvention& assumed) {
   constexpr double kNearlyAll = 0.98;
   const BoxConvention* best = nullptr;
@@ -79,13 +92,16 @@ const BoxConvention* BetterConvention(const std::vector<Box>& boxes, const Camer
 }
 
 // Maximum x and y of all boxes (px).
-Eigen::Vector2d Extent(const std::vector<Box>& boxes) {
+Eigen::Vector2d Extent(const std::vector<TurnedBox>& boxes) {
   Eigen::Vector2d extent = Eigen::Vector2d::Zero();
-  for (const Box& box : boxes) extent = extent.cwiseMax(Eigen::Vector2d(box.x_max, box.y_max));
+  for (const TurnedBox& turned : boxes) {
+    const Box around = turned.Around();
+    extent = extent.cwiseMax(Eigen::Vector2d(around.x_max, around.y_max));
+  }
   return extent;
 }
 
-std::vector<Finding> CheckFractions(const std::vector<Box>& boxes, const Camera& camera) {
+std::vector<Finding> CheckFractions(const std::vector<TurnedBox>& boxes, const Camera& camera) {
   constexpr double kLargestFraction = 1.5;
   const Eigen::Vector2d extent = Extent(boxes);
   if (boxes.empty() || extent.maxCoeff() > kLargestFraction) return {};
@@ -116,7 +132,7 @@ std::vector<Finding> CheckImageSizes(const std::vector<DetectionRow>& rows, cons
            "export boxes of the original images, or correct width and height in the file"}};
 }
 
-std::vector<Finding> CheckConvention(const std::vector<Box>& boxes, const Camera& camera,
+std::vector<Finding> CheckConvention(const std::vector<TurnedBox>& boxes, const Camera& camera,
                                      const ImportOptions& options) {
   constexpr int kFewest = 3;
   constexpr double kTolerated = 0.03;
@@ -128,7 +144,8 @@ std::vector<Finding> CheckConvention(const std::vector<Box>& boxes, const Camera
   const BoxConvention& assumed = ConventionOf(options);
   const BoxConvention* better = BetterConvention(boxes, camera, assumed);
   // Boxes of whole objects that the image cuts extend beyond it on all sides.
-  const auto is_left_or_above = [&](const Box& box) {
+  const auto is_left_or_above = [&](const TurnedBox& turned) {
+    const Box box = turned.Around();
     return box.x_min < -kMargin * camera.width || box.y_min < -kMargin * camera.height;
   };
   const bool is_larger = std::ranges::none_of(boxes, is_left_or_above);
@@ -154,18 +171,25 @@ std::vector<Finding> CheckConvention(const std::vector<Box>& boxes, const Camera
 }
 
 // Finds boxes of downscaled images: they begin at the left border, and some end at the border of
-// the smaller image.
-std::vector<Finding> CheckUnusedPart(const std::vector<Box>& boxes, const Camera& camera) {
+// the smaller image. Oblique boxes of objects that the border cuts extend beyond it; their centres
+// do not.
+std::vector<Finding> CheckUnusedPart(std::vector<TurnedBox> boxes, const Camera& camera) {
   constexpr size_t kFewest = 30;
   constexpr double kLargestPart = 0.7;
   constexpr double kAtBorder = 0.02;
   constexpr double kSameEndPx = 1.5;
+  for (TurnedBox& turned : boxes) {
+    const Eigen::Vector2d centre = turned.box.Centre();
+    if (turned.IsOblique()) turned.box = {centre.x(), centre.y(), centre.x(), centre.y()};
+  }
   const Eigen::Vector2d extent = Extent(boxes);
   const Eigen::Vector2d part = extent.cwiseQuotient(Eigen::Vector2d(camera.width, camera.height));
   if (boxes.size() < kFewest || part.maxCoeff() > kLargestPart) return {};
-  const bool begins = std::ranges::any_of(
-      boxes, [&](const Box& box) { return box.x_min < kAtBorder * camera.width; });
-  const auto ends = std::ranges::count_if(boxes, [&](const Box& box) {
+  const bool begins = std::ranges::any_of(boxes, [&](const TurnedBox& turned) {
+    return turned.Around().x_min < kAtBorder * camera.width;
+  });
+  const auto ends = std::ranges::count_if(boxes, [&](const TurnedBox& turned) {
+    const Box box = turned.Around();
     return box.x_max > extent.x() - kSameEndPx || box.y_max > extent.y() - kSameEndPx;
   });
   if (!begins || ends < 3) return {};
@@ -185,10 +209,8 @@ std::vector<Finding> CheckBoxes(const ImportView& view) {
                          view.options.format == DatasetFormat::kTumRgbd ||
                          view.options.format == DatasetFormat::kIclNuim;
   if (!is_folder) return {};  // other formats define their boxes
-  std::vector<Box> boxes;
-  for (const DetectionRow& row : view.content.rows) {
-    if (!row.is_enlarged) boxes.push_back(row.box_in_image_file.value_or(row.box));
-  }
+  std::vector<TurnedBox> boxes;
+  for (const DetectionRow& row : view.content.rows) boxes.push_back(row.InImageFile());
   const Camera& camera = view.sequence.camera;
   std::vector<Finding> findings = CheckImageSizes(view.content.rows, camera);
   if (findings.empty()) findings = CheckFractions(boxes, camera);

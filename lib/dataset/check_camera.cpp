@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <iterator>
 #include <map>
 
 #include "dataset/dataset_checks.h"
+#include "dataset/dataset_json.h"
 #include "dataset/image_path.h"
 #include "geometry/distortion.h"
 #include "geometry/image_size.h"
@@ -15,6 +17,8 @@
 
 namespace soslam {
 namespace {
+
+namespace fs = std::filesystem;
 
 // True within the tolerance for rounding and crops of tools.
 bool IsAbout(double value, double expected, double relative = 0.05) {
@@ -169,10 +173,28 @@ Finding FindingOn(const Mismatch& mismatch, size_t all) {
           advice.remedy};
 }
 
+// True if camera and boxes are those of soslam-reconstruct and of soslam-frames or soslam-detect,
+// for upright images.
+bool AreKnownToBeUpright(const ImportView& view) {
+  const auto& files = view.content.files;
+  const fs::path camera = view.folder / "camera.json", boxes = view.folder / "detections.csv";
+  if (!std::ranges::count(files, camera) || !std::ranges::count(files, boxes)) return false;
+  std::string line;
+  std::ifstream stream(boxes);
+  std::getline(stream, line);
+  return SourceOfCamera(camera) == kReconstructed &&
+         (line.starts_with("# Written by soslam-frames") ||
+          (line.starts_with("# {") && line.find(R"("image_orientation":"upright")") != line.npos));
+}
+
 // Checks images with an EXIF rotation when their size does not determine whether camera and boxes
 // refer to the rotated image, or when the poses are COLMAP's.
-std::vector<Finding> CheckTurned(size_t turned, size_t all, const ImportOptions& options) {
-  if (turned == 0 || options.image_orientation == ImageOrientation::kStored) return {};
+std::vector<Finding> CheckTurned(size_t turned, size_t all, const ImportView& view) {
+  const ImportOptions& options = view.options;
+  if (turned == 0 || options.image_orientation == ImageOrientation::kStored ||
+      AreKnownToBeUpright(view)) {
+    return {};
+  }
   Finding finding{
       "image_orientation",
       Severity::kWarning,
@@ -186,8 +208,8 @@ std::vector<Finding> CheckTurned(size_t turned, size_t all, const ImportOptions&
     finding.expected = "images as they are stored, of which COLMAP's poses and camera are";
     finding.cause = "images of a phone that was held upright";
     finding.remedy =
-        "image_orientation stored, for soslam-detect, too; or turn the files before COLMAP reads "
-        "them (exiftran -ai)";
+        "soslam-reconstruct --model, which turns the model upright; or image_orientation stored, "
+        "for soslam-detect, too";
   }
   return {finding};
 }
@@ -233,7 +255,7 @@ std::vector<Finding> CheckImages(const ImportView& view) {
     const bool is_of_stored = header->stored == size_of_camera;
     if (mismatch.images++ == 0) mismatch = {camera, size, is_of_stored, frame.image, 1};
   }
-  std::vector<Finding> findings = CheckTurned(turned, all, view.options);
+  std::vector<Finding> findings = CheckTurned(turned, all, view);
   for (const auto& [size, mismatch] : mismatches) findings.push_back(FindingOn(mismatch, all));
   return findings;
 }

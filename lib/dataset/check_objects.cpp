@@ -20,10 +20,10 @@ namespace {
 constexpr size_t kFewestBoxes = 10;
 constexpr double kCutPx = 2.0;  // boxes this near to the border count as cut by the image
 
-// A box and the true landmark with its id, in its camera's frame.
+// A box, also as it was drawn, and the true landmark with its id, in its camera's frame.
 struct BoxAndTruth {
   Box box;
-  bool is_enlarged;
+  TurnedBox as_drawn;
   Camera camera;
   Landmark landmark_in_camera;
 };
@@ -49,7 +49,7 @@ std::vector<BoxAndTruth> BoxesAndTruth(const ImportView& view, int shift) {
     if (DistanceToBorder(in_image, camera.width, camera.height) <= kCutPx) continue;
     const Rigid3d world_from_camera =
         frame->second->true_world_from_camera.value_or(frame->second->world_from_camera);
-    pairs.push_back({row.box, row.is_enlarged, camera,
+    pairs.push_back({row.box, row.as_drawn.value_or(TurnedBox{row.box}), camera,
                      Transform(world_from_camera.Inverse(), *landmark->second)});
   }
   return pairs;
@@ -97,14 +97,19 @@ double HeightPx(const Camera& camera, const Landmark& landmark_in_camera) {
   return 2.0 * camera.fy * landmark_in_camera.half_axes.z() / landmark_in_camera.Centre().norm();
 }
 
-// Compares heights of outlines with those of the boxes.
+// Compares heights of outlines with those of the boxes. The camera is rolled as a turned box is,
+// which is then upright.
 std::vector<Finding> CheckTrueSizes(const ImportView& view) {
   constexpr double kLargestFactor = 1.6;
   constexpr double kFactorOfUnit = 5.0;
   std::vector<double> log_factors;
-  for (const auto& [box, is_enlarged, camera, landmark] : BoxesAndTruth(view, 0)) {
-    if (box.Height() <= 0.0 || is_enlarged) continue;
-    log_factors.push_back(std::log(HeightPx(camera, landmark) / box.Height()));
+  for (const auto& [box, as_drawn, camera, landmark] : BoxesAndTruth(view, 0)) {
+    const double height_px = as_drawn.box.Height();
+    if (height_px <= 0.0) continue;
+    const Eigen::AngleAxisd roll(-kRadPerDeg * as_drawn.angle_deg, Eigen::Vector3d::UnitZ());
+    const Landmark in_rolled_camera =
+        Transform({Eigen::Quaterniond(roll), Eigen::Vector3d::Zero()}, landmark);
+    log_factors.push_back(std::log(HeightPx(camera, in_rolled_camera) / height_px));
   }
   if (log_factors.size() < kFewestBoxes) return {};
   const double factor = std::exp(*MedianOf(log_factors));

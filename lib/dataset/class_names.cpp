@@ -115,12 +115,49 @@ std::optional<std::string> Contradiction(const ClassNames& one, const ClassNames
   return std::nullopt;
 }
 
+// The names that labelImg comes with, and writes beside labels (classes.txt) until they are
+// changed.
+const std::vector<std::string> kLabelImgTemplate = {"dog",
+                                                    "person",
+                                                    "cat",
+                                                    "tv",
+                                                    "car",
+                                                    "meatballs",
+                                                    "marinara sauce",
+                                                    "tomato sauce",
+                                                    "chicken noodle soup",
+                                                    "french onion soup",
+                                                    "chicken breast",
+                                                    "ribs",
+                                                    "pulled pork",
+                                                    "hamburger",
+                                                    "cavity"};
+
+// Removes labelImg's template where another list contradicts it, which is a finding.
+void RemoveTemplates(std::vector<ClassNames>* lists, std::vector<Finding>* findings) {
+  const auto is_template = [](const ClassNames& list) { return list.names == kLabelImgTemplate; };
+  const auto other = std::ranges::find_if(
+      *lists, [&](const ClassNames& list) { return !list.names.empty() && !is_template(list); });
+  if (other == lists->end()) return;
+  const ClassNames used = *other;
+  std::erase_if(*lists, [&](const ClassNames& list) {
+    const auto contradiction = is_template(list) ? Contradiction(list, used) : std::nullopt;
+    if (!contradiction) return false;
+    findings->push_back({"class_names", Severity::kWarning, *contradiction,
+                         fmt::format("the names in {}, which are used", used.place.string()),
+                         "the names that labelImg comes with, which it writes beside its labels",
+                         "remove that file, or name it as class_names if its names are right"});
+    return true;
+  });
+}
+
 }  // namespace
 
 std::optional<ClassNames> NearestNames(std::vector<ClassNames> lists,
                                        std::vector<Finding>* findings) {
   std::erase_if(lists, [](const ClassNames& list) { return list.names.empty() && !list.error; });
   if (lists.empty()) return std::nullopt;
+  RemoveTemplates(&lists, findings);
   std::ranges::stable_sort(lists, std::ranges::greater(), Depth);
   const auto nearest =
       std::ranges::find_if(lists, [](const ClassNames& list) { return !list.error; });
@@ -128,15 +165,13 @@ std::optional<ClassNames> NearestNames(std::vector<ClassNames> lists,
     throw InputError(*lists.front().error);
   }
   for (const ClassNames& other : lists) {
-    const auto contradiction = Contradiction(*nearest, other);
-    if (contradiction && Depth(*nearest) == Depth(other)) {
+    if (const auto contradiction = Contradiction(*nearest, other)) {
       throw InputError(*contradiction +
                        "; expected the same names: remove the file that is not of these boxes, or "
                        "name the right one as class_names");
     }
-    if (!contradiction && !other.error) continue;
-    findings->push_back({"class_names", Severity::kWarning,
-                         contradiction ? *contradiction : *other.error,
+    if (!other.error) continue;
+    findings->push_back({"class_names", Severity::kWarning, *other.error,
                          fmt::format("the names in {}, which is used as the nearest to the boxes",
                                      nearest->place.string()),
                          "a list of other boxes, or of another program",

@@ -33,10 +33,10 @@ struct ClassNames {
 // The class names in a text that `read` returns, as ParseLabels.
 ClassNames FindLabels(const std::filesystem::path& place, const std::function<std::string()>& read);
 
-// The list nearest to the labels. `lists` with errors, and those that give a class another name,
-// are findings, as they may be of other boxes. Throws InputError if one of these contradicts the
-// nearest list in the same folder, or cannot be read and is nearer than all others. None without
-// names.
+// The list nearest to the labels. A list farther away that cannot be read is a finding; so are the
+// names that labelImg comes with, which are left out if another list contradicts them. Throws
+// InputError if another list contradicts the nearest one, or cannot be read and is nearer. None
+// without names.
 std::optional<ClassNames> NearestNames(std::vector<ClassNames> lists,
                                        std::vector<Finding>* findings);
 

@@ -9,6 +9,7 @@
 
 #include "dataset/calibration_file.h"
 #include "dataset/trajectories.h"
+#include "geometry/image_size.h"
 #include "model/finding.h"
 
 namespace soslam {
@@ -69,12 +70,14 @@ bool IsColmapModel(const std::filesystem::path& folder);
 // points, a track that refers to none of them is refused.
 ColmapModel ReadColmapModel(const std::filesystem::path& folder);
 
-// Throws InputError unless a finished model is of the images as they are stored, as COLMAP reads
-// them: by the size of its camera and, for images that EXIF turns within their size, by the colours
-// of its points. It is a finding if these do not tell.
-std::vector<Finding> CheckModelOrientation(const ColmapModel& model,
-                                           const std::vector<ListedImage>& images,
-                                           const std::filesystem::path& dataset);
+// Turns camera, poses and image points of a finished model by EXIF where it is of the images in the
+// other orientation, and prints how many images that are: COLMAP up to 3.12 reads images as they
+// are stored. The size of its camera tells and, for images that EXIF turns within their size, the
+// colours of its points; it is a finding of the model if these do not tell, and it is then taken to
+// be of the stored images. Throws InputError for a camera of another size, for images that EXIF
+// mirrors, whose world is mirrored, and if the turned cameras are not one (OneCamera).
+void TurnModel(const std::vector<ListedImage>& images, const std::filesystem::path& dataset,
+               ImageOrientation orientation, ColmapModel* model);
 
 // Name and parameters ("500,500,320,240") of COLMAP's smallest camera model that includes a lens.
 struct ColmapCameraText {

@@ -23,7 +23,7 @@ using Check = std::vector<Finding> (*)(const ImportView&);
 }  // namespace
 
 std::vector<Finding> CheckDataset(const ImportView& view) {
-  std::vector<Finding> findings;
+  std::vector<Finding> findings = view.content.findings;
   const auto add = [&](std::initializer_list<Check> checks) {
     for (const Check check : checks) std::ranges::move(check(view), std::back_inserter(findings));
   };
@@ -57,7 +57,6 @@ std::vector<Finding> CheckDataset(const ImportView& view) {
   }
   add({&CheckTruth, &CheckScores, &CheckClassNumbers, &CheckBlankLines, &CheckLabels,
        &CheckRejections});
-  findings.insert(findings.begin(), view.content.findings.begin(), view.content.findings.end());
   return WorstFirst(std::move(findings));
 }
 
@@ -110,14 +109,46 @@ Advice AdviceOnUnit(const char* what, const TimeUnit& unit, const std::string& f
           fmt::format("divide the time stamps of {} by {:.0e}", file, unit.per_second)};
 }
 
-// For time stamps that do not overlap.
-Advice AdviceOnTimes(const TimeRange& images, const TimeRange& poses, const std::string& file) {
+// True if nearly every image has a pose of its own, and every pose an image, once the times of the
+// images are stretched to those of the poses.
+bool HaveOtherRate(const std::vector<double>& times, const std::vector<TimedPose>& trajectory,
+                   const TimeRange& images, const TimeRange& poses) {
+  constexpr double kNearlyAll = 0.9;
+  constexpr double kSameRate = 0.1;
+  constexpr double kShareOfStep = 0.1;
+  constexpr size_t kFewest = 10;
+  if (!(images.Span() > 0.0 && poses.Span() > 0.0)) return false;
+  const double rate = poses.Span() / images.Span();
+  if (std::abs(rate - 1.0) < kSameRate) return false;
+  const double tolerance = kShareOfStep * poses.Span() / static_cast<double>(trajectory.size());
+  std::set<double> used;  // times of the poses
+  for (const double time : times) {
+    const double stretched = poses.first + rate * (time - images.first);
+    if (const auto pose = NearestPose(trajectory, stretched, tolerance)) {
+      used.insert(pose->timestamp);
+    }
+  }
+  const auto most = static_cast<double>(std::max(times.size(), trajectory.size()));
+  return used.size() >= kFewest && static_cast<double>(used.size()) >= kNearlyAll * most;
+}
+
+// For images most of which have no pose of their time.
+Advice AdviceOnTimes(const TimeRange& images, const TimeRange& poses, bool have_other_rate,
+                     const std::string& file) {
   if (const auto* unit = UnitBetween(images, poses)) return AdviceOnUnit("poses", *unit, file);
   if (const auto* unit = UnitBetween(poses, images)) {
     return AdviceOnUnit("images", *unit, "the list of images");
   }
   if (const auto* unit = UnitOfClock(images.first); unit && UnitOfClock(poses.first)) {
     return AdviceOnUnit("images and poses", *unit, "both files");
+  }
+  if (have_other_rate) {
+    const double rate = poses.Span() / images.Span();
+    return {fmt::format("a clock of the poses that runs {:.4g} times as fast as that of the "
+                        "images, as with time stamps in another unit",
+                        rate),
+            fmt::format("write the time stamps t of {} as {:.3f} + (t - {:.3f}) / {:.4g}", file,
+                        images.first, poses.first, rate)};
   }
   if (images.last < poses.first || poses.last < images.first) {
     return {"other clocks, or another recording",
@@ -165,14 +196,15 @@ std::vector<Finding> CheckTimestamps(const std::vector<ListedImage>& images,
     found += fmt::format(" (spans {:.3g} and {:.3g}, ratio {:.3g})", of_images.Span(),
                          of_poses.Span(), of_poses.Span() / of_images.Span());
   }
-  const bool are_of_part = used.size() == trajectory.size();
+  const bool have_other_rate = HaveOtherRate(times, trajectory, of_images, of_poses);
+  const bool are_of_part = !have_other_rate && used.size() == trajectory.size();
   const Advice advice =
       are_of_part
           ? Advice{"poses of a part of the images, as of keyframes, or of a model of some of them",
                    "give poses of all images, as those without one are not used"}
-          : AdviceOnTimes(of_images, of_poses, trajectory_file);
+          : AdviceOnTimes(of_images, of_poses, have_other_rate, trajectory_file);
   findings.push_back(
-      {"timestamps", matched == 0 ? Severity::kError : Severity::kWarning, found,
+      {"timestamps", matched == 0 || have_other_rate ? Severity::kError : Severity::kWarning, found,
        are_of_part ? "a pose for each image" : "images and poses of one clock, in seconds",
        advice.cause, advice.remedy});
   return findings;

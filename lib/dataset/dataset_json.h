@@ -31,6 +31,8 @@ LensCamera ReadCamera(const std::filesystem::path& path, CameraYAxis y_axis = Ca
 
 // A camera.json that ReadCamera reads. `source` goes to its ignored key "source".
 std::string CameraText(const LensCamera& camera, const std::string& source);
+// The source of cameras that soslam-reconstruct writes, which are of upright images.
+inline constexpr const char* kReconstructed = "soslam-reconstruct";
 // "source" of a camera.json, empty without one.
 std::string SourceOfCamera(const std::filesystem::path& path);
 

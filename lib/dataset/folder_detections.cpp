@@ -54,17 +54,20 @@ FolderBoxes ReadCocoBoxes(const DatasetFiles& files) {
   CocoBoxes read = ReadCocoResults(files.detections, files.class_names);
   FolderBoxes boxes{std::move(read.boxes)};
   boxes.left_out = std::move(read.left_out);
+  boxes.findings = std::move(read.findings);
   if (!read.has_categories) {
     boxes.class_names = CocoLabels();
     PrintAssumedLabels(boxes.boxes, files.detections);
   }
-  const auto enlarged = std::ranges::count_if(boxes.boxes, &LabelledBox::is_enlarged);
-  if (enlarged > 0) {
+  const auto oblique = std::ranges::count_if(boxes.boxes, [](const LabelledBox& box) {
+    return box.as_drawn && box.as_drawn->IsOblique();
+  });
+  if (oblique > 0) {
     boxes.findings.push_back(
         {"oblique_boxes", Severity::kWarning,
          fmt::format("{}: {} of {} boxes are drawn at an angle, and replaced by the upright boxes "
                      "around them",
-                     files.detections.filename().string(), enlarged, boxes.boxes.size()),
+                     files.detections.filename().string(), oblique, boxes.boxes.size()),
          "upright boxes, whose edges touch the object", "rotated rectangles of an annotation tool",
          "draw these boxes upright: those around rotated ones are larger than their objects"});
   }
@@ -174,7 +177,7 @@ std::vector<DetectionRow> RowsOfBoxes(const std::vector<LabelledBox>& boxes,
                               : static_cast<int>(first_free_id + static_cast<std::int64_t>(i));
     rows.push_back({box.place, *frame, object_id, box.label, box.score, box.box});
     rows.back().image_size = box.image_size;
-    rows.back().is_enlarged = box.is_enlarged;
+    rows.back().as_drawn = box.as_drawn;
   }
   if (const size_t copies = lookup.CountCopies(); copies > 0) {
     fmt::print(

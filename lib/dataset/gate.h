@@ -34,12 +34,18 @@ struct DetectionRow {
   std::optional<Box> box_in_image_file = std::nullopt;
   // Size of its image, where the file of boxes states it.
   std::optional<ImageSize> image_size = std::nullopt;
-  bool is_enlarged = false;  // the upright box around an oblique one
+  // The turned box in the image file that `box` is the upright one around, where the file has that.
+  std::optional<TurnedBox> as_drawn = std::nullopt;
   // Further values from the dataset's labels, if any; geometry is in the camera frame.
   double truncation = 0.0;  // amount outside the image, in the dataset's own measure
   int occlusion = 0;        // occlusion level, in the dataset's own measure
   std::optional<Plane> plane_in_camera = std::nullopt;  // its support plane
   std::optional<Landmark> true_landmark_in_camera = std::nullopt;
+
+  // The box as it was drawn in the image file.
+  TurnedBox InImageFile() const {
+    return as_drawn.value_or(TurnedBox{box_in_image_file.value_or(box)});
+  }
 };
 
 // Reason why a detection is not used. Sequence::rejected_detections counts them by name.

@@ -7,13 +7,14 @@
 #include <utility>
 #include <variant>
 
-#include "artefact/model_json.h"
+#include "artefact/json_file.h"
 #include "base/error.h"
 #include "base/paths.h"
 #include "dataset/class_names.h"
 #include "dataset/dataset_checks.h"
 #include "dataset/dataset_content.h"
 #include "dataset/gate.h"
+#include "model/describe_sequence.h"
 #include "model/occlusion.h"
 
 namespace soslam {
@@ -71,7 +72,10 @@ class Importer {
         slots_(ChooseFrames(content.frames, options, &sequence->frames)),
         planes_from_truth_(options.camera_planes == PlanePoses::kGroundTruth &&
                            content.has_true_poses) {
-    CheckAscendingIds("object", sequence->objects);
+    if (const auto violation = AscendingIdsViolation("object", sequence->objects);
+        !violation.empty()) {
+      throw InputError(violation);
+    }
   }
 
   void Import() {
@@ -169,7 +173,9 @@ class Importer {
     for (const DetectionRow& row : rows) {
       Detection detection;
       detection.frame_index = std::get<int>(slots_.at(row.frame_id));
-      detection.object_index = IndexOfId("object", sequence_->objects, row.object_id);
+      const auto object =
+          std::ranges::lower_bound(sequence_->objects, row.object_id, {}, &Object::id);
+      detection.object_index = static_cast<int>(object - sequence_->objects.begin());
       detection.score = row.score;
       detection.box = row.box;
       if (row.plane_in_camera) {

@@ -14,9 +14,9 @@
 #include "base/error.h"
 #include "base/table.h"
 #include "dataset/class_names.h"
+#include "dataset/image_path.h"
 #include "dataset/json_entry.h"
 #include "dataset/text_file.h"
-#include "geometry/angles.h"
 #include "model/label_groups.h"
 
 namespace soslam {
@@ -36,7 +36,9 @@ constexpr std::pair<const char*, const char*> kOtherNames[] = {
 
 // Required columns, and their names in other programs.
 const std::pair<const char*, std::vector<const char*>> kLikelyNames[] = {
-    {"frame", {"frame_id", "frame_index", "frame_number", "image_id"}},
+    {"frame",
+     {"frame_id", "frame_index", "frame_number", "image_id", "filename", "file_name", "image",
+      "image_name", "image_path"}},
     {"label", {"class", "class_name", "category", "name"}},
     {"x1", {"xmin", "x_min", "left"}},
     {"y1", {"ymin", "y_min", "top"}},
@@ -57,7 +59,10 @@ std::string LikelyTable(const std::vector<std::string>& header) {
     const auto other = std::ranges::find_if(others, has);
     if (other == others.end() || has(name)) continue;
     has_label = has_label || std::string_view(name) == "label";
-    likely.push_back(fmt::format("{} for {}", *other, name));
+    const bool is_frame = std::string_view(name) == "frame";
+    likely.push_back(
+        fmt::format("{} for {}{}", *other, name,
+                    is_frame ? " (the row of its image in the image list, from 0)" : ""));
   }
   if (!has_label && std::ranges::any_of(kSizes, has)) return fmt::format("; {}", kTracks);
   return likely.empty() ? "" : fmt::format("; it may have {}", fmt::join(likely, ", "));
@@ -68,7 +73,7 @@ CsvColumns ColumnsOfBoxes() {
                      {"score", kIdColumn},
                      fmt::format("; {}", kTracks),
                      &LikelyTable,
-                     ": detections_format of soslam-import reads others"};
+                     "; for other formats set detections_format"};
   columns.optional.insert(columns.optional.end(), kAngles.begin(), kAngles.end());
   for (const auto& [other, name] : kOtherNames) columns.optional.emplace_back(other);
   return columns;
@@ -136,11 +141,17 @@ struct CocoNames {
   std::map<int, ImageSize> image_sizes;
 };
 
+bool HasValue(const JsonEntry& entry, const char* name) {
+  return entry.Has(name) && !entry.Field(name).is_null();
+}
+
+// The names of the ids in a list; entries without a name count as not there.
 std::map<int, std::string> ReadNames(const JsonEntry& document, const char* list_name,
                                      const char* text_name) {
   const std::string place = fmt::format("{}#/{}", document.place(), list_name);
   std::map<int, std::string> names;
   for (const JsonEntry& entry : EntriesOf(document.List(list_name), place)) {
+    if (!HasValue(entry, text_name) || entry.Field(text_name) == "") continue;
     if (!names.emplace(entry.Integer("id"), entry.Text(text_name)).second) {
       entry.Refuse("id", "one that no other entry has");
     }
@@ -163,10 +174,6 @@ std::map<int, ImageSize> ReadImageSizes(const JsonEntry& document) {
   return sizes;
 }
 
-bool HasValue(const JsonEntry& entry, const char* name) {
-  return entry.Has(name) && !entry.Field(name).is_null();
-}
-
 CocoNames NamesOf(const json& document, const fs::path& path) {
   const JsonEntry entry(document, path.string());
   CocoNames names;
@@ -182,8 +189,9 @@ const std::string& NameOf(const std::map<int, std::string>& names, const JsonEnt
                           const char* field, const char* list) {
   const auto found = names.find(entry.Integer(field));
   if (found == names.end()) {
-    entry.Refuse(field, fmt::format("an id of \"{}\" in the JSON file of the data set{}", list,
-                                    names.empty() ? ", which has none" : ""));
+    entry.Refuse(field, fmt::format("an id with a name of \"{}\" in the JSON file of the data "
+                                    "set{}",
+                                    list, names.empty() ? ", which has none" : ""));
   }
   return found->second;
 }
@@ -229,25 +237,6 @@ Box ParseBox(const JsonEntry& entry) {
   const Eigen::Vector4d xywh = BoxNumbers(entry, kNumbers);
   if (xywh[2] < 0.0 || xywh[3] < 0.0) entry.Refuse("bbox", kNumbers);
   return FromCornerOrigin({xywh[0], xywh[1], xywh[0] + xywh[2], xywh[1] + xywh[3]});
-}
-
-// The upright box around a box that is turned about its centre.
-Box BoxAround(const Box& box, double angle_deg) {
-  const double cosine = std::abs(std::cos(kRadPerDeg * angle_deg));
-  const double sine = std::abs(std::sin(kRadPerDeg * angle_deg));
-  const Eigen::Vector2d centre = box.Centre();
-  const double half_width = 0.5 * (cosine * box.Width() + sine * box.Height());
-  const double half_height = 0.5 * (sine * box.Width() + cosine * box.Height());
-  return {centre.x() - half_width, centre.y() - half_height, centre.x() + half_width,
-          centre.y() + half_height};
-}
-
-// True if the box around a turned one is larger than after the nearest quarter turn by more than a
-// pixel, which annotators do not see.
-bool IsEnlarged(const Box& around, const Box& box, double angle_deg) {
-  constexpr double kSeenPx = 1.0;
-  const Box quarter = BoxAround(box, 90.0 * std::round(angle_deg / 90.0));
-  return around.Width() - quarter.Width() > kSeenPx || around.Height() - quarter.Height() > kSeenPx;
 }
 
 // The score under this name; 1 without one. Throws InputError for a score under another name.
@@ -306,6 +295,44 @@ void CheckSameCategories(const CocoNames& names, const fs::path& file, const Coc
   }
 }
 
+// The first image that has another name in the other file, apart from folders, endings and what
+// tools add to the names of copies.
+std::optional<int> OtherImage(const CocoNames& names, const CocoNames& others) {
+  for (const auto& [id, name] : names.images) {
+    const auto other = others.images.find(id);
+    const auto is_found = [](const std::string& in, const std::string& key) {
+      return FrameLookup({{0.0, in}}).Find(key, "").has_value();
+    };
+    if (other == others.images.end() || is_found(name, other->second)) continue;
+    if (!is_found(other->second, name)) return id;
+  }
+  return std::nullopt;
+}
+
+// Adds what the results' own file has to the names of another file. Its images are those of its
+// boxes: if the other file has other ones, it is not used for images.
+void AddOwnNames(CocoNames own, const fs::path& results, const fs::path& dataset, CocoNames* names,
+                 std::vector<Finding>* findings) {
+  CheckSameCategories(*names, dataset, own, results);
+  names->categories.merge(own.categories);
+  if (const auto id = OtherImage(own, *names)) {
+    findings->push_back(
+        {"image_ids", Severity::kWarning,
+         fmt::format("{}: image {} is '{}', but '{}' in {}", results.string(), *id,
+                     own.images.at(*id), names->images.at(*id), dataset.string()),
+         "the same images in both files; used are those of the boxes' own file",
+         "class_names of another data set, or boxes that another program numbered",
+         "leave class_names empty if the boxes' own file has categories; otherwise name the file "
+         "that the boxes were made with"});
+    names->images.clear();
+    names->image_sizes.clear();
+  }
+  own.images.merge(names->images);
+  own.image_sizes.merge(names->image_sizes);
+  names->images = std::move(own.images);
+  names->image_sizes = std::move(own.image_sizes);
+}
+
 void ReadEntry(const JsonEntry& entry, const std::optional<CocoNames>& names, CocoBoxes* read) {
   const auto attributes = AttributesOf(entry);
   if (const auto reason = ReasonToLeaveOut(entry, attributes)) {
@@ -320,9 +347,8 @@ void ReadEntry(const JsonEntry& entry, const std::optional<CocoNames>& names, Co
   }
   if (const double angle_deg = attributes ? NumberOf(*attributes, "rotation").value_or(0.0) : 0.0;
       angle_deg != 0.0) {
-    const Box around = BoxAround(box.box, angle_deg);
-    box.is_enlarged = IsEnlarged(around, box.box, angle_deg);
-    box.box = around;
+    box.as_drawn = {box.box, angle_deg};
+    box.box = box.as_drawn->Around();
   }
   read->boxes.push_back(std::move(box));
 }
@@ -349,14 +375,13 @@ CocoBoxes ReadCocoResults(const fs::path& results, const std::optional<fs::path>
                      ": is not a list of results, nor a data set with \"images\", "
                      "\"annotations\" and \"categories\"");
   }
+  CocoBoxes read;
   if (!is_list) {
     CocoNames own = NamesOf(document, results);
-    if (names) CheckSameCategories(*names, *dataset, own, results);
-    if (!names) names.emplace();
-    names->categories.merge(own.categories);
-    if (!own.images.empty()) {
-      names->images = std::move(own.images);
-      names->image_sizes = std::move(own.image_sizes);
+    if (names) {
+      AddOwnNames(std::move(own), results, *dataset, &*names, &read.findings);
+    } else {
+      names = std::move(own);
     }
   }
   if (names && names->categories.empty()) {
@@ -365,7 +390,6 @@ CocoBoxes ReadCocoResults(const fs::path& results, const std::optional<fs::path>
         ": categories is missing; expected the names of the classes, {\"id\", \"name\"}");
   }
   const json& list = is_list ? document : JsonEntry(document, results.string()).List("annotations");
-  CocoBoxes read;
   read.has_categories = names.has_value();
   for (const JsonEntry& entry :
        EntriesOf(list, results.string() + (is_list ? "#" : "#/annotations"))) {

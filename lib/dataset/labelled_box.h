@@ -28,8 +28,8 @@ struct LabelledBox {
   std::optional<int> object_id = std::nullopt;
   // Size of its image, where the file states it.
   std::optional<ImageSize> image_size = std::nullopt;
-  // True for the upright box around an oblique one, which is larger than the object's.
-  bool is_enlarged = false;
+  // The turned box that `box` is the upright one around, where the file has that.
+  std::optional<TurnedBox> as_drawn = std::nullopt;
 };
 
 // Conversion of the pixel origin: detectors and annotation tools measure from the outer corner of
@@ -58,6 +58,7 @@ struct CocoBoxes {
   std::vector<LabelledBox> boxes;
   RejectionCounts left_out;     // boxes that are not of one object in the image
   bool has_categories = false;  // false: the labels are COCO's
+  std::vector<Finding> findings = {};
 };
 
 // Reads detections in COCO's results format: [{"image_id", "category_id", "bbox": [x, y, w, h],

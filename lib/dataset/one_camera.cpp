@@ -40,12 +40,6 @@ std::vector<Eigen::Vector2d> ImagePoints(const LensCamera& lens_camera,
   return DistortPixels(lens_camera.camera, lens_camera.distortion.value_or(Distortion()), pixels);
 }
 
-// The displacement of image points that boxes do not show: the least standard deviation of a box
-// edge, a pixel, in images of 640 pixels, and in larger images the same angle.
-double LimitPx(const Camera& camera) {
-  return std::max(1.0, std::max(camera.width, camera.height) / 640.0);
-}
-
 LensCamera MeanCamera(const std::vector<PlacedCamera>& cameras) {
   constexpr size_t kIntrinsics = 4, kCoefficients = 14;
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(kIntrinsics + kCoefficients);
@@ -65,6 +59,10 @@ LensCamera MeanCamera(const std::vector<PlacedCamera>& cameras) {
 }
 
 }  // namespace
+
+double UnseenDisplacementPx(const Camera& camera) {
+  return std::max(1.0, std::max(camera.width, camera.height) / 640.0);
+}
 
 double DisplacementPx(const LensCamera& one, const LensCamera& other) {
   if (one.camera.width != other.camera.width || one.camera.height != other.camera.height) {
@@ -97,7 +95,7 @@ LensCamera OneCamera(const std::vector<PlacedCamera>& cameras, const std::string
         "x {}; expected one for all images ({})",
         farthest->place, other.width, other.height, mean.camera.width, mean.camera.height, remedy));
   }
-  const double limit_px = LimitPx(mean.camera);
+  const double limit_px = UnseenDisplacementPx(mean.camera);
   if (largest_px >= limit_px) {
     throw InputError(
         fmt::format("{}: is another camera than that of the other images: image "
@@ -110,7 +108,8 @@ LensCamera OneCamera(const std::vector<PlacedCamera>& cameras, const std::string
        fmt::format("{}: images have cameras of their own; their mean (fx {:.2f}), which is used "
                    "for all, displaces image points by {:.2f} px (root mean square)",
                    first.place, mean.camera.fx, largest_px),
-       "one camera for all images", "a reconstruction with a camera for each image",
+       "one camera for all images",
+       "a reconstruction with a camera for each image, or photos that EXIF turns in several ways",
        fmt::format("nothing where boxes are less accurate than that; otherwise {}", remedy)});
   return mean;
 }

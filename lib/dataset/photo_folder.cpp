@@ -213,18 +213,18 @@ std::vector<Photo> ListPhotos(const fs::path& folder) {
   return photos;
 }
 
-CommonCamera FindCommonCamera(const fs::path& folder, const std::vector<Photo>& photos,
-                              ImageOrientation read_as) {
+CommonCamera FindCommonCamera(const fs::path& folder, const std::vector<Photo>& photos) {
   std::map<ImageSize, int> counts;
   for (const Photo& photo : photos) {
-    if (HasHeader(photo) && !IsDuplicate(photo)) ++counts[photo.header.Size(read_as)];
+    if (!HasHeader(photo) || IsDuplicate(photo)) continue;
+    ++counts[photo.header.Size(ImageOrientation::kUpright)];
   }
   if (counts.empty()) RefuseUnreadable(folder, photos);
   const auto most = std::ranges::max_element(counts, {}, [](const auto& entry) {
     const auto& [size, count] = entry;
     return std::pair(count, static_cast<double>(size.width) * static_cast<double>(size.height));
   });
-  CommonCamera common{read_as, most->first, std::nullopt};
+  CommonCamera common{most->first, std::nullopt};
   std::vector<double> focal_lengths;
   for (const Photo& photo : photos) {
     const auto& focal = photo.header.focal_over_diagonal;
@@ -238,7 +238,7 @@ CommonCamera FindCommonCamera(const fs::path& folder, const std::vector<Photo>& 
 
 std::optional<OtherCamera> FindOtherCamera(const Photo& photo, const CommonCamera& common) {
   if (!HasHeader(photo)) return std::nullopt;
-  const ImageSize size = photo.header.Size(common.read_as);
+  const ImageSize size = photo.header.Size(ImageOrientation::kUpright);
   if (size != common.size) {
     return OtherCamera{FrameRejection::kOtherSize,
                        fmt::format("{} x {} px, not {} x {}", size.width, size.height,

@@ -37,17 +37,16 @@ std::pair<std::string, std::string> OrderOfName(const std::filesystem::path& pat
 // is not UTF-8.
 std::vector<Photo> ListPhotos(const std::filesystem::path& folder);
 
-// Size and focal length (over the diagonal) that most of the photos have; of sizes that equally
-// many have the largest. Duplicates do not count.
+// Upright size and focal length (over the diagonal) that most of the photos have; of sizes that
+// equally many have the largest. Duplicates do not count.
 struct CommonCamera {
-  ImageOrientation read_as;
   ImageSize size;
   std::optional<double> focal_over_diagonal;  // none if no photo states one
 };
 
 // Throws InputError, naming the folder, if no photo has a header.
-CommonCamera FindCommonCamera(const std::filesystem::path& folder, const std::vector<Photo>& photos,
-                              ImageOrientation read_as = ImageOrientation::kUpright);
+CommonCamera FindCommonCamera(const std::filesystem::path& folder,
+                              const std::vector<Photo>& photos);
 
 // The reason why a photo is none of this camera, and its size or focal length in words; none if it
 // is, or if its header cannot be read. A photo that states no focal length may have any.

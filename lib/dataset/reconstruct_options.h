@@ -42,9 +42,10 @@ struct ReconstructOptions {
     visit.Integer("exhaustive_max_images", &exhaustive_max_images, {2, 100000},
                   "the most images for which auto is exhaustive");
     visit.Choice("image_orientation", &image_orientation, kImageOrientationNames,
-                 "COLMAP reads images as they are stored. upright: images that EXIF turns are "
-                 "refused; stored: poses and camera are those of the stored images, for stages "
-                 "with the same setting");
+                 "where EXIF turns images: camera, poses and points are those of the images as "
+                 "viewers show them, or as the file stores them, for stages with the same setting. "
+                 "A finished model of the others is turned. COLMAP reads images as they are stored "
+                 "and runs on no others");
   }
 };
 

@@ -127,7 +127,7 @@ std::vector<Finding> CheckReconstruction(const ReconstructionSummary& summary,
          "take images that connect the parts, or make a dataset of each"});
   }
   const auto& angle = summary.median_triangulation_angle_deg;
-  if (!summary.poses_are_given && angle && *angle < kAngleDeg) {
+  if (summary.poses == DataSource::kEstimated && angle && *angle < kAngleDeg) {
     findings.push_back(
         {"triangulation_angle", Severity::kWarning,
          fmt::format("the median triangulation angle is {:.2f} degrees: no baseline: poses needed",

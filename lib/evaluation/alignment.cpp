@@ -69,20 +69,6 @@ Eigen::Matrix3d MeanRotation(const std::vector<PosePair>& pairs) {
   return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
 }
 
-// The scale that minimises the squared distances after this rotation.
-double BestScale(const Centres& centres, const Eigen::Matrix3d& rotation) {
-  const Eigen::Matrix3Xd estimated = centres.CentredEstimated();
-  return centres.CentredTruth().cwiseProduct(rotation * estimated).sum() / estimated.squaredNorm();
-}
-
-double Rmse(const std::vector<PosePair>& pairs, const Alignment& alignment) {
-  double sum = 0.0;
-  for (const auto& [estimated, truth] : pairs) {
-    sum += (alignment.Apply(estimated.translation) - truth.translation).squaredNorm();
-  }
-  return std::sqrt(sum / static_cast<double>(pairs.size()));
-}
-
 // True if estimates have to be scaled onto the truth: the best scale differs from 1, and leaves
 // less than half of the distances that the best motion alone leaves. Two poses or fewer fit any
 // scale.
@@ -106,48 +92,7 @@ AlignmentKind ChosenKind(AlignmentKind choice, const Sequence& sequence,
              : AlignmentKind::kRigid;
 }
 
-Finding NotAsAsked(const Alignment& alignment, AlignmentKind asked, int segment) {
-  return {"alignment",
-          Severity::kWarning,
-          fmt::format("the map of segment {} is aligned as {}, not {}: {} frames with a true pose, "
-                      "path of the camera: {}",
-                      segment, kAlignmentKindNames[static_cast<size_t>(alignment.kind)],
-                      kAlignmentKindNames[static_cast<size_t>(asked)], alignment.frames,
-                      kCameraPathNames[static_cast<size_t>(alignment.path)]),
-          "true poses of a camera that moves",
-          "no ground truth of the trajectory, or a camera that stands still, which tells no scale",
-          "give groundtruth.txt of a camera that moves, or choose another alignment"};
-}
-
-Finding OtherScale(const Alignment& alignment, const Alignment& similarity, int segment) {
-  return {"alignment_scale",
-          Severity::kWarning,
-          fmt::format("the map of segment {} is aligned as {}, which leaves its cameras {:.3g} m "
-                      "from the true ones; scaled by {:.3g} it would be {:.3g} m",
-                      segment, kAlignmentKindNames[static_cast<size_t>(alignment.kind)],
-                      *alignment.rmse_m, similarity.scale, *similarity.rmse_m),
-          "an estimate in the metres of the truth",
-          "odometry of a single camera, which has a scale of its own, or a wrong scale",
-          "set odometry_has_own_scale, or --alignment similarity"};
-}
-
 }  // namespace
-
-Rigid3d Alignment::Apply(const Rigid3d& world_from_camera) const {
-  return truth_from_scaled *
-         Rigid3d{world_from_camera.rotation, scale * world_from_camera.translation};
-}
-
-Landmark Alignment::Apply(const Landmark& landmark_in_world) const {
-  Landmark moved = landmark_in_world;
-  moved.half_axes *= scale;
-  moved.frame_from_object = Apply(landmark_in_world.frame_from_object);
-  return moved;
-}
-
-Plane Alignment::Apply(const Plane& plane_in_world) const {
-  return Transform(truth_from_scaled, Plane{plane_in_world.normal, scale * plane_in_world.offset});
-}
 
 Alignment Align(const std::vector<PosePair>& pairs, AlignmentKind kind) {
   Alignment alignment;
@@ -165,7 +110,10 @@ Alignment Align(const std::vector<PosePair>& pairs, AlignmentKind kind) {
             : MeanRotation(pairs);
     alignment.kind = AlignmentKind::kRigid;
     if (kind == AlignmentKind::kSimilarity && has_scale) {
-      const double scale = BestScale(centres, rotation);
+      // It minimises the squared distances after this rotation.
+      const Eigen::Matrix3Xd estimated = centres.CentredEstimated();
+      const double scale =
+          centres.CentredTruth().cwiseProduct(rotation * estimated).sum() / estimated.squaredNorm();
       if (scale > 0.0) {
         alignment.kind = kind;
         alignment.scale = scale;
@@ -175,7 +123,11 @@ Alignment Align(const std::vector<PosePair>& pairs, AlignmentKind kind) {
         Eigen::Quaterniond(rotation).normalized(),
         centres.mean_truth - alignment.scale * (rotation * centres.mean_estimated)};
   }
-  alignment.rmse_m = Rmse(pairs, alignment);
+  double sum_m2 = 0.0;
+  for (const auto& [estimated, truth] : pairs) {
+    sum_m2 += (alignment.Apply(estimated.translation) - truth.translation).squaredNorm();
+  }
+  alignment.rmse_m = std::sqrt(sum_m2 / static_cast<double>(pairs.size()));
   return alignment;
 }
 
@@ -197,13 +149,29 @@ Alignments AlignSegments(const Sequence& sequence, const std::vector<Rigid3d>& w
     const AlignmentKind asked = ChosenKind(choice, sequence, poses.odometry);
     const Alignment alignment = Align(poses.estimated, asked);
     alignments.of_segment[segment] = alignment;
+    const char* kind = kAlignmentKindNames[static_cast<size_t>(alignment.kind)];
     if (alignment.kind != asked) {
-      alignments.findings.push_back(NotAsAsked(alignment, asked, segment));
+      alignments.findings.push_back(
+          {"alignment", Severity::kWarning,
+           fmt::format("the map of segment {} is aligned as {}, not {}: {} frames with a true "
+                       "pose, path of the camera: {}",
+                       segment, kind, kAlignmentKindNames[static_cast<size_t>(asked)],
+                       alignment.frames, kCameraPathNames[static_cast<size_t>(alignment.path)]),
+           "true poses of a camera that moves",
+           "no ground truth of the trajectory, or a camera that stands still, which tells no scale",
+           "give groundtruth.txt of a camera that moves, or choose another alignment"});
     }
     if (poses.estimated.empty() || alignment.kind == AlignmentKind::kSimilarity) continue;
     const Alignment similarity = Align(poses.estimated, AlignmentKind::kSimilarity);
     if (HaveOtherScale(Align(poses.estimated, AlignmentKind::kRigid), similarity)) {
-      alignments.findings.push_back(OtherScale(alignment, similarity, segment));
+      alignments.findings.push_back(
+          {"alignment_scale", Severity::kWarning,
+           fmt::format("the map of segment {} is aligned as {}, which leaves its cameras {:.3g} m "
+                       "from the true ones; scaled by {:.3g} it would be {:.3g} m",
+                       segment, kind, *alignment.rmse_m, similarity.scale, *similarity.rmse_m),
+           "an estimate in the metres of the truth",
+           "odometry of a single camera, which has a scale of its own, or a wrong scale",
+           "set odometry_has_own_scale, or --alignment similarity"});
     }
   }
   return alignments;

@@ -12,13 +12,10 @@
 #include "geometry/rigid3.h"
 #include "model/estimates.h"
 #include "model/finding.h"
+#include "model/metrics.h"
 #include "model/sequence.h"
 
 namespace soslam {
-
-// kAuto is a choice of the user; no alignment is of this kind.
-enum class AlignmentKind { kAuto, kNone, kRigid, kSimilarity };
-inline constexpr const char* kAlignmentKindNames[] = {"auto", "none", "rigid", "similarity"};
 
 // The paper's protocol has no settings: numbers from different runs stay comparable.
 struct EvaluateOptions {
@@ -34,35 +31,6 @@ struct EvaluateOptions {
   }
 };
 
-// The part of an alignment that the camera centres of two trajectories determine.
-enum class CameraPath {
-  kGeneral,    // all of it
-  kLine,       // not the rotation about a line, or only within degrees
-  kStill,      // neither rotation nor scale: the true camera stands still
-  kUnrelated,  // neither: the paths are unlike each other, or the estimated camera stands still
-  kFewPoses,   // nothing: there is none, or one
-};
-inline constexpr const char* kCameraPathNames[] = {"general", "line", "still", "unrelated",
-                                                   "few_poses"};
-
-// Transformation of estimates to the true world: x -> truth_from_scaled * (scale * x).
-struct Alignment {
-  AlignmentKind kind = AlignmentKind::kNone;
-  CameraPath path = CameraPath::kFewPoses;
-  double scale = 1.0;
-  Rigid3d truth_from_scaled;
-  int frames = 0;  // frames with an estimated and a true pose
-  // Root mean square distance of the camera centres, aligned; none without frames.
-  std::optional<double> rmse_m = std::nullopt;
-
-  Eigen::Vector3d Apply(const Eigen::Vector3d& point) const {
-    return truth_from_scaled * (scale * point);
-  }
-  Rigid3d Apply(const Rigid3d& world_from_camera) const;
-  Landmark Apply(const Landmark& landmark_in_world) const;
-  Plane Apply(const Plane& plane_in_world) const;
-};
-
 // The alignment with the smallest root mean square distance of camera centres (Umeyama). If these
 // do not determine the rotation, it is the mean over the cameras' relative rotations. A similarity
 // whose scale they do not determine is refused: it becomes rigid. `kind` is not kAuto.
@@ -71,10 +39,6 @@ Alignment Align(const std::vector<PosePair>& pairs, AlignmentKind kind);
 // One for each segment, as each has a world of its own. `world_from_camera`: the estimates, one per
 // Sequence::frames. Findings say where an alignment is not as asked for, and where the estimate has
 // another scale than the truth and is not scaled.
-struct Alignments {
-  std::map<int, Alignment> of_segment;
-  std::vector<Finding> findings = {};
-};
 Alignments AlignSegments(const Sequence& sequence, const std::vector<Rigid3d>& world_from_camera,
                          AlignmentKind choice);
 

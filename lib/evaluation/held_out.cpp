@@ -21,19 +21,6 @@ struct Judged {
   std::vector<double> ious = {};
 };
 
-std::vector<Judged> JudgedLandmarks(const Sequence& sequence,
-                                    const std::vector<ObjectEstimate>& estimates) {
-  const auto detections = DetectionsByObject(sequence);
-  std::vector<Judged> judged;
-  for (const ObjectEstimate& estimate : estimates) {
-    const std::vector<int>& own = detections[estimate.object_index];
-    if (!estimate.landmark_in_world || own.empty()) continue;
-    const int segment = sequence.FrameOf(sequence.detections[own.front()]).segment;
-    judged.push_back({estimate.object_index, *estimate.landmark_in_world, segment});
-  }
-  return judged;
-}
-
 // Matches the landmarks to the boxes of one frame and updates their counts.
 void Compare(const Sequence& sequence, const HeldOutFrame& held_out,
              const Rigid3d& world_from_camera, double border_px, std::vector<Judged>* judged) {
@@ -94,7 +81,14 @@ std::optional<HeldOutMetrics> EvaluateHeldOut(const Sequence& sequence,
                                               const std::vector<ObjectEstimate>& estimates,
                                               const std::vector<Rigid3d>& world_from_camera) {
   if (sequence.held_out.empty() || estimates.empty()) return std::nullopt;
-  std::vector<Judged> judged = JudgedLandmarks(sequence, estimates);
+  const auto detections = DetectionsByObject(sequence);
+  std::vector<Judged> judged;
+  for (const ObjectEstimate& estimate : estimates) {
+    const std::vector<int>& own = detections[estimate.object_index];
+    if (!estimate.landmark_in_world || own.empty()) continue;
+    const int segment = sequence.FrameOf(sequence.detections[own.front()]).segment;
+    judged.push_back({estimate.object_index, *estimate.landmark_in_world, segment});
+  }
   const double border_px = SmallestDistanceToBorder(sequence);
   for (size_t i = 0; i < sequence.held_out.size(); ++i) {
     Compare(sequence, sequence.held_out[i], world_from_camera[i], border_px, &judged);

@@ -112,43 +112,6 @@ Landmark WithFootAt(Landmark landmark, const Eigen::Vector3d& foot) {
   return landmark;
 }
 
-Landmark WithSizeOf(const Landmark& truth, const Landmark& estimate) {
-  Landmark corrected = estimate;
-  corrected.half_axes = truth.half_axes;
-  return WithFootAt(corrected, Foot(estimate));
-}
-
-Landmark WithPlaceOf(const Landmark& truth, const Landmark& estimate) {
-  const Eigen::Vector3d up = Up(truth);
-  const Eigen::Vector3d shift = Foot(truth) - Foot(estimate);
-  return WithFootAt(estimate, Foot(estimate) + shift - up.dot(shift) * up);
-}
-
-Landmark Upright(const Landmark& truth, const Landmark& estimate) {
-  Landmark corrected = estimate;
-  corrected.frame_from_object.rotation =
-      (RotationBetween(Up(estimate), Up(truth)) * estimate.frame_from_object.rotation).normalized();
-  return WithFootAt(corrected, Foot(estimate));
-}
-
-Landmark StraightOntoPlane(const Landmark& truth, const Landmark& estimate) {
-  const double height = SupportPlaneOf(truth).SignedDistance(Foot(estimate));
-  return WithFootAt(Upright(truth, estimate), Foot(estimate) - height * Up(truth));
-}
-
-// The estimate, moved along the line of sight onto the true plane; none if that does not meet the
-// plane.
-std::optional<Landmark> AlongSightOntoPlane(const Landmark& truth, const Landmark& estimate,
-                                            const Eigen::Vector3d& camera_centre) {
-  const Plane plane = SupportPlaneOf(truth);
-  const double camera_height = plane.SignedDistance(camera_centre);
-  const double factor = camera_height / (camera_height - plane.SignedDistance(Foot(estimate)));
-  if (!std::isfinite(factor) || factor <= 0.0) return std::nullopt;
-  Landmark corrected = Upright(truth, estimate);
-  corrected.half_axes *= factor;
-  return WithFootAt(corrected, camera_centre + factor * (Foot(estimate) - camera_centre));
-}
-
 // The estimate with its axes renamed to be nearest those of the truth.
 Landmark NamedLike(const Landmark& estimate, const Landmark& truth) {
   const Eigen::Quaterniond& rotation = estimate.frame_from_object.rotation;
@@ -218,15 +181,28 @@ std::optional<WrongPart> FindDominantError(const Landmark& estimate, const Groun
   const auto iou = [&](const Landmark& corrected) {
     return CompareLandmarks(corrected, truth, truth_in_frame).iou;
   };
-  double on_plane = iou(StraightOntoPlane(truth_in_frame, named));
-  if (const auto along = AlongSightOntoPlane(truth_in_frame, named, camera_centre)) {
-    on_plane = std::max(on_plane, iou(*along));
+  const Eigen::Vector3d foot = Foot(named), up = Up(truth_in_frame);
+  // Upright, and moved onto the true plane: straight, or along the line of sight if that meets it.
+  const Plane plane = SupportPlaneOf(truth_in_frame);
+  Landmark upright = named;
+  upright.frame_from_object.rotation =
+      (RotationBetween(Up(named), up) * named.frame_from_object.rotation).normalized();
+  double on_plane = iou(WithFootAt(upright, foot - plane.SignedDistance(foot) * up));
+  const double camera_height = plane.SignedDistance(camera_centre);
+  const double factor = camera_height / (camera_height - plane.SignedDistance(foot));
+  if (std::isfinite(factor) && factor > 0.0) {
+    upright.half_axes *= factor;
+    on_plane = std::max(on_plane,
+                        iou(WithFootAt(upright, camera_centre + factor * (foot - camera_centre))));
   }
+  Landmark sized = named;
+  sized.half_axes = truth_in_frame.half_axes;
+  const Eigen::Vector3d shift = Foot(truth_in_frame) - foot;
   const std::array candidates = {
       WrongPart{BodyPart::kPlane, on_plane},
-      WrongPart{BodyPart::kSize, iou(WithSizeOf(truth_in_frame, named))},
+      WrongPart{BodyPart::kSize, iou(WithFootAt(sized, foot))},
       WrongPart{BodyPart::kYaw, iou(WithYawOf(truth_in_frame, named))},
-      WrongPart{BodyPart::kPlace, iou(WithPlaceOf(truth_in_frame, named))}};
+      WrongPart{BodyPart::kPlace, iou(WithFootAt(named, foot + shift - up.dot(shift) * up))}};
   const WrongPart& best = *std::ranges::max_element(candidates, {}, &WrongPart::iou);
   return best.iou > iou(named) + kLeastGain ? std::optional(best) : std::nullopt;
 }

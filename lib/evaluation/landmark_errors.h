@@ -9,6 +9,7 @@
 #include "evaluation/statistics.h"
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
+#include "model/metrics.h"
 #include "model/sequence.h"
 
 namespace soslam {
@@ -27,15 +28,6 @@ double YawError(const Eigen::Quaterniond& frame_from_estimate,
 // truth up to half turns, to which bodies are symmetric. It detects quarter turns and objects that
 // rest on another face.
 double AttitudeError(const Landmark& estimate, const Landmark& truth_in_frame);
-
-// The IoU of a landmark with one thing of it replaced by the true one. The yaw of rotationally
-// symmetric objects has no meaning: nothing is turned then.
-struct WhatIf {
-  double yaw = 0.0;           // of the object or, if IoU is higher, of the body as in BodyErrors
-  double quarter_turn = 0.0;  // the best of four quarter turns about its own vertical axis
-  double place = 0.0;         // the centre
-  double size = 0.0;          // the half axes, along the axes that are nearest the true ones
-};
 
 // Errors of one landmark. Angles are absent for rotationally symmetric objects, whose yaw has no
 // meaning; for IoU the truth is then rotated to the estimate's yaw.
@@ -69,28 +61,9 @@ std::optional<WhatIf> MeanWhatIf(const Items& items, const WhatIfOf& what_if_of)
   return mean;
 }
 
-// Differences between a landmark and the true one as solids: the estimate's axes are renamed to be
-// nearest the true ones, so that a body with other names for its axes is the same. Logarithms are
-// of estimate over truth.
-struct BodyErrors {
-  double iou = 0.0;
-  double centre_m = 0.0;
-  double centre_relative = 0.0;  // centre_m over the side of a cube with the true volume
-  Eigen::Vector3d log_size = Eigen::Vector3d::Zero();  // along the true x, y, z
-  double log_scale = 0.0;                              // of the cube root of the volume
-  double up_deg = 0.0;            // between the z axes as they are named, 180 for upside down
-  std::optional<double> yaw_deg;  // between the x axes about the true z; none of a body of rotation
-  bool is_quarter_turned = false;  // its own x axis is named y
-};
-
 BodyErrors CompareBodies(const Landmark& estimate, const GroundTruth& truth,
                          const Landmark& truth_in_frame);
 
-// Errors of a landmark's support plane against that of the true one.
-struct PlaneErrors {
-  double offset_m = 0.0;  // height above the true contact point, along the plane's own normal
-  double tilt_deg = 0.0;
-};
 PlaneErrors ComparePlane(const Plane& plane, const Landmark& truth);
 
 // True if the estimate is farther from the plane that it should stand on than the truth is: its

@@ -13,108 +13,80 @@
 namespace soslam {
 namespace {
 
-using Fate = LandmarkRow::Fate;
+using Fate = LandmarkFate;
 
-// Creates the rows of MapQuality.
-class RowMaker {
- public:
-  // The arguments must outlive this object.
-  RowMaker(const Sequence& sequence, const AlignedMap& map, const TrueViews& views)
-      : sequence_(sequence), map_(map), views_(views), detections_(DetectionsByObject(sequence)) {}
-
-  // One for each landmark: found as `input` matches it; otherwise ignored if things are there that
-  // are ignored and it is not to blame for a wanted object, or false, with the reason.
-  std::vector<LandmarkRow> Rows(const ReasonInput& input) const {
-    std::vector<LandmarkRow> rows;
-    for (size_t i = 0; i < map_.landmarks.size(); ++i) {
-      const int truth = input.truth_of_landmark[i];
-      rows.push_back(truth == kUnassigned ? NotFound(input, i) : Found(i, truth));
-    }
-    return rows;
+// True if most of an object's boxes that have a true object id in the dataset have this one; none
+// if no box has an id.
+std::optional<bool> MostIdsAgree(const Sequence& sequence, const std::vector<int>& detections,
+                                 int true_id) {
+  int known = 0;
+  int agreeing = 0;
+  for (const int index : detections) {
+    const auto& id = sequence.detections[index].true_object_id;
+    known += id ? 1 : 0;
+    agreeing += id == true_id ? 1 : 0;
   }
+  return known > 0 ? std::optional(2 * agreeing > known) : std::nullopt;
+}
 
- private:
-  LandmarkRow Found(size_t landmark, int true_index) const {
-    LandmarkRow row;
-    row.object_index = map_.landmarks[landmark].object_index;
-    row.fate = LandmarkRow::Fate::kFound;
-    row.true_index = true_index;
-    CompareInWorld(landmark, &row);
-    CompareInFrames(landmark, &row);
-    row.id_agrees = MostIdsAgree(row);
-    return row;
+// Compares a landmark with a true object in the frames of its observations, if the true object's
+// place there is known.
+std::optional<InFrames> CompareInFrames(const ReasonInput& input, const TrueViews& views,
+                                        const std::vector<int>& detections,
+                                        const AlignedLandmark& landmark, int true_index) {
+  std::vector<LandmarkErrors> errors;
+  for (const int index : detections) {
+    const int frame = input.sequence.detections[index].frame_index;
+    const auto truth_in_camera = views.KnownInCamera(frame, true_index);
+    if (!truth_in_camera) continue;
+    errors.push_back(CompareInCamera(
+        Transform(input.map.world_from_camera[frame].Inverse(), landmark.landmark_in_world),
+        input.sequence.true_objects[true_index].truth, *truth_in_camera));
   }
+  if (errors.empty()) return std::nullopt;
+  return InFrames{static_cast<int>(errors.size()), *MeanOf(ValuesOf(errors, &LandmarkErrors::iou)),
+                  *MeanOf(ValuesOf(errors, &LandmarkErrors::centre_m)),
+                  *MeanWhatIf(errors, &LandmarkErrors::what_if)};
+}
 
-  LandmarkRow NotFound(const ReasonInput& input, size_t landmark) const {
-    LandmarkRow row;
-    row.object_index = map_.landmarks[landmark].object_index;
-    const Explanation why = ExplainFalse(input, static_cast<int>(landmark));
-    const bool is_of_wanted =
-        why.true_object && sequence_.true_objects[*why.true_object].IsWanted();
-    const std::string& label = sequence_.objects[row.object_index].label;
-    if (!is_of_wanted && IsIgnored(sequence_, label, map_.landmarks[landmark])) {
-      row.fate = LandmarkRow::Fate::kIgnored;
+// The row of a landmark: found as `input` matches it; otherwise ignored if things are there that
+// are ignored and it is not to blame for a wanted object, or false, with the reason. `detections`
+// are those of the landmark's object.
+LandmarkRow RowOf(const ReasonInput& input, const TrueViews& views,
+                  const std::vector<int>& detections, size_t landmark_index) {
+  const Sequence& sequence = input.sequence;
+  const AlignedLandmark& landmark = input.map.landmarks[landmark_index];
+  const std::string& label = sequence.objects[landmark.object_index].label;
+  LandmarkRow row;
+  row.object_index = landmark.object_index;
+  if (const int truth = input.truth_of_landmark[landmark_index]; truth != kUnassigned) {
+    row.fate = Fate::kFound;
+    row.true_index = truth;
+    row.id_agrees = MostIdsAgree(sequence, detections, sequence.true_objects[truth].id);
+  } else {
+    const Explanation why = ExplainFalse(input, static_cast<int>(landmark_index));
+    const bool is_of_wanted = why.true_object && sequence.true_objects[*why.true_object].IsWanted();
+    if (!is_of_wanted && IsIgnored(sequence, label, landmark)) {
+      row.fate = Fate::kIgnored;
       return row;
     }
     row.why_false = why;
     row.true_index = why.true_object;
     if (!is_of_wanted) return row;
-    CompareInWorld(landmark, &row);
-    if (IsWrong(why.reason)) CompareInFrames(landmark, &row);
-    return row;
   }
-
-  // Compares the row's landmark with its true object in the world.
-  void CompareInWorld(size_t landmark, LandmarkRow* row) const {
-    const TrueObject& object = sequence_.true_objects[row->true_index.value()];
-    const Landmark& truth = object.truth.landmark_in_world;
-    row->errors = CompareBodies(map_.landmarks[landmark].landmark_in_world, object.truth, truth);
-    row->label_agrees = AreSameLabel(sequence_.objects[row->object_index].label, object.label);
-    const auto& plane = map_.landmarks[landmark].plane_in_world;
-    if (plane) row->plane = ComparePlane(*plane, truth);
+  const TrueObject& object = sequence.true_objects[*row.true_index];
+  const Landmark& truth_in_world = object.truth.landmark_in_world;
+  row.errors = CompareBodies(landmark.landmark_in_world, object.truth, truth_in_world);
+  row.label_agrees = AreSameLabel(label, object.label);
+  if (landmark.plane_in_world) row.plane = ComparePlane(*landmark.plane_in_world, truth_in_world);
+  if (!row.why_false || IsWrong(row.why_false->reason)) {
+    row.in_frames = CompareInFrames(input, views, detections, landmark, *row.true_index);
   }
+  return row;
+}
 
-  // Compares them in the frames of its observations, if the true object's place there is known.
-  void CompareInFrames(size_t landmark, LandmarkRow* row) const {
-    const int true_index = row->true_index.value();
-    const TrueObject& object = sequence_.true_objects[true_index];
-    std::vector<LandmarkErrors> errors;
-    for (const int index : detections_[row->object_index]) {
-      const int frame = sequence_.detections[index].frame_index;
-      const auto truth_in_camera = views_.KnownInCamera(frame, true_index);
-      if (!truth_in_camera) continue;
-      const Landmark estimate_in_camera = Transform(map_.world_from_camera[frame].Inverse(),
-                                                    map_.landmarks[landmark].landmark_in_world);
-      errors.push_back(CompareInCamera(estimate_in_camera, object.truth, *truth_in_camera));
-    }
-    if (errors.empty()) return;
-    row->in_frames =
-        InFrames{static_cast<int>(errors.size()), *MeanOf(ValuesOf(errors, &LandmarkErrors::iou)),
-                 *MeanOf(ValuesOf(errors, &LandmarkErrors::centre_m)),
-                 *MeanWhatIf(errors, &LandmarkErrors::what_if)};
-  }
-
-  // True if most of the boxes with a true object id in the dataset have that of the row's true
-  // object; none if no box has an id.
-  std::optional<bool> MostIdsAgree(const LandmarkRow& row) const {
-    const int true_id = sequence_.true_objects[row.true_index.value()].id;
-    int known = 0;
-    int agreeing = 0;
-    for (const int index : detections_[row.object_index]) {
-      const auto& id = sequence_.detections[index].true_object_id;
-      known += id ? 1 : 0;
-      agreeing += id == true_id ? 1 : 0;
-    }
-    return known > 0 ? std::optional(2 * agreeing > known) : std::nullopt;
-  }
-
-  const Sequence& sequence_;
-  const AlignedMap& map_;
-  const TrueViews& views_;
-  std::vector<std::vector<int>> detections_;  // by object
-};
-
-std::vector<TrueObjectRow> ObjectRows(const Sequence& sequence, const ViewsOfTruth& views,
+std::vector<TrueObjectRow> ObjectRows(const Sequence& sequence, const AlignedMap& map,
+                                      const ViewsOfTruth& views,
                                       const std::vector<int>& truth_of_landmark) {
   std::vector<TrueObjectRow> rows;
   for (size_t i = 0; i < sequence.true_objects.size(); ++i) {
@@ -123,7 +95,7 @@ std::vector<TrueObjectRow> ObjectRows(const Sequence& sequence, const ViewsOfTru
                       views.detected_frames[i] >= kFewestViews};
     const auto landmark = std::ranges::find(truth_of_landmark, row.true_index);
     if (landmark != truth_of_landmark.end()) {
-      row.landmark = static_cast<int>(landmark - truth_of_landmark.begin());
+      row.object_index = map.landmarks[landmark - truth_of_landmark.begin()].object_index;
     }
     rows.push_back(row);
   }
@@ -180,8 +152,8 @@ MapScore Score(double min_iou, const std::vector<TrueObjectRow>& objects,
   score.landmarks = static_cast<int>(landmarks.size());
   for (const TrueObjectRow& object : objects) {
     score.detectable += object.is_detectable ? 1 : 0;
-    score.found += object.landmark ? 1 : 0;
-    score.found_detectable += object.landmark && object.is_detectable ? 1 : 0;
+    score.found += object.object_index ? 1 : 0;
+    score.found_detectable += object.object_index && object.is_detectable ? 1 : 0;
   }
   for (const LandmarkRow& landmark : landmarks) {
     score.ignored += landmark.fate == Fate::kIgnored ? 1 : 0;
@@ -198,25 +170,9 @@ MapScore Score(double min_iou, const std::vector<TrueObjectRow>& objects,
   return score;
 }
 
-DriftSummary SummariseInFrames(const std::vector<LandmarkRow>& rows) {
-  std::vector<InFrames> in_frames;
-  std::vector<BodyErrors> in_world;
-  for (const LandmarkRow& row : rows) {
-    if (!row.in_frames) continue;
-    in_frames.push_back(*row.in_frames);
-    in_world.push_back(*row.errors);
-  }
-  return {static_cast<int>(in_frames.size()),
-          MeanOf(ValuesOf(in_frames, &InFrames::iou_mean)),
-          MeanOf(ValuesOf(in_world, &BodyErrors::iou)),
-          MedianOf(ValuesOf(in_frames, &InFrames::centre_m_mean)),
-          MedianOf(ValuesOf(in_world, &BodyErrors::centre_m)),
-          MeanWhatIf(in_frames, &InFrames::what_if)};
-}
-
 void ExplainMisses(const ReasonInput& input, MapQuality* quality) {
   for (TrueObjectRow& object : quality->objects) {
-    if (object.landmark) continue;
+    if (object.object_index) continue;
     object.miss = ExplainMiss(input, object.true_index);
     ++quality->misses[object.miss->reason];
   }
@@ -239,18 +195,34 @@ std::optional<MapQuality> EvaluateMapQuality(const Sequence& sequence,
   const AlignedMap map =
       ApplyAlignments(sequence, estimates, world_from_camera, planes_in_world, quality.alignments);
   const TrueViews true_views(sequence);
-  const RowMaker maker(sequence, map, true_views);
+  const auto detections = DetectionsByObject(sequence);
   const ViewsOfTruth views = FindViews(sequence, true_views);
   const Eigen::MatrixXd ious = WorldIous(sequence, map);
   for (size_t i = kMapIous.size(); i-- > 0;) {  // the first threshold last, as it defines the rows
     const std::vector<int> truth_of_landmark = MatchByIou(ious, kMapIous[i]);
     const ReasonInput input{sequence, estimates, map, views, ious, truth_of_landmark, kMapIous[i]};
-    quality.objects = ObjectRows(sequence, views, truth_of_landmark);
-    quality.landmarks = maker.Rows(input);
+    quality.objects = ObjectRows(sequence, map, views, truth_of_landmark);
+    quality.landmarks.clear();
+    for (size_t k = 0; k < map.landmarks.size(); ++k) {
+      const std::vector<int>& own = detections[map.landmarks[k].object_index];
+      quality.landmarks.push_back(RowOf(input, true_views, own, k));
+    }
     quality.scores[i] = Score(kMapIous[i], quality.objects, quality.landmarks);
     if (i == 0) ExplainMisses(input, &quality);
   }
-  quality.in_frames = SummariseInFrames(quality.landmarks);
+  std::vector<InFrames> in_frames;
+  std::vector<BodyErrors> in_world;
+  for (const LandmarkRow& row : quality.landmarks) {
+    if (!row.in_frames) continue;
+    in_frames.push_back(*row.in_frames);
+    in_world.push_back(*row.errors);
+  }
+  quality.in_frames = {static_cast<int>(in_frames.size()),
+                       MeanOf(ValuesOf(in_frames, &InFrames::iou_mean)),
+                       MeanOf(ValuesOf(in_world, &BodyErrors::iou)),
+                       MedianOf(ValuesOf(in_frames, &InFrames::centre_m_mean)),
+                       MedianOf(ValuesOf(in_world, &BodyErrors::centre_m)),
+                       MeanWhatIf(in_frames, &InFrames::what_if)};
   return quality;
 }
 

@@ -86,12 +86,6 @@ int Sum(const Counts& counts) {
   return sum;
 }
 
-std::optional<int> LandmarkOfObject(const AlignedMap& map, int object_index) {
-  const auto found = std::ranges::find(map.landmarks, object_index, &AlignedLandmark::object_index);
-  if (found == map.landmarks.end()) return std::nullopt;
-  return static_cast<int>(found - map.landmarks.begin());
-}
-
 // Counts of an object's boxes by true object (Sequence::true_objects).
 struct Owners {
   int boxes = 0;
@@ -145,24 +139,18 @@ MapReason ReasonOf(BodyPart part, const Landmark& landmark, const std::optional<
   }
 }
 
-// The mean place of the cameras that observed an object.
-Eigen::Vector3d MeanViewpoint(const ReasonInput& input, int object_index) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  int views = 0;
-  for (const Detection& detection : input.sequence.detections) {
-    if (detection.object_index != object_index) continue;
-    sum += input.map.world_from_camera[detection.frame_index].translation;
-    ++views;
-  }
-  return sum / std::max(views, 1);
-}
-
 Explanation ExplainWrong(const ReasonInput& input, int landmark, int true_index) {
   const GroundTruth& truth = input.sequence.true_objects[true_index].truth;
   const Landmark& estimate = input.map.landmarks[landmark].landmark_in_world;
+  Eigen::Vector3d viewpoints = Eigen::Vector3d::Zero();  // of the cameras that observed it
+  int views = 0;
+  for (const Detection& detection : input.sequence.detections) {
+    if (detection.object_index != input.map.landmarks[landmark].object_index) continue;
+    viewpoints += input.map.world_from_camera[detection.frame_index].translation;
+    ++views;
+  }
   const auto wrong =
-      FindDominantError(estimate, truth, truth.landmark_in_world,
-                        MeanViewpoint(input, input.map.landmarks[landmark].object_index));
+      FindDominantError(estimate, truth, truth.landmark_in_world, viewpoints / std::max(views, 1));
   const auto& plane = input.map.landmarks[landmark].plane_in_world;
   const BodyErrors errors = CompareBodies(estimate, truth, truth.landmark_in_world);
   std::optional<PlaneErrors> plane_errors;
@@ -207,18 +195,6 @@ Fates FatesOf(const ReasonInput& input, int true_index) {
   return fates;
 }
 
-Explanation ExplainLeftOut(const Fates& fates) {
-  const bool by_association = fates.frames_before_association.size() > fates.frames_in_use.size();
-  return {by_association ? MapReason::kLostInAssociation : MapReason::kGated,
-          fmt::format("boxes in use in {} frames; left out: {}", fates.frames_in_use.size(),
-                      CountsInWords(fates.by_reason))};
-}
-
-std::string FailureOf(const std::vector<ObjectEstimate>& estimates, int object_index) {
-  const auto found = std::ranges::find(estimates, object_index, &ObjectEstimate::object_index);
-  return found == estimates.end() || found->failure.empty() ? "not estimated" : found->failure;
-}
-
 }  // namespace
 
 bool IsWrong(MapReason reason) {
@@ -231,10 +207,13 @@ Explanation ExplainMiss(const ReasonInput& input, int true_index) {
   const auto object = MajorityOf(fates.by_object, in_use);
   const Owners owners = object ? OwnersOf(input, *object) : Owners();
   const bool is_own = owners.Majority() == true_index;
-  const auto landmark = object ? LandmarkOfObject(input.map, *object) : std::nullopt;
-  if (is_own && landmark) {
-    const int match = input.truth_of_landmark[*landmark];
-    if (match == kUnassigned) return ExplainWrong(input, *landmark, true_index);
+  const std::vector<AlignedLandmark>& landmarks = input.map.landmarks;
+  const auto landmark =
+      std::ranges::find(landmarks, object.value_or(-1), &AlignedLandmark::object_index);
+  if (is_own && landmark != landmarks.end()) {
+    const auto index = static_cast<int>(landmark - landmarks.begin());
+    const int match = input.truth_of_landmark[index];
+    if (match == kUnassigned) return ExplainWrong(input, index, true_index);
     const TrueObject& other = input.sequence.true_objects[match];
     return {MapReason::kJoined,
             fmt::format("the landmark of its boxes matches {} ({})", other.id, other.label)};
@@ -248,7 +227,12 @@ Explanation ExplainMiss(const ReasonInput& input, int true_index) {
             fmt::format("boxes in {} frames; in {} of them another object is nearer",
                         detected_frames, detected_frames - static_cast<int>(fates.frames.size()))};
   }
-  if (static_cast<int>(fates.frames_in_use.size()) < kFewestViews) return ExplainLeftOut(fates);
+  if (static_cast<int>(fates.frames_in_use.size()) < kFewestViews) {
+    const bool by_association = fates.frames_before_association.size() > fates.frames_in_use.size();
+    return {by_association ? MapReason::kLostInAssociation : MapReason::kGated,
+            fmt::format("boxes in use in {} frames; left out: {}", fates.frames_in_use.size(),
+                        CountsInWords(fates.by_reason))};
+  }
   if (!object) {
     return {MapReason::kSplit,
             fmt::format("{} boxes are of {} objects", in_use, fates.by_object.size())};
@@ -257,7 +241,9 @@ Explanation ExplainMiss(const ReasonInput& input, int true_index) {
     return {MapReason::kJoined, fmt::format("its object has boxes of several: {}",
                                             InWords(input.sequence, owners.of_truth))};
   }
-  return {MapReason::kNoLandmark, FailureOf(input.estimates, *object)};
+  const auto estimate = std::ranges::find(input.estimates, *object, &ObjectEstimate::object_index);
+  const bool has_failed = estimate != input.estimates.end() && !estimate->failure.empty();
+  return {MapReason::kNoLandmark, has_failed ? estimate->failure : "not estimated"};
 }
 
 Explanation ExplainFalse(const ReasonInput& input, int landmark) {

@@ -11,13 +11,10 @@
 #include "evaluation/landmark_errors.h"
 #include "evaluation/true_views.h"
 #include "model/estimates.h"
+#include "model/metrics.h"
 #include "model/sequence.h"
 
 namespace soslam {
-
-// Thresholds of IoU above which a landmark matches a true object. Rows and reasons are those of the
-// first threshold.
-inline constexpr std::array kMapIous = {0.25, 0.5};
 
 // Intersections over unions of boxes in the world: rows are the map's landmarks, columns the true
 // objects; unwanted true objects and those of other segments have 0. Bodies of
@@ -33,37 +30,8 @@ std::vector<int> MatchByIou(const Eigen::MatrixXd& ious, double min_iou);
 // with an IoU at which it would match a true object there.
 bool IsIgnored(const Sequence& sequence, const std::string& label, const AlignedLandmark& landmark);
 
-// Reasons for a true object without landmark, or a landmark without true object.
-enum class MapReason {
-  kNotDetected,        // boxes overlap it in fewer than kFewestViews frames
-  kGated,              // so many boxes, but in use in fewer, and none left out by association
-  kLostInAssociation,  // the same, and association left boxes out in other frames
-  kSplit,              // boxes are spread over several objects, or another landmark has it already
-  kJoined,             // boxes are, or are taken for, those of several true objects
-  kNoLandmark,         // the object has boxes enough, and no estimate
-  kWrongPlane,         // a landmark of its boxes is elsewhere, for the plane that it stands on
-  kWrongHeight,        // or for its height over that
-  kWrongSize,
-  kWrongYaw,
-  kWrongPlace,
-  kWrongInSeveral,  // no single correction makes it match
-  kDuplicate,       // overlaps a true object that another landmark matches better
-  kMoving,          // its boxes belong to a moving object
-  kBackground,      // at most half of its boxes belong to true objects that are looked for
-};
-inline constexpr std::array kMapReasonNames = {
-    "not_detected", "gated",       "lost_in_association", "split",
-    "joined",       "no_landmark", "wrong_plane",         "wrong_height",
-    "wrong_size",   "wrong_yaw",   "wrong_place",         "wrong_in_several",
-    "duplicate",    "moving",      "background"};
 // True for a landmark of the true object that does not match it: plane, height, size, yaw or place.
 bool IsWrong(MapReason reason);
-
-struct Explanation {
-  MapReason reason = MapReason::kNotDetected;
-  std::string detail;                             // with numbers, for a person
-  std::optional<int> true_object = std::nullopt;  // for a false landmark: into true_objects
-};
 
 // Data to explain a map's errors. `truth_of_landmark` is the result of MatchByIou.
 struct ReasonInput {

@@ -49,25 +49,6 @@ MetricsSummary Summarise(std::vector<ObjectMetrics> objects) {
   return summary;
 }
 
-// Errors of each observation by object, in frame order; none for an observation without landmark.
-using ErrorsByObject = std::vector<std::vector<std::optional<LandmarkErrors>>>;
-ErrorsByObject ObservationErrors(const Sequence& sequence, const LandmarkEstimates& estimates) {
-  ErrorsByObject errors(sequence.objects.size());
-  for (const ObservationEstimate& observation : estimates.observations) {
-    const Detection& detection = sequence.detections[observation.detection_index];
-    const auto& truth = sequence.ObjectOf(detection).ground_truth;
-    if (!truth) continue;
-    auto& of_object = errors[detection.object_index];
-    if (observation.hypotheses.empty()) {
-      of_object.emplace_back();
-      continue;
-    }
-    of_object.push_back(CompareInCamera(observation.hypotheses.front().landmark_in_camera, *truth,
-                                        *TrueLandmarkInCamera(sequence, detection)));
-  }
-  return errors;
-}
-
 std::vector<ObjectMetrics> EvaluateObjects(const Sequence& sequence,
                                            const std::vector<ObjectEstimate>& estimates) {
   const auto detections = DetectionsByObject(sequence);
@@ -96,7 +77,18 @@ Metrics EvaluateLandmarks(const Sequence& sequence, const LandmarkEstimates& est
     metrics.objects = EvaluateObjects(sequence, estimates.objects);
   } else {
     std::vector<ObjectMetrics> first_only;
-    ErrorsByObject errors_by_object = ObservationErrors(sequence, estimates);
+    // In frame order; none for an observation without landmark.
+    std::vector<std::vector<std::optional<LandmarkErrors>>> errors_by_object(
+        sequence.objects.size());
+    for (const ObservationEstimate& observation : estimates.observations) {
+      const Detection& detection = sequence.detections[observation.detection_index];
+      const auto& truth = sequence.ObjectOf(detection).ground_truth;
+      if (!truth) continue;
+      auto& error = errors_by_object[detection.object_index].emplace_back();
+      if (observation.hypotheses.empty()) continue;
+      error = CompareInCamera(observation.hypotheses.front().landmark_in_camera, *truth,
+                              *TrueLandmarkInCamera(sequence, detection));
+    }
     for (size_t i = 0; i < sequence.objects.size(); ++i) {
       if (!sequence.objects[i].ground_truth) continue;
       const int object_index = static_cast<int>(i);

@@ -13,26 +13,12 @@
 #include "base/text.h"
 #include "evaluation/statistics.h"
 #include "geometry/angles.h"
+#include "ground/ground_checks.h"
+#include "mapping/input_alternatives.h"
 #include "model/label_groups.h"
 
 namespace soslam {
 namespace {
-
-// The heights (m) of each object's landmarks, by index into Sequence::objects.
-std::map<int, std::vector<double>> HeightsByObject(const LandmarkEstimates& estimates,
-                                                   const Sequence& sequence) {
-  std::map<int, std::vector<double>> heights;
-  for (const ObservationEstimate& observation : estimates.observations) {
-    if (observation.hypotheses.empty()) continue;
-    heights[sequence.detections[observation.detection_index].object_index].push_back(
-        2.0 * observation.hypotheses.front().landmark_in_camera.half_axes.z());
-  }
-  for (const ObjectEstimate& object : estimates.objects) {
-    if (!object.landmark_in_world) continue;
-    heights[object.object_index] = {2.0 * object.landmark_in_world->half_axes.z()};
-  }
-  return heights;
-}
 
 // An object's height relative to the median height of its label.
 struct RelativeHeight {
@@ -43,8 +29,18 @@ struct RelativeHeight {
 
 std::vector<RelativeHeight> RelativeHeights(const LandmarkEstimates& estimates,
                                             const Sequence& sequence, const SemanticTable& table) {
+  std::map<int, std::vector<double>> heights_m;  // of each object's landmarks
+  for (const ObservationEstimate& observation : estimates.observations) {
+    if (observation.hypotheses.empty()) continue;
+    heights_m[sequence.detections[observation.detection_index].object_index].push_back(
+        2.0 * observation.hypotheses.front().landmark_in_camera.half_axes.z());
+  }
+  for (const ObjectEstimate& object : estimates.objects) {
+    if (!object.landmark_in_world) continue;
+    heights_m[object.object_index] = {2.0 * object.landmark_in_world->half_axes.z()};
+  }
   std::vector<RelativeHeight> relative;
-  for (const auto& [index, heights] : HeightsByObject(estimates, sequence)) {
+  for (const auto& [index, heights] : heights_m) {
     const Object& object = sequence.objects[index];
     const auto prior = table.Find(object.label);
     if (!prior || !prior->height_m || prior->mount != Mount::kStanding ||
@@ -140,7 +136,7 @@ std::string PlanesInWords(const Sequence& sequence, const InputAlternative& foun
   std::vector<std::string> planes;
   for (const auto& [index, plane] : found.planes) {
     const SupportPlane& given = sequence.planes[static_cast<size_t>(index)];
-    if (plane.Correction() < 1.0) continue;
+    if (LargestCorrection(plane) < 1.0) continue;
     const Eigen::Vector3d& normal = plane.plane_in_world.normal;
     const double offset = plane.plane_in_world.offset;
     planes.push_back(
@@ -271,7 +267,7 @@ std::vector<Finding> CheckInputs(const Sequence& sequence, const MapEstimate& ma
   std::vector<const InputAlternative*> better;
   for (const InputAlternative& found : map.input_alternatives) {
     const double dispersion = std::max(1.0, found.box_cost / expected);
-    const double correction = found.Correction();
+    const double correction = LargestCorrection(found);
     if (correction <= 1.0 || dispersion > kFarAbove) continue;
     // The gain that is left once what is given is corrected by the least that matters: the cost is
     // a parabola along the way to the minimum.
@@ -390,6 +386,20 @@ std::vector<Finding> CheckPlaneCount(size_t planes, size_t objects) {
        "an up direction that is wrong, as of cameras that were rolled, or poses that contradict "
        "the boxes",
        "look at up and its standard deviation in planes.json; give planes.json where it is known"}};
+}
+
+std::string DoubtOfUp(const std::vector<Finding>& findings) {
+  const std::map<std::string, std::string> doubts = {
+      {kHoldingOfPlanesCheck, "objects and flat surfaces contradict each other"},
+      {kCamerasTurnedCheck, "the photos are turned in many ways"},
+      {kFewObjectsOnPlanesCheck, "few objects stand on flat surfaces"},
+      {kUpDirectionCheck, "objects look alike in other ways to hold the camera"}};
+  std::vector<std::string> words;
+  for (const Finding& finding : findings) {
+    const auto doubt = doubts.find(finding.check);
+    if (doubt != doubts.end()) words.push_back(doubt->second);
+  }
+  return fmt::format("{}", fmt::join(words, ", and "));
 }
 
 }  // namespace soslam

@@ -66,4 +66,8 @@ inline constexpr const char* kUpDirectionCheck = "up_direction";
 std::vector<Finding> CheckUp(CameraHolding holding, const std::vector<TriedHolding>& holdings,
                              double tilt_variance);
 
+// Why up may be wrong by more than its standard deviation, in words; empty where no finding says
+// so.
+std::string DoubtOfUp(const std::vector<Finding>& findings);
+
 }  // namespace soslam

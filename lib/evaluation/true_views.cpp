@@ -14,23 +14,6 @@ struct RawBox {
   Box box;
 };
 
-std::vector<std::vector<RawBox>> RawBoxesByFrame(const Sequence& sequence) {
-  std::vector<std::vector<RawBox>> by_frame(sequence.frames.size());
-  const auto add = [&](const TrueView& view, double score, const Box& box) {
-    if (score < kMinViewScore) return;
-    by_frame[view.frame_index].push_back({view, box});
-  };
-  for (size_t i = 0; i < sequence.detections.size(); ++i) {
-    const Detection& seen = sequence.detections[i];
-    add({seen.frame_index, static_cast<int>(i), std::nullopt}, seen.score, seen.box);
-  }
-  for (size_t i = 0; i < sequence.rejected.size(); ++i) {
-    const RejectedDetection& seen = sequence.rejected[i];
-    add({seen.frame_index, std::nullopt, static_cast<int>(i)}, seen.score, seen.box);
-  }
-  return by_frame;
-}
-
 // The outline boxes of all true objects in a frame.
 std::vector<std::optional<Box>> Outlines(const Sequence& sequence, const TrueViews& views,
                                          int frame_index) {
@@ -86,7 +69,18 @@ ViewsOfTruth FindViews(const Sequence& sequence, const TrueViews& views) {
   found.of_object.resize(sequence.true_objects.size());
   found.detected_frames.resize(sequence.true_objects.size());
   found.object_of_detection.resize(sequence.detections.size());
-  const auto raw_boxes = RawBoxesByFrame(sequence);
+  std::vector<std::vector<RawBox>> raw_boxes(sequence.frames.size());
+  const auto add = [&](const TrueView& view, double score, const Box& box) {
+    if (score >= kMinViewScore) raw_boxes[view.frame_index].push_back({view, box});
+  };
+  for (size_t i = 0; i < sequence.detections.size(); ++i) {
+    const Detection& seen = sequence.detections[i];
+    add({seen.frame_index, static_cast<int>(i), std::nullopt}, seen.score, seen.box);
+  }
+  for (size_t i = 0; i < sequence.rejected.size(); ++i) {
+    const RejectedDetection& seen = sequence.rejected[i];
+    add({seen.frame_index, std::nullopt, static_cast<int>(i)}, seen.score, seen.box);
+  }
   for (size_t frame = 0; frame < raw_boxes.size(); ++frame) {
     if (raw_boxes[frame].empty()) continue;
     const auto outlines = Outlines(sequence, views, static_cast<int>(frame));

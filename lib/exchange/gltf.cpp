@@ -6,7 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "artefact/model_json.h"
+#include "artefact/json_file.h"
 #include "base/hash.h"
 #include "exchange/exports.h"
 #include "geometry/angles.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <map>
 
-#include "artefact/model_json.h"
+#include "artefact/json_file.h"
 #include "evaluation/alignment.h"
 #include "evaluation/statistics.h"
 #include "model/segments.h"
@@ -164,7 +164,8 @@ void AlignWorlds(const json& quality, std::vector<World>* worlds) {
   for (const json& alignment : quality.at("alignments")) {
     Alignment& of_its_segment = of_segment[alignment.at("segment").get<int>()];
     alignment.at("scale").get_to(of_its_segment.scale);
-    alignment.at("truth_from_scaled").get_to(of_its_segment.truth_from_scaled);
+    of_its_segment.truth_from_scaled =
+        DescribedFromJson<Rigid3d>(alignment.at("truth_from_scaled"));
   }
   for (World& world : *worlds) Move(of_segment.at(world.segment), &world);
 }

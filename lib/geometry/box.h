@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
+
+#include "geometry/angles.h"
 
 namespace soslam {
 
@@ -28,6 +31,50 @@ struct Box {
   std::array<Eigen::Vector3d, 4> EdgeLines() const {
     return {Eigen::Vector3d(1, 0, -x_min), Eigen::Vector3d(0, 1, -y_min),
             Eigen::Vector3d(1, 0, -x_max), Eigen::Vector3d(0, 1, -y_max)};
+  }
+};
+
+template <typename Visitor>
+void Describe(Visitor& visit, Box& box) {
+  visit.Item(&box.x_min, "x_min, pixels");
+  visit.Item(&box.y_min, "y_min");
+  visit.Item(&box.x_max, "x_max");
+  visit.Item(&box.y_max, "y_max");
+}
+
+// In the order of Box::EdgeLines.
+enum class BoxSide { kLeft, kTop, kRight, kBottom };
+inline constexpr std::array kEdgeNames = {"left", "top", "right", "bottom"};
+inline constexpr const auto& NamesOf(BoxSide) { return kEdgeNames; }
+
+// A box that is turned about its centre by an angle, clockwise in the image.
+struct TurnedBox {
+  Box box;
+  double angle_deg = 0.0;
+
+  // Upper left, upper right, lower right and lower left corner of `box`, turned.
+  std::array<Eigen::Vector2d, 4> Corners() const {
+    const Eigen::Rotation2Dd turn(kRadPerDeg * angle_deg);
+    const Eigen::Vector2d centre = box.Centre();
+    const Eigen::Vector2d right = turn * Eigen::Vector2d(0.5 * box.Width(), 0.0);
+    const Eigen::Vector2d down = turn * Eigen::Vector2d(0.0, 0.5 * box.Height());
+    return {centre - right - down, centre + right - down, centre + right + down,
+            centre - right + down};
+  }
+  // The upright box around it.
+  Box Around() const {
+    Eigen::AlignedBox2d around;
+    for (const Eigen::Vector2d& corner : Corners()) around.extend(corner);
+    return {around.min().x(), around.min().y(), around.max().x(), around.max().y()};
+  }
+  // True if the upright box around it is larger than after the nearest quarter turn by more than a
+  // pixel, which annotators do not see.
+  bool IsOblique() const {
+    constexpr double kSeenPx = 1.0;
+    const Box around = Around();
+    const Box quarter = TurnedBox{box, 90.0 * std::round(angle_deg / 90.0)}.Around();
+    return around.Width() - quarter.Width() > kSeenPx ||
+           around.Height() - quarter.Height() > kSeenPx;
   }
 };
 

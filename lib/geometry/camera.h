@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <fmt/format.h>
+
 #include <Eigen/Core>
 #include <optional>
+#include <string>
 
+#include "geometry/image_size.h"
 #include "geometry/plane.h"
 #include "geometry/rigid3.h"
 
@@ -43,5 +47,21 @@ struct Camera {
            pixel.y() <= height - 0.5;
   }
 };
+
+template <typename Visitor>
+void Describe(Visitor& visit, Camera& camera) {
+  visit.Field("width", &camera.width, "pixels", kAtLeastOne);
+  visit.Field("height", &camera.height, "pixels", kAtLeastOne);
+  visit.Field("fx", &camera.fx, "focal length along x, pixels", kPositive);
+  visit.Field("fy", &camera.fy, "focal length along y, pixels", kPositive);
+  visit.Field("cx", &camera.cx, "principal point, pixels");
+  visit.Field("cy", &camera.cy, "principal point, pixels");
+  visit.Check([&] {
+    return IsImageSize(camera.width, camera.height)
+               ? std::string()
+               : fmt::format("is of {} x {} pixels; expected at most {} in all", camera.width,
+                             camera.height, kMaxPixels);
+  });
+}
 
 }  // namespace soslam

@@ -25,20 +25,6 @@ constexpr std::array kCoefficients = {
 // Numbers of coefficients that OpenCV accepts.
 constexpr std::array<size_t, 5> kCounts = {4, 5, 8, 12, 14};
 
-// Points along the four edges of a box. For an edge that bows out by b px between two corners, they
-// miss the outermost point by at most b / kIntervals^2, a thousandth of the bow.
-std::vector<Eigen::Vector2d> Outline(const Box& box) {
-  constexpr int kIntervals = 32;
-  std::vector<Eigen::Vector2d> points;
-  for (int i = 0; i <= kIntervals; ++i) {
-    const double t = static_cast<double>(i) / kIntervals;
-    const double x = box.x_min + t * box.Width();
-    const double y = box.y_min + t * box.Height();
-    points.insert(points.end(), {{x, box.y_min}, {x, box.y_max}, {box.x_min, y}, {box.x_max, y}});
-  }
-  return points;
-}
-
 }  // namespace
 
 std::vector<double> DistortionCoefficients(const Distortion& distortion) {
@@ -105,8 +91,19 @@ std::vector<std::optional<Eigen::Vector2d>> UndistortPixels(
 
 std::optional<Box> UndistortBox(const Camera& camera, const Distortion& distortion,
                                 const Box& distorted) {
+  // Points along the four edges. For an edge that bows out by b px between two corners, they miss
+  // the outermost point by at most b / kIntervals^2, a thousandth of the bow.
+  constexpr int kIntervals = 32;
+  const auto& [x_min, y_min, x_max, y_max] = distorted;
+  std::vector<Eigen::Vector2d> outline;
+  for (int i = 0; i <= kIntervals; ++i) {
+    const double t = static_cast<double>(i) / kIntervals;
+    const double x = x_min + t * distorted.Width();
+    const double y = y_min + t * distorted.Height();
+    outline.insert(outline.end(), {{x, y_min}, {x, y_max}, {x_min, y}, {x_max, y}});
+  }
   Eigen::AlignedBox2d around;
-  for (const auto& pixel : UndistortPixels(camera, distortion, Outline(distorted))) {
+  for (const auto& pixel : UndistortPixels(camera, distortion, outline)) {
     if (!pixel) return std::nullopt;
     around.extend(*pixel);
   }

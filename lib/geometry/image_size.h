@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -9,7 +10,8 @@ namespace soslam {
 // Orientation of the image that a camera and boxes refer to, where an image file has an EXIF
 // orientation: as viewers show the image, or as the file stores it.
 enum class ImageOrientation { kUpright, kStored };
-inline constexpr const char* kImageOrientationNames[] = {"upright", "stored"};
+inline constexpr std::array kImageOrientationNames = {"upright", "stored"};
+inline constexpr const auto& NamesOf(ImageOrientation) { return kImageOrientationNames; }
 
 // More pixels than cameras have; a larger size is damaged, or made to exhaust the memory.
 inline constexpr std::int64_t kMaxPixels = std::int64_t{1} << 27;

@@ -14,36 +14,6 @@ using Polyhedron = std::vector<Polygon>;       // the faces of a convex body
 // Points closer to a cutting plane than this (in units of the clipping box's half axes) lie on it.
 constexpr double kOnPlane = 1e-12;
 
-Polyhedron UnitCubeFaces() {
-  Polyhedron faces;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const double side : {-1.0, 1.0}) {
-      Polygon face;
-      for (const auto& [u, v] : {std::pair(-1.0, -1.0), {1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}}) {
-        Eigen::Vector3d corner;
-        corner(axis) = side;
-        corner((axis + 1) % 3) = u;
-        corner((axis + 2) % 3) = v;
-        face.push_back(corner);
-      }
-      faces.push_back(face);
-    }
-  }
-  return faces;
-}
-
-// Orders the points of a convex polygon around their centre, in the plane orthogonal to `axis`.
-void SortAround(int axis, Polygon* points) {
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  for (const auto& point : *points) centre += point / static_cast<double>(points->size());
-  const auto angle = [&](const Eigen::Vector3d& point) {
-    const Eigen::Vector3d offset = point - centre;
-    return std::atan2(offset((axis + 2) % 3), offset((axis + 1) % 3));
-  };
-  std::ranges::sort(*points,
-                    [&](const auto& one, const auto& other) { return angle(one) < angle(other); });
-}
-
 // Keeps the part with side * point[axis] <= 1.
 Polyhedron Clip(const Polyhedron& body, int axis, double side) {
   const auto excess = [&](const Eigen::Vector3d& point) { return side * point(axis) - 1.0; };
@@ -74,7 +44,13 @@ Polyhedron Clip(const Polyhedron& body, int axis, double side) {
     if (kept.size() >= 3) clipped.push_back(kept);
   }
   if (cap.size() >= 3) {
-    SortAround(axis, &cap);
+    // In order around its centre, in the plane orthogonal to the axis.
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+    for (const auto& point : cap) centre += point / static_cast<double>(cap.size());
+    std::ranges::sort(cap, {}, [&](const Eigen::Vector3d& point) {
+      const Eigen::Vector3d offset = point - centre;
+      return std::atan2(offset((axis + 2) % 3), offset((axis + 1) % 3));
+    });
     clipped.push_back(cap);
   }
   return clipped;
@@ -106,10 +82,19 @@ double BoxVolume(const Landmark& landmark) { return 8.0 * landmark.half_axes.pro
 double IntersectionVolume(const Landmark& one, const Landmark& other) {
   // In the other box's frame, scaled so that it is the cube [-1, 1]^3.
   const Rigid3d other_from_one = other.frame_from_object.Inverse() * one.frame_from_object;
-  Polyhedron body = UnitCubeFaces();
-  for (Polygon& face : body) {
-    for (Eigen::Vector3d& corner : face) {
-      corner = (other_from_one * one.half_axes.cwiseProduct(corner)).cwiseQuotient(other.half_axes);
+  Polyhedron body;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      Polygon face;
+      for (const auto& [u, v] : {std::pair(-1.0, -1.0), {1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}}) {
+        Eigen::Vector3d corner;  // of the unit cube
+        corner(axis) = side;
+        corner((axis + 1) % 3) = u;
+        corner((axis + 2) % 3) = v;
+        face.emplace_back(
+            (other_from_one * one.half_axes.cwiseProduct(corner)).cwiseQuotient(other.half_axes));
+      }
+      body.push_back(face);
     }
   }
   for (int axis = 0; axis < 3; ++axis) {

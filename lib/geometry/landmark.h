@@ -21,6 +21,7 @@ enum class RestingFace { kBottom, kBack, kSide };
 inline constexpr std::array kRestingFaces = {RestingFace::kBottom, RestingFace::kBack,
                                              RestingFace::kSide};
 inline constexpr std::array kRestingFaceNames = {"bottom", "back", "side"};
+inline constexpr const auto& NamesOf(RestingFace) { return kRestingFaceNames; }
 
 // Rotation from the object frame to the object's own axes. Its entries are 0, 1 and -1.
 Eigen::Matrix3d OwnFromObject(RestingFace face);
@@ -45,6 +46,25 @@ struct Landmark {
   RestingFace rests_on = RestingFace::kBottom;
 
   const Eigen::Vector3d& Centre() const { return frame_from_object.translation; }
+};
+
+// A landmark whose pose has this name: "world_from_object".
+template <typename Visitor>
+void DescribeLandmark(Visitor& visit, Landmark& landmark, const char* pose) {
+  ShapeExponents& exponents = landmark.shape_exponents;
+  visit.Field(pose, &landmark.frame_from_object, "origin at the centre, z away from the plane");
+  visit.Field("half_axes", &landmark.half_axes,
+              "half axes (a, b, c) along the object's x, y, z, metres", kPositive);
+  DescribeExponents(visit, exponents, kEllipsoidExponent);
+  visit.OrAbsent("rests_on", &landmark.rests_on,
+                 "face that the object rests on; z is away from its support plane in any case: on "
+                 "its back, its own front is along z; on its side, its own left");
+}
+inline constexpr auto kInWorld = [](auto& visit, Landmark& landmark) {
+  DescribeLandmark(visit, landmark, "world_from_object");
+};
+inline constexpr auto kInCamera = [](auto& visit, Landmark& landmark) {
+  DescribeLandmark(visit, landmark, "camera_from_object");
 };
 
 // The geometric mean of the half axes: the size of the body, whatever its shape.

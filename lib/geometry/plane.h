@@ -17,6 +17,12 @@ struct Plane {
   Eigen::Vector4d Homogeneous() const { return {normal.x(), normal.y(), normal.z(), offset}; }
 };
 
+template <typename Visitor>
+void Describe(Visitor& visit, Plane& plane) {
+  visit.Unit("normal", &plane.normal, "unit normal, towards the supported objects");
+  visit.Field("offset", &plane.offset, "metres: normal . x + offset = 0");
+}
+
 // The same plane in the target frame.
 inline Plane Transform(const Rigid3d& target_from_source, const Plane& plane_in_source) {
   const Eigen::Vector3d normal_in_target = target_from_source.rotation * plane_in_source.normal;

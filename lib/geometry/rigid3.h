@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "base/description.h"
+
 namespace soslam {
 
 // A rigid motion. Variables are named target_from_source:
@@ -30,6 +32,12 @@ struct Rigid3d {
     return matrix;
   }
 };
+
+template <typename Visitor>
+void Describe(Visitor& visit, Rigid3d& rigid) {
+  visit.Unit("rotation_xyzw", &rigid.rotation, "unit quaternion in the order x, y, z, w");
+  visit.Field("translation", &rigid.translation, "metres, in the target frame");
+}
 
 // The skew-symmetric matrix with Skew(v) * w = v x w.
 inline Eigen::Matrix3d Skew(const Eigen::Vector3d& v) {

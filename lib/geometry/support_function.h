@@ -2,6 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
+
+#include "base/description.h"
 
 namespace soslam {
 
@@ -28,6 +31,22 @@ struct ShapeExponents {
 
 inline constexpr double kCuboidExponent = 1.0;
 inline constexpr double kEllipsoidExponent = 2.0;
+
+// `absent`: the exponent of files without any.
+template <typename Visitor>
+void DescribeExponents(Visitor& visit, ShapeExponents& exponents, double absent) {
+  constexpr Limits kExponents = {1.0, 2.0};
+  std::optional<double> vertical;
+  if (exponents.HasAxis()) vertical = exponents.vertical;
+  visit.OrDefault("shape_exponent", &exponents.horizontal, absent,
+                  "of the horizontal sections: 1 rectangle, 2 ellipse, superellipses in between",
+                  kExponents);
+  visit.OrAbsent("vertical_exponent", &vertical,
+                 "of the curve that joins the horizontal sections: 1 and a shape_exponent of 2 are "
+                 "a cylinder; absent: that of the sections",
+                 kExponents);
+  visit.AfterReading([&] { exponents.vertical = vertical.value_or(exponents.horizontal); });
+}
 
 // The exponents q of 1 / p + 1 / q = 1. Infinite for p = 1, and for bodies whose edges are too
 // sharp to be told from it.

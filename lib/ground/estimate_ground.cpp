@@ -81,140 +81,23 @@ UpPrior WithCommonError(const UpPrior& up_prior) {
   return {d_turns * covariance.inverse() * d_turns.transpose(), up_prior.up_in_world};
 }
 
-// All steps, in the normalised world.
-class Estimation {
- public:
-  Estimation(const Sequence& sequence, const std::vector<GroundPoint>& points,
-             const SemanticTable& table, const GroundOptions& options, int threads)
-      : sequence_(sequence), points_(points), table_(table), options_(options), threads_(threads) {}
+// What is given, in the normalised world.
+struct NormalisedInput {
+  const Sequence& sequence;
+  const std::vector<GroundPoint>& points;
+  const SemanticTable& table;
+  const GroundOptions& options;
+  double units_per_input;  // units of the input in a normalised one
+  int threads;
+};
 
-  // Runs all steps for cameras that are held in this way.
-  void Run(const UpEstimate& held, const std::vector<SegmentView>& views) {
-    result.up_of_cameras = held;
-    FindUpPrior(views);
-    Run();
-  }
-
-  // The same for cameras that are turned in many ways. They only tell that up is within 45 degrees
-  // of halfway between up in their images and away from what they look at.
-  void RunTurned(const UpEstimate& up_of_cameras) {
-    constexpr double kSigma = 30.0 * kRadPerDeg;
-    constexpr double kLeast = 0.5;  // length of the mean: less is of cameras turned in all ways
-    result.up_of_cameras = up_of_cameras;
-    result.cameras_are_turned = true;
-    Eigen::Vector3d up = Eigen::Vector3d::Zero();  // halfway between level and looking down
-    for (const Frame& frame : sequence_.frames) {
-      up -= frame.world_from_camera.rotation * Eigen::Vector3d(0.0, 1.0, 1.0);
-    }
-    if (up.norm() < kLeast * static_cast<double>(sequence_.frames.size())) return;
-    up.normalize();
-    up_prior = {(Eigen::Matrix3d::Identity() - up * up.transpose()) / (kSigma * kSigma), up};
-    without_verticals = up_prior;
-    Run();
-  }
-
-  // Sum of the probabilities of objects to stand on planes.
-  double StandingObjects() const {
-    const std::vector<double> on_planes = ObjectsOnPlanes();
-    return std::accumulate(on_planes.begin(), on_planes.end(), 0.0);
-  }
-
-  double units_per_input = 1.0;  // units of the input in a normalised one
-  UpPrior up_prior;              // from cameras and vertical edges
+// A way in which the cameras may be held, and what follows from it in the normalised world.
+struct UpHypothesis {
+  UpPrior up_prior;  // from cameras and vertical edges
   UpPrior without_verticals;
   HorizontalPlanes planes;
   std::vector<MeasuredObject> objects;
   GroundEstimate result;  // what does not need the output's world; its scales are of this one
-
- private:
-  void Run() {
-    planes = FindHorizontalPlanes(points_, up_prior);
-    CheckVerticals();
-    result.planes_of_points = static_cast<int>(planes.planes.size());
-    if (result.planes_of_points > 0) on_lowest_plane_ = planes.planes.front().centre_in_world;
-    const auto groups = GroupBoxes(sequence_, points_, planes, threads_);
-    Measure(groups);
-    if (DropPlanesWithoutObjects()) {
-      planes = Refined(planes, points_, up_prior);
-      Measure(groups);
-    }
-  }
-
-  void FindUpPrior(const std::vector<SegmentView>& views) {
-    const std::vector<Rigid3d> poses = PosesOf(sequence_);
-    const double correlation = options_.upright.ViewCorrelation();
-    up_prior =
-        RobustUpPriorFromCameras(poses, options_.tilt, correlation, result.up_of_cameras.holding);
-    without_verticals = WithCommonError(up_prior);
-    result.verticals = !views.empty();
-    if (result.verticals) {
-      constexpr double kMaxTilt = 12.0 * kRadPerDeg;
-      std::vector<SegmentView> in_world = views;
-      for (size_t i = 0; i < poses.size(); ++i) in_world[i].world_from_camera = poses[i];
-      up_prior =
-          WithVerticals(up_prior, in_world, options_.verticals.Sigma(), correlation, kMaxTilt);
-    }
-    up_prior = WithCommonError(up_prior);
-  }
-
-  // Cameras that all look in one direction do not tell vertical edges from others. Where more
-  // points lie on planes without them, they are ignored; where nearly as many do, up is ambiguous.
-  void CheckVerticals() {
-    constexpr double kRoughly = 10.0 * kRadPerDeg;
-    constexpr double kSameUp = 3.0 * kRadPerDeg;
-    constexpr double kShare = 0.1;  // as many fewer points make a direction e times less probable
-    if (!result.verticals || std::sqrt(TiltCovariance(without_verticals).trace()) < kRoughly)
-      return;
-    HorizontalPlanes other = FindHorizontalPlanes(points_, without_verticals);
-    const double angle = AngleBetween(planes.up_in_world, other.up_in_world);
-    if (angle < kSameUp || other.planes.empty()) return;
-    const double points = planes.PointCount(), other_points = other.PointCount();
-    if (other_points > points) {
-      std::swap(planes, other);
-      up_prior = without_verticals;
-      result.verticals = false;
-    }
-    const double weight =
-        std::exp(-std::abs(points - other_points) / (kShare * std::max(points, other_points)));
-    AddAmbiguity(weight / (1.0 + weight) * angle * angle, &planes);
-  }
-
-  void Measure(const std::vector<std::vector<int>>& groups) {
-    UpEstimate up = result.up_of_cameras;
-    up.up_in_world = planes.up_in_world;
-    const Eigen::Matrix3d level = UprightRotation(up.up_in_world, 0.0).toRotationMatrix();
-    up.covariance = level.leftCols<2>() * planes.tilt_covariance * level.leftCols<2>().transpose();
-    objects = MeasureObjects(sequence_, groups, table_, planes, up, options_, threads_);
-    std::vector<ScaleEvidence> evidence;
-    for (const MeasuredObject& object : objects) evidence.push_back(object.evidence);
-    WeightSameLabels(options_.same_label_correlation, &evidence);
-    for (size_t i = 0; i < objects.size(); ++i) objects[i].evidence.weight = evidence[i].weight;
-    std::erase_if(evidence, [](const ScaleEvidence& one) { return one.hypotheses.empty(); });
-    result.scale_of_objects = EstimateScale(evidence, {});
-    result.known_scales = Known();
-    result.scale = EstimateScale(evidence, result.known_scales);
-  }
-
-  std::vector<KnownScale> Known() const {
-    std::vector<KnownScale> known;
-    if (options_.scale > 0.0) {
-      known.push_back(
-          {std::log(options_.scale * units_per_input), options_.scale_log_sigma, "scale"});
-    }
-    if (options_.camera_height_m > 0.0 && on_lowest_plane_) {
-      std::vector<double> heights;
-      for (const Frame& frame : sequence_.frames) {
-        heights.push_back(
-            planes.up_in_world.dot(frame.world_from_camera.translation - *on_lowest_plane_));
-      }
-      const double height = UpperMedian(std::move(heights));
-      if (height > 0.0) {
-        known.push_back({std::log(options_.camera_height_m / height),
-                         options_.camera_height_log_sigma, "camera_height_m"});
-      }
-    }
-    return known;
-  }
 
   // For each plane, the sum of the probabilities of objects to stand on it.
   std::vector<double> ObjectsOnPlanes() const {
@@ -231,60 +114,172 @@ class Estimation {
     }
     return objects_on;
   }
-
-  // True if some planes are left out and others stay.
-  bool DropPlanesWithoutObjects() {
-    constexpr double kLeastObjects = 0.5;
-    const std::vector<double> objects_on = ObjectsOnPlanes();
-    std::vector<PlaneOfPoints> kept;
-    for (size_t k = 0; k < objects_on.size(); ++k) {
-      if (objects_on[k] >= kLeastObjects) kept.push_back(planes.planes[k]);
-    }
-    const bool changes = kept.size() < planes.planes.size();
-    planes.planes = kept;
-    return changes;
+  double StandingObjects() const {
+    const std::vector<double> on_planes = ObjectsOnPlanes();
+    return std::accumulate(on_planes.begin(), on_planes.end(), 0.0);
   }
-
-  const Sequence& sequence_;
-  const std::vector<GroundPoint>& points_;
-  const SemanticTable& table_;
-  const GroundOptions& options_;
-  int threads_;
-  std::optional<Eigen::Vector3d> on_lowest_plane_;  // of points, whether or not objects stand on it
 };
+
+// Cameras that all look in one direction do not tell vertical edges from others. Where more points
+// lie on planes without them, they are ignored; where nearly as many do, up is ambiguous.
+void CheckVerticals(const std::vector<GroundPoint>& points, UpHypothesis* hypothesis) {
+  constexpr double kRoughly = 10.0 * kRadPerDeg;
+  constexpr double kSameUp = 3.0 * kRadPerDeg;
+  constexpr double kShare = 0.1;  // as many fewer points make a direction e times less probable
+  HorizontalPlanes& planes = hypothesis->planes;
+  const UpPrior& without_verticals = hypothesis->without_verticals;
+  if (!hypothesis->result.verticals ||
+      std::sqrt(TiltCovariance(without_verticals).trace()) < kRoughly) {
+    return;
+  }
+  HorizontalPlanes other = FindHorizontalPlanes(points, without_verticals);
+  const double angle = AngleBetween(planes.up_in_world, other.up_in_world);
+  if (angle < kSameUp || other.planes.empty()) return;
+  const double count = planes.PointCount(), other_count = other.PointCount();
+  if (other_count > count) {
+    std::swap(planes, other);
+    hypothesis->up_prior = without_verticals;
+    hypothesis->result.verticals = false;
+  }
+  const double weight =
+      std::exp(-std::abs(count - other_count) / (kShare * std::max(count, other_count)));
+  AddAmbiguity(weight / (1.0 + weight) * angle * angle, &planes);
+}
+
+// What the settings say of the scale. `on_lowest_plane`: of points, whether or not objects stand on
+// it.
+std::vector<KnownScale> KnownScales(const NormalisedInput& input, const Eigen::Vector3d& up,
+                                    const std::optional<Eigen::Vector3d>& on_lowest_plane) {
+  const GroundOptions& options = input.options;
+  std::vector<KnownScale> known;
+  if (options.scale > 0.0) {
+    known.push_back(
+        {std::log(options.scale * input.units_per_input), options.scale_log_sigma, "scale"});
+  }
+  if (!(options.camera_height_m > 0.0) || !on_lowest_plane) return known;
+  std::vector<double> heights;
+  for (const Frame& frame : input.sequence.frames) {
+    heights.push_back(up.dot(frame.world_from_camera.translation - *on_lowest_plane));
+  }
+  const double height = UpperMedian(std::move(heights));
+  if (height > 0.0) {
+    known.push_back({std::log(options.camera_height_m / height), options.camera_height_log_sigma,
+                     "camera_height_m"});
+  }
+  return known;
+}
+
+// Finds planes, objects and scale of a hypothesis of which cameras and up priors are known.
+void Follow(const NormalisedInput& input, UpHypothesis* hypothesis) {
+  HorizontalPlanes& planes = hypothesis->planes;
+  GroundEstimate& result = hypothesis->result;
+  planes = FindHorizontalPlanes(input.points, hypothesis->up_prior);
+  CheckVerticals(input.points, hypothesis);
+  result.planes_of_points = static_cast<int>(planes.planes.size());
+  std::optional<Eigen::Vector3d> on_lowest_plane;
+  if (!planes.planes.empty()) on_lowest_plane = planes.planes.front().centre_in_world;
+  const auto groups = GroupBoxes(input.sequence, input.points, planes, input.threads);
+  const auto measure = [&] {
+    UpEstimate up = result.up_of_cameras;
+    up.up_in_world = planes.up_in_world;
+    const Eigen::Matrix3d level = UprightRotation(up.up_in_world, 0.0).toRotationMatrix();
+    up.covariance = level.leftCols<2>() * planes.tilt_covariance * level.leftCols<2>().transpose();
+    hypothesis->objects = MeasureObjects(input.sequence, groups, input.table, planes, up,
+                                         input.options, input.threads);
+    std::vector<ScaleEvidence> evidence;
+    for (const MeasuredObject& object : hypothesis->objects) evidence.push_back(object.evidence);
+    WeightSameLabels(input.options.same_label_correlation, &evidence);
+    for (size_t i = 0; i < evidence.size(); ++i) {
+      hypothesis->objects[i].evidence.weight = evidence[i].weight;
+    }
+    std::erase_if(evidence, [](const ScaleEvidence& one) { return one.hypotheses.empty(); });
+    result.scale_of_objects = EstimateScale(evidence, {});
+    result.known_scales = KnownScales(input, planes.up_in_world, on_lowest_plane);
+    result.scale = EstimateScale(evidence, result.known_scales);
+  };
+  measure();
+  constexpr double kLeastObjects = 0.5;
+  const std::vector<double> objects_on = hypothesis->ObjectsOnPlanes();
+  std::vector<PlaneOfPoints> with_objects;
+  for (size_t k = 0; k < objects_on.size(); ++k) {
+    if (objects_on[k] >= kLeastObjects) with_objects.push_back(planes.planes[k]);
+  }
+  if (with_objects.size() == planes.planes.size()) return;
+  planes.planes = with_objects;
+  planes = Refined(planes, input.points, hypothesis->up_prior);
+  measure();
+}
+
+// Cameras that are held in this way.
+UpHypothesis FollowHeld(const NormalisedInput& input, const UpEstimate& held,
+                        const std::vector<SegmentView>& views) {
+  const GroundOptions& options = input.options;
+  UpHypothesis hypothesis;
+  hypothesis.result.up_of_cameras = held;
+  hypothesis.result.verticals = !views.empty();
+  const std::vector<Rigid3d> poses = PosesOf(input.sequence);
+  const double correlation = options.upright.ViewCorrelation();
+  UpPrior up_prior = RobustUpPriorFromCameras(poses, options.tilt, correlation, held.holding);
+  hypothesis.without_verticals = WithCommonError(up_prior);
+  if (!views.empty()) {
+    constexpr double kMaxTilt = 12.0 * kRadPerDeg;
+    std::vector<SegmentView> in_world = views;
+    for (size_t i = 0; i < poses.size(); ++i) in_world[i].world_from_camera = poses[i];
+    up_prior = WithVerticals(up_prior, in_world, options.verticals.Sigma(), correlation, kMaxTilt);
+  }
+  hypothesis.up_prior = WithCommonError(up_prior);
+  Follow(input, &hypothesis);
+  return hypothesis;
+}
+
+// Cameras that are turned in many ways, but not in all. They only tell that up is within 45 degrees
+// of halfway between up in their images and away from what they look at.
+std::optional<UpHypothesis> FollowTurned(const NormalisedInput& input,
+                                         const UpEstimate& up_of_cameras) {
+  constexpr double kSigma = 30.0 * kRadPerDeg;
+  constexpr double kLeast = 0.5;  // length of the mean: less is of cameras turned in all ways
+  Eigen::Vector3d up = Eigen::Vector3d::Zero();  // halfway between level and looking down
+  for (const Frame& frame : input.sequence.frames) {
+    up -= frame.world_from_camera.rotation * Eigen::Vector3d(0.0, 1.0, 1.0);
+  }
+  if (up.norm() < kLeast * static_cast<double>(input.sequence.frames.size())) return std::nullopt;
+  up.normalize();
+  UpHypothesis hypothesis;
+  hypothesis.result.up_of_cameras = up_of_cameras;
+  hypothesis.result.cameras_are_turned = true;
+  hypothesis.up_prior = {(Eigen::Matrix3d::Identity() - up * up.transpose()) / (kSigma * kSigma),
+                         up};
+  hypothesis.without_verticals = hypothesis.up_prior;
+  Follow(input, &hypothesis);
+  return hypothesis;
+}
 
 // With the cameras held as their boxes say. Where fewer than half of the objects then stand on
 // planes, other ways to hold them are tried, cameras that are turned in many ways last: one in
 // which more than twice as many stand, on planes of more than twice as many points, is better.
-Estimation BestHeld(const Estimation& none, const UpEstimate& of_cameras,
-                    const std::vector<SegmentView>& views) {
+UpHypothesis BestHypothesis(const NormalisedInput& input, const UpEstimate& of_cameras,
+                            const std::vector<SegmentView>& views) {
   constexpr double kMost = 0.5, kClearly = 2.0;
-  std::optional<Estimation> best(none);
+  UpHypothesis best = FollowHeld(input, of_cameras, views);
   const auto most_stand = [&] {
-    return best->StandingObjects() >= kMost * static_cast<double>(best->objects.size());
+    return best.StandingObjects() >= kMost * static_cast<double>(best.objects.size());
   };
-  const auto take_if_better = [&](Estimation other) {
-    if (other.StandingObjects() > kClearly * best->StandingObjects() &&
-        other.planes.PointCount() > kClearly * best->planes.PointCount()) {
-      best.emplace(std::move(other));
+  const auto take_if_better = [&](const UpHypothesis& other) {
+    if (other.StandingObjects() > kClearly * best.StandingObjects() &&
+        other.planes.PointCount() > kClearly * best.planes.PointCount()) {
+      best = other;
     }
   };
-  best->Run(of_cameras, views);
   for (const CameraHolding holding : kCameraHoldings) {
-    if (most_stand()) break;
+    if (most_stand()) return best;
     if (holding == of_cameras.holding) continue;
     UpEstimate held = of_cameras;
     held.holding = holding;
-    Estimation other = none;
-    other.Run(held, views);
-    take_if_better(std::move(other));
+    take_if_better(FollowHeld(input, held, views));
   }
-  if (!most_stand()) {
-    Estimation turned = none;
-    turned.RunTurned(of_cameras);
-    take_if_better(std::move(turned));
-  }
-  return *std::move(best);
+  if (most_stand()) return best;
+  if (const auto turned = FollowTurned(input, of_cameras)) take_if_better(*turned);
+  return best;
 }
 
 void Shift(double log_factor, std::optional<ScalePosterior>* posterior) {
@@ -292,30 +287,6 @@ void Shift(double log_factor, std::optional<ScalePosterior>* posterior) {
   (*posterior)->log_scale += log_factor;
   (*posterior)->low += log_factor;
   (*posterior)->high += log_factor;
-}
-
-// The output's world: z up, metres, its origin below the first camera on the lowest plane.
-// Where the scale is unknown, the unit is that of the input.
-Similarity OutputFromNormalised(const Estimation& estimation) {
-  Similarity output;
-  const auto& scale = estimation.result.scale;
-  output.scale = scale ? std::exp(scale->log_scale) : estimation.units_per_input;
-  output.rigid.rotation = UprightRotation(estimation.planes.up_in_world, 0.0).conjugate();
-  if (!estimation.planes.planes.empty()) {
-    output.rigid.translation.z() = -output.scale * estimation.planes.planes.front().height;
-  }
-  return output;
-}
-
-EstimatedPlane OutputPlane(const Similarity& output_from_normalised, const PlaneOfPoints& plane) {
-  EstimatedPlane result;
-  result.point_in_world = output_from_normalised * plane.centre_in_world;
-  result.point_in_world.z() =
-      output_from_normalised.scale * plane.height + output_from_normalised.rigid.translation.z();
-  result.plane_in_world = {Eigen::Vector3d::UnitZ(), -result.point_in_world.z()};
-  const Eigen::Vector3d units(1.0, 1.0, output_from_normalised.scale);
-  result.covariance = units.asDiagonal() * plane.covariance * units.asDiagonal();
-  return result;
 }
 
 GroundObject OutputObject(const Similarity& output_from_normalised, const MeasuredObject& object,
@@ -352,31 +323,41 @@ GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoi
   const auto ground_points = GroundPoints(normalised, Transformed(normalised_from_input, points));
   // The scale is that of the normalised world until the end.
   const double log_units = -std::log(normalised_from_input.scale);
-  Estimation none(normalised, ground_points, table, options, threads);
-  none.units_per_input = std::exp(log_units);
+  const NormalisedInput input{normalised, ground_points,       table,
+                              options,    std::exp(log_units), threads};
   const UpEstimate of_cameras =
       UpOfSegments(normalised, table, FitOptions(options)).begin()->second;
-  const Estimation estimation = BestHeld(none, of_cameras, views);
+  const UpHypothesis best = BestHypothesis(input, of_cameras, views);
 
-  GroundEstimate result = estimation.result;
-  const Similarity output = OutputFromNormalised(estimation);
+  GroundEstimate result = best.result;
+  // The output's world: z up, metres, its origin below the first camera on the lowest plane. Where
+  // the scale is unknown, the unit is that of the input.
+  Similarity output;
+  output.scale = result.scale ? std::exp(result.scale->log_scale) : input.units_per_input;
+  output.rigid.rotation = UprightRotation(best.planes.up_in_world, 0.0).conjugate();
+  if (!best.planes.planes.empty()) {
+    output.rigid.translation.z() = -output.scale * best.planes.planes.front().height;
+  }
   result.output_from_input = output * normalised_from_input;
-  result.up_in_input =
-      normalised_from_input.rigid.rotation.conjugate() * estimation.planes.up_in_world;
-  result.tilt_sigma = std::sqrt(estimation.planes.tilt_covariance.trace());
-  result.cameras_tilt_sigma = std::sqrt(TiltCovariance(estimation.up_prior).trace());
-  result.tilt_to_cameras =
-      AngleBetween(estimation.up_prior.up_in_world, estimation.planes.up_in_world);
+  result.up_in_input = normalised_from_input.rigid.rotation.conjugate() * best.planes.up_in_world;
+  result.tilt_sigma = std::sqrt(best.planes.tilt_covariance.trace());
+  result.cameras_tilt_sigma = std::sqrt(TiltCovariance(best.up_prior).trace());
+  result.tilt_to_cameras = AngleBetween(best.up_prior.up_in_world, best.planes.up_in_world);
   Shift(-log_units, &result.scale);
   Shift(-log_units, &result.scale_of_objects);
   for (KnownScale& known : result.known_scales) known.log_scale -= log_units;
   result.holding_of_boxes = of_cameras.holding;
   result.points = static_cast<int>(ground_points.size());
-  for (const PlaneOfPoints& plane : estimation.planes.planes) {
-    result.planes.push_back(OutputPlane(output, plane));
+  for (const PlaneOfPoints& plane : best.planes.planes) {
+    EstimatedPlane& in_output = result.planes.emplace_back();
+    in_output.point_in_world = output * plane.centre_in_world;
+    in_output.point_in_world.z() = output.scale * plane.height + output.rigid.translation.z();
+    in_output.plane_in_world = {Eigen::Vector3d::UnitZ(), -in_output.point_in_world.z()};
+    const Eigen::Vector3d units(1.0, 1.0, output.scale);
+    in_output.covariance = units.asDiagonal() * plane.covariance * units.asDiagonal();
     result.points_on_planes.push_back(static_cast<int>(plane.points_in_world.size()));
   }
-  for (const MeasuredObject& object : estimation.objects) {
+  for (const MeasuredObject& object : best.objects) {
     result.objects.push_back(OutputObject(output, object, log_units, std::log(output.scale)));
   }
   return result;

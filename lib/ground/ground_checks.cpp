@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "base/text.h"
 #include "geometry/angles.h"
@@ -17,16 +18,6 @@ namespace {
 constexpr const char* kGiveScale =
     "give scale or camera_height_m (SCALE or CAMERA_HEIGHT of make map); lengths are only as good "
     "as the scale";
-
-// ", which count as ... things" where objects of one label have less weight.
-std::string IndependentInWords(const GroundEstimate& estimate) {
-  constexpr double kLeastDifference = 0.05;  // one that is seen in the words
-  const int objects = estimate.AgreeingObjects();
-  const double independent = estimate.IndependentObjects();
-  if (objects - independent < kLeastDifference) return "";
-  return fmt::format("; as heights of one label are alike, {} as {:.1f}",
-                     objects == 1 ? "this thing counts" : "these things count", independent);
-}
 
 void CheckScale(const GroundEstimate& estimate, std::vector<Finding>* findings) {
   constexpr double kUncertain = 0.25;  // of the logarithm
@@ -41,10 +32,19 @@ void CheckScale(const GroundEstimate& estimate, std::vector<Finding>* findings) 
   }
   if (estimate.scale->log_sigma < kUncertain) return;
   const WorldScale scale = *WorldScaleOf(estimate, {});
+  constexpr double kLeastDifference = 0.05;  // one that is seen in the words
+  const int objects = estimate.AgreeingObjects();
+  const double independent = estimate.IndependentObjects();
+  std::string as_independent;
+  if (objects - independent >= kLeastDifference) {
+    as_independent =
+        fmt::format("; as heights of one label are alike, {} as {:.1f}",
+                    objects == 1 ? "this thing counts" : "these things count", independent);
+  }
   findings->push_back(
       {"scale_uncertain", Severity::kWarning,
        fmt::format("the scale is known to +- {:.0f} % (95 %), from {}{}",
-                   HalfIntervalPercent(scale), SourcesInWords(scale), IndependentInWords(estimate)),
+                   HalfIntervalPercent(scale), SourcesInWords(scale), as_independent),
        fmt::format("a standard deviation below {:.0f} %", 100.0 * kUncertain),
        "too few objects whose labels have heights, or heights that vary much", kGiveScale});
 }
@@ -248,7 +248,16 @@ std::optional<WorldScale> WorldScaleOf(const GroundEstimate& estimate,
                    std::exp(estimate.scale->high),
                    {},
                    estimate.AgreeingObjects(),
-                   {}};
+                   {},
+                   estimate.IndependentObjects(),
+                   {},
+                   estimate.scale->misfit,
+                   estimate.scale->second_mode_share};
+  std::set<std::string> labels;
+  for (const GroundObject& object : estimate.objects) {
+    if (object.AgreesWithScale()) labels.insert(object.label);
+  }
+  scale.labels.assign(labels.begin(), labels.end());
   if (scale.objects > 0) scale.found_by.emplace_back(kObjects);
   for (const KnownScale& known : estimate.known_scales) scale.found_by.push_back(known.setting);
   // A scale that settings alone give does not rest on objects that contradict one another.
@@ -261,6 +270,35 @@ std::optional<WorldScale> WorldScaleOf(const GroundEstimate& estimate,
     }
   }
   return scale;
+}
+
+WorldReport ReportOf(const GroundEstimate& estimate, const Sequence& input,
+                     const std::vector<Finding>& findings) {
+  WorldReport report;
+  report.dataset = input.name;
+  report.up = {estimate.up_in_input,
+               kDegPerRad * estimate.tilt_sigma,
+               estimate.planes.empty() ? "cameras" : "planes",
+               estimate.cameras_are_turned ? "turned" : NameOf(estimate.up_of_cameras.holding),
+               estimate.verticals,
+               kDegPerRad * estimate.cameras_tilt_sigma,
+               kDegPerRad * estimate.tilt_to_cameras};
+  report.scale = WorldScaleOf(estimate, findings);
+  report.output_from_input = {estimate.output_from_input.scale, estimate.output_from_input.rigid};
+  for (int i = 0; i < std::ssize(estimate.planes); ++i) {
+    const auto objects = std::ranges::count(estimate.objects, i, &GroundObject::plane);
+    report.planes.push_back(
+        {RowOf(estimate.planes[i], i), estimate.points_on_planes[i], static_cast<int>(objects)});
+  }
+  report.points = estimate.points;
+  report.planes_of_points = estimate.planes_of_points;
+  for (const GroundObject& object : estimate.objects) {
+    report.objects.push_back({object.label, object.boxes,
+                              object.plane == kNoPlane ? std::nullopt : std::optional(object.plane),
+                              object.centre_in_world, object.height_m, object.log_scale,
+                              object.log_sigma, object.weight, object.agreement});
+  }
+  return report;
 }
 
 double HalfIntervalPercent(const WorldScale& scale) {

@@ -7,6 +7,7 @@
 
 #include "ground/estimate_ground.h"
 #include "model/finding.h"
+#include "model/world.h"
 
 namespace soslam {
 
@@ -26,19 +27,13 @@ inline constexpr const char* kObjectsAgainstSettingsCheck = "scale_of_objects_di
 inline constexpr const char* kObjectsAgainstOneAnotherCheck = "scale_contradicted";
 inline constexpr const char* kSettingsAgainstEachOtherCheck = "settings_of_scale_differ";
 
-// The scale of a world, as world.json states it, and what it rests on.
-struct WorldScale {
-  double metres_per_unit = 1.0;              // of the input's world, median
-  double log_sigma = 0.0;                    // standard deviation of its logarithm
-  double low = 1.0, high = 1.0;              // interval of 95 %
-  std::vector<std::string> found_by;         // "objects", and the settings that give it
-  int objects = 0;                           // those whose heights agree with it
-  std::vector<std::string> contradicted_by;  // checks whose findings contradict it
-};
-
 // None where nothing tells the scale. `findings`: of CheckGround.
 std::optional<WorldScale> WorldScaleOf(const GroundEstimate& estimate,
                                        const std::vector<Finding>& findings);
+
+// `findings`: of CheckGround.
+WorldReport ReportOf(const GroundEstimate& estimate, const Sequence& input,
+                     const std::vector<Finding>& findings);
 
 // Half the 95 % interval, in per cent of its geometric middle.
 double HalfIntervalPercent(const WorldScale& scale);

@@ -30,51 +30,30 @@ struct Place {
   double width, height;
 };
 
-std::vector<std::vector<DepthReading>> ReadingsByFrame(const Sequence& sequence,
-                                                       const std::vector<GroundPoint>& points) {
-  std::vector<std::vector<DepthReading>> readings(sequence.frames.size());
-  for (const GroundPoint& point : points) {
-    for (const int index : point.frame_indices) {
-      const Frame& frame = sequence.frames[index];
-      const Eigen::Vector3d in_camera = frame.world_from_camera.Inverse() * point.position_in_world;
-      const auto pixel = sequence.CameraOf(frame).Project(in_camera);
-      if (pixel) readings[index].push_back({*pixel, in_camera.z()});
-    }
-  }
-  return readings;
-}
-
-Box Shrunk(const Box& box, double share) {
-  const Eigen::Vector2d half = 0.5 * share * Eigen::Vector2d(box.Width(), box.Height());
-  const Eigen::Vector2d low = box.Centre() - half, high = box.Centre() + half;
-  return {low.x(), low.y(), high.x(), high.y()};
-}
-
-std::optional<double> DepthOfPoints(const std::vector<DepthReading>& readings, const Box& box) {
-  for (const double share : {kInnerShare, 1.0}) {
-    const Box inside = Shrunk(box, share);
-    std::vector<double> depths;
-    for (const DepthReading& reading : readings) {
-      if (inside.Contains(reading.pixel)) depths.push_back(reading.depth);
-    }
-    if (depths.size() < kLeastInBox) continue;
-    const auto near = depths.begin() + static_cast<std::ptrdiff_t>(
-                                           kNearQuantile * static_cast<double>(depths.size()));
-    std::nth_element(depths.begin(), near, depths.end());
-    return *near;
-  }
-  return std::nullopt;
-}
-
 // Depths at which an object with this box may be: those of the points in it, and of the planes
 // under its lower edge.
 std::vector<double> DepthsOf(const Sequence& sequence, const Detection& detection,
                              const std::vector<DepthReading>& readings,
                              const HorizontalPlanes& planes) {
   std::vector<double> depths;
-  if (const auto depth = DepthOfPoints(readings, detection.box)) depths.push_back(*depth);
+  const Box& box = detection.box;
+  for (const double share : {kInnerShare, 1.0}) {
+    const Eigen::Vector2d half = 0.5 * share * Eigen::Vector2d(box.Width(), box.Height());
+    const Eigen::Vector2d low = box.Centre() - half, high = box.Centre() + half;
+    const Box inside = {low.x(), low.y(), high.x(), high.y()};
+    std::vector<double> in_box;
+    for (const DepthReading& reading : readings) {
+      if (inside.Contains(reading.pixel)) in_box.push_back(reading.depth);
+    }
+    if (in_box.size() < kLeastInBox) continue;
+    const auto near = in_box.begin() + static_cast<std::ptrdiff_t>(
+                                           kNearQuantile * static_cast<double>(in_box.size()));
+    std::nth_element(in_box.begin(), near, in_box.end());
+    depths.push_back(*near);
+    break;
+  }
   const Frame& frame = sequence.FrameOf(detection);
-  const Eigen::Vector2d foot(detection.box.Centre().x(), detection.box.y_max);
+  const Eigen::Vector2d foot(box.Centre().x(), box.y_max);
   const Eigen::Vector3d ray =
       frame.world_from_camera.rotation * sequence.CameraOf(detection).Ray(foot);
   const double slope = planes.up_in_world.dot(ray);
@@ -88,7 +67,15 @@ std::vector<double> DepthsOf(const Sequence& sequence, const Detection& detectio
 
 std::vector<Place> PlacesOf(const Sequence& sequence, const std::vector<GroundPoint>& points,
                             const HorizontalPlanes& planes) {
-  const auto readings = ReadingsByFrame(sequence, points);
+  std::vector<std::vector<DepthReading>> readings(sequence.frames.size());
+  for (const GroundPoint& point : points) {
+    for (const int index : point.frame_indices) {
+      const Frame& frame = sequence.frames[index];
+      const Eigen::Vector3d in_camera = frame.world_from_camera.Inverse() * point.position_in_world;
+      const auto pixel = sequence.CameraOf(frame).Project(in_camera);
+      if (pixel) readings[index].push_back({*pixel, in_camera.z()});
+    }
+  }
   std::vector<Place> places;
   for (size_t i = 0; i < sequence.detections.size(); ++i) {
     const Detection& detection = sequence.detections[i];
@@ -127,167 +114,133 @@ struct Supporter {
   double overlap;
 };
 
-// Groups of places: the rectangle that most boxes agree with is the first object, and so on with
-// the boxes that are left.
-class Grouping {
- public:
-  Grouping(const Sequence& sequence, std::vector<Place> places, int threads)
-      : sequence_(sequence),
-        places_(std::move(places)),
-        is_taken_(sequence.detections.size()),
-        supporters_(places_.size()) {
-    ParallelFor(places_.size(), threads,
-                [&](size_t i) { supporters_[i] = SupportersOf(places_[i]); });
+// The detections that show the same rectangle, by frame, those of most overlap first.
+std::vector<Supporter> SupportersOf(const Sequence& sequence, const Place& place) {
+  std::vector<Supporter> supporters;
+  for (size_t i = 0; i < sequence.detections.size(); ++i) {
+    const double overlap = static_cast<int>(i) == place.detection
+                               ? 1.0
+                               : Overlap(sequence, sequence.detections[i], place);
+    if (overlap > 0.0) supporters.push_back({static_cast<int>(i), overlap});
   }
+  std::ranges::stable_sort(supporters, {}, [&](const Supporter& one) {
+    return std::pair(sequence.detections[one.detection].frame_index, -one.overlap);
+  });
+  return supporters;
+}
 
-  void Run() {
-    for (;;) {
-      const Place* best = nullptr;
-      double most = 1.0;  // of the box alone
-      for (size_t i = 0; i < places_.size(); ++i) {
-        const double support = SupportOf(i);
-        if (support <= most) continue;
-        most = support;
-        best = &places_[i];
-      }
-      if (best == nullptr) break;
-      Take(*best);
+// The median centre and size of a group.
+Eigen::Vector4d MedianOf(const std::vector<Place>& group) {
+  Eigen::Vector4d median;
+  for (int i = 0; i < 4; ++i) {
+    std::vector<double> values;
+    for (const Place& place : group) {
+      values.push_back(i < 3 ? place.centre_in_world(i) : std::max(place.width, place.height));
     }
-    Join();
+    median(i) = UpperMedian(std::move(values));
   }
+  return median;
+}
 
-  std::vector<std::vector<int>> Detections() const {
-    std::vector<std::vector<int>> result;
-    for (const auto& group : groups_) {
-      result.emplace_back();
-      for (const Place& place : group) result.back().push_back(place.detection);
-      std::ranges::sort(result.back());
-    }
-    std::ranges::sort(result);
-    return result;
+// True if two groups are at the same place and hardly ever seen apart in one frame.
+bool AreOne(const Sequence& sequence, const std::vector<Place>& one,
+            const std::vector<Place>& other) {
+  constexpr double kMaxSizeRatio = 1.6;
+  constexpr double kMaxShareApart = 0.1;  // of the smaller group
+  const Eigen::Vector4d of_one = MedianOf(one), of_other = MedianOf(other);
+  const auto [smaller, larger] = std::minmax(of_one(3), of_other(3));
+  if (larger > kMaxSizeRatio * smaller || (of_one - of_other).head<3>().norm() > 0.5 * smaller) {
+    return false;
   }
-
- private:
-  int FrameOf(const Place& place) const {
-    return sequence_.detections[place.detection].frame_index;
+  int apart = 0;
+  for (const Place& place : one) {
+    const Detection& first = sequence.detections[place.detection];
+    apart += static_cast<int>(std::ranges::count_if(other, [&](const Place& of_other) {
+      const Detection& second = sequence.detections[of_other.detection];
+      return second.frame_index == first.frame_index &&
+             BoxOverlap(second.box, first.box) < kSameBox;
+    }));
   }
-  const Box& BoxOf(const Place& place) const { return sequence_.detections[place.detection].box; }
+  return apart <= kMaxShareApart * static_cast<double>(std::min(one.size(), other.size()));
+}
 
-  // The order: by frame, those of most overlap first.
-  std::vector<Supporter> SupportersOf(const Place& place) const {
-    std::vector<Supporter> supporters;
-    for (size_t i = 0; i < sequence_.detections.size(); ++i) {
-      const double overlap = static_cast<int>(i) == place.detection
-                                 ? 1.0
-                                 : Overlap(sequence_, sequence_.detections[i], place);
-      if (overlap > 0.0) supporters.push_back({static_cast<int>(i), overlap});
-    }
-    std::ranges::stable_sort(supporters, {}, [&](const Supporter& one) {
-      return std::pair(sequence_.detections[one.detection].frame_index, -one.overlap);
-    });
-    return supporters;
-  }
-
+// The rectangle that most boxes agree with is the first object, and so on with the boxes that are
+// left.
+std::vector<std::vector<Place>> GroupPlaces(const Sequence& sequence,
+                                            const std::vector<Place>& places, int threads) {
+  std::vector<std::vector<Supporter>> supporters(places.size());
+  ParallelFor(places.size(), threads,
+              [&](size_t i) { supporters[i] = SupportersOf(sequence, places[i]); });
+  std::vector<bool> is_taken(sequence.detections.size());
   // Calls `visit` with the supporters that are not taken: in each frame, the best one and those
   // that nearly coincide with it.
-  template <typename Visit>
-  void VisitSupporters(size_t place, const Visit& visit) const {
+  const auto visit_supporters = [&](size_t place, const auto& visit) {
     const Detection* best = nullptr;
-    for (const Supporter& supporter : supporters_[place]) {
-      if (is_taken_[supporter.detection]) continue;
-      const Detection& detection = sequence_.detections[supporter.detection];
+    for (const Supporter& supporter : supporters[place]) {
+      if (is_taken[supporter.detection]) continue;
+      const Detection& detection = sequence.detections[supporter.detection];
       const bool is_first = best == nullptr || best->frame_index != detection.frame_index;
       if (!is_first && BoxOverlap(best->box, detection.box) < kSameBox) continue;
       if (is_first) best = &detection;
       visit(supporter, is_first);
     }
-  }
-
-  double SupportOf(size_t place) const {
-    if (is_taken_[places_[place].detection]) return 0.0;
-    double sum = 0.0;
-    VisitSupporters(place, [&](const Supporter& supporter, bool is_first) {
-      if (is_first) sum += supporter.overlap;
-    });
-    return sum;
-  }
-
-  void Take(const Place& best) {
-    const Eigen::Vector3d centre = best.centre_in_world;
+  };
+  std::vector<std::vector<Place>> groups;
+  for (;;) {
+    std::optional<size_t> best;
+    double most = 1.0;  // of the box alone
+    for (size_t i = 0; i < places.size(); ++i) {
+      if (is_taken[places[i].detection]) continue;
+      double support = 0.0;
+      visit_supporters(i, [&](const Supporter& supporter, bool is_first) {
+        if (is_first) support += supporter.overlap;
+      });
+      if (support <= most) continue;
+      most = support;
+      best = i;
+    }
+    if (!best) return groups;
     std::vector<int> detections;
-    VisitSupporters(static_cast<size_t>(&best - places_.data()),
-                    [&](const Supporter& one, bool) { detections.push_back(one.detection); });
-    groups_.emplace_back();
+    visit_supporters(*best,
+                     [&](const Supporter& one, bool) { detections.push_back(one.detection); });
+    const Eigen::Vector3d& centre = places[*best].centre_in_world;
+    groups.emplace_back();
     for (const int index : detections) {
-      is_taken_[index] = true;
-      const Detection& detection = sequence_.detections[index];
-      const Camera& camera = sequence_.CameraOf(detection);
-      const double depth = (sequence_.FrameOf(detection).world_from_camera.Inverse() * centre).z();
-      groups_.back().push_back({index, centre, depth * detection.box.Width() / camera.fx,
-                                depth * detection.box.Height() / camera.fy});
+      is_taken[index] = true;
+      const Detection& detection = sequence.detections[index];
+      const Camera& camera = sequence.CameraOf(detection);
+      const double depth = (sequence.FrameOf(detection).world_from_camera.Inverse() * centre).z();
+      groups.back().push_back({index, centre, depth * detection.box.Width() / camera.fx,
+                               depth * detection.box.Height() / camera.fy});
     }
   }
-
-  // Joins groups at the same place that are hardly ever seen apart in one frame.
-  void Join() {
-    for (size_t i = 0; i < groups_.size(); ++i) {
-      for (size_t k = i + 1; k < groups_.size();) {
-        if (!AreOne(groups_[i], groups_[k])) {
-          ++k;
-          continue;
-        }
-        groups_[i].insert(groups_[i].end(), groups_[k].begin(), groups_[k].end());
-        groups_.erase(groups_.begin() + static_cast<std::ptrdiff_t>(k));
-        k = i + 1;
-      }
-    }
-  }
-
-  static Eigen::Vector4d MedianOf(const std::vector<Place>& group) {
-    Eigen::Vector4d median;
-    for (int i = 0; i < 4; ++i) {
-      std::vector<double> values;
-      for (const Place& place : group) {
-        values.push_back(i < 3 ? place.centre_in_world(i) : std::max(place.width, place.height));
-      }
-      median(i) = UpperMedian(std::move(values));
-    }
-    return median;
-  }
-
-  bool AreOne(const std::vector<Place>& one, const std::vector<Place>& other) const {
-    constexpr double kMaxSizeRatio = 1.6;
-    constexpr double kMaxShareApart = 0.1;  // of the smaller group
-    const Eigen::Vector4d of_one = MedianOf(one), of_other = MedianOf(other);
-    const auto [smaller, larger] = std::minmax(of_one(3), of_other(3));
-    if (larger > kMaxSizeRatio * smaller || (of_one - of_other).head<3>().norm() > 0.5 * smaller) {
-      return false;
-    }
-    int apart = 0;
-    for (const Place& place : one) {
-      apart += static_cast<int>(std::ranges::count_if(other, [&](const Place& second) {
-        return FrameOf(second) == FrameOf(place) &&
-               BoxOverlap(BoxOf(second), BoxOf(place)) < kSameBox;
-      }));
-    }
-    return apart <= kMaxShareApart * static_cast<double>(std::min(one.size(), other.size()));
-  }
-
-  const Sequence& sequence_;
-  std::vector<Place> places_;
-  std::vector<bool> is_taken_;                      // per detection
-  std::vector<std::vector<Supporter>> supporters_;  // per place
-  std::vector<std::vector<Place>> groups_;
-};
+}
 
 }  // namespace
 
 std::vector<std::vector<int>> GroupBoxes(const Sequence& sequence,
                                          const std::vector<GroundPoint>& points,
                                          const HorizontalPlanes& planes, int threads) {
-  Grouping grouping(sequence, PlacesOf(sequence, points, planes), threads);
-  grouping.Run();
-  return grouping.Detections();
+  auto groups = GroupPlaces(sequence, PlacesOf(sequence, points, planes), threads);
+  for (size_t i = 0; i < groups.size(); ++i) {
+    for (size_t k = i + 1; k < groups.size();) {
+      if (!AreOne(sequence, groups[i], groups[k])) {
+        ++k;
+        continue;
+      }
+      groups[i].insert(groups[i].end(), groups[k].begin(), groups[k].end());
+      groups.erase(groups.begin() + static_cast<std::ptrdiff_t>(k));
+      k = i + 1;
+    }
+  }
+  std::vector<std::vector<int>> detections;
+  for (const auto& group : groups) {
+    detections.emplace_back();
+    for (const Place& place : group) detections.back().push_back(place.detection);
+    std::ranges::sort(detections.back());
+  }
+  std::ranges::sort(detections);
+  return detections;
 }
 
 }  // namespace soslam

@@ -90,19 +90,6 @@ double Sharpness(const std::vector<GroundPoint>& points, const Eigen::Vector3d& 
   return sum;
 }
 
-// Directions that the up prior allows, sharpest first.
-std::vector<Eigen::Vector3d> Starts(const std::vector<GroundPoint>& points,
-                                    const UpPrior& up_prior) {
-  const double lowest = up_prior.up_in_world.dot(up_prior.information * up_prior.up_in_world);
-  const std::vector<Eigen::Vector3d> directions = UpDirections(up_prior, kTiltStep);
-  std::vector<double> costs;
-  for (const Eigen::Vector3d& up : directions) {
-    const double cost = up.dot(up_prior.information * up) - lowest;
-    costs.push_back(-Sharpness(points, up) * std::exp(-0.25 * cost));
-  }
-  return LowestApart(directions, costs, kBetweenStarts, kStarts);
-}
-
 struct HeightReading {
   double height;
   double sigma;
@@ -117,26 +104,6 @@ double CountNear(const std::vector<HeightReading>& readings, double height, doub
       readings, [&](const HeightReading& reading) { return reading.IsWithin(sigmas, height); }));
 }
 
-// The height to which most readings are near.
-double DensestHeight(const std::vector<HeightReading>& readings) {
-  constexpr double kNear = 1.5;  // standard deviations
-  std::vector<std::pair<double, int>> ends;
-  for (const HeightReading& reading : readings) {
-    ends.emplace_back(reading.height - kNear * reading.sigma, 1);
-    ends.emplace_back(reading.height + kNear * reading.sigma, -1);
-  }
-  std::ranges::sort(ends);
-  int count = 0, most = 0;
-  double height = 0.0;
-  for (size_t i = 0; i < ends.size(); ++i) {
-    count += ends[i].second;
-    if (count <= most) continue;
-    most = count;
-    height = 0.5 * (ends[i].first + ends[i + 1].first);
-  }
-  return height;
-}
-
 // Heights at which points lie much denser than around, most points first.
 std::vector<double> PeakHeights(const std::vector<GroundPoint>& points, const Eigen::Vector3d& up) {
   std::vector<HeightReading> all;
@@ -147,7 +114,22 @@ std::vector<double> PeakHeights(const std::vector<GroundPoint>& points, const Ei
   const double least = std::max(kLeastOnPlane, kLeastShare * static_cast<double>(points.size()));
   std::vector<double> peaks;
   while (peaks.size() < kMaxPlanes) {
-    const double height = DensestHeight(readings);
+    // The height to which most readings are near.
+    constexpr double kNear = 1.5;  // standard deviations
+    std::vector<std::pair<double, int>> ends;
+    for (const HeightReading& reading : readings) {
+      ends.emplace_back(reading.height - kNear * reading.sigma, 1);
+      ends.emplace_back(reading.height + kNear * reading.sigma, -1);
+    }
+    std::ranges::sort(ends);
+    int near = 0, most = 0;
+    double height = 0.0;
+    for (size_t i = 0; i < ends.size(); ++i) {
+      near += ends[i].second;
+      if (near <= most) continue;
+      most = near;
+      height = 0.5 * (ends[i].first + ends[i + 1].first);
+    }
     const double count = CountNear(readings, height, kBound);
     if (count < least) break;
     // Where points are evenly distributed, twice the width has twice as many.
@@ -245,38 +227,6 @@ std::vector<std::vector<GroundPoint>> WithoutSectors(const std::vector<GroundPoi
   return others;
 }
 
-// The turns of up and the rise of a plane at its centre from one fit to another.
-Eigen::Vector3d Change(const Fit& from, const Fit& to, size_t plane,
-                       const Eigen::Vector3d& centre_in_world) {
-  const Eigen::Matrix3d level = UprightRotation(from.up, 0.0).toRotationMatrix();
-  const Eigen::Vector3d change = to.up - from.up;
-  return {-level.col(1).dot(change), level.col(0).dot(change),
-          to.heights[plane] - from.heights[plane] - change.dot(centre_in_world)};
-}
-
-Eigen::Matrix3d CovarianceOf(const Fit& fit, size_t plane, const Eigen::Vector3d& centre_in_world) {
-  const Eigen::Matrix3d level = UprightRotation(fit.up, 0.0).toRotationMatrix();
-  Eigen::MatrixXd d_fit = Eigen::MatrixXd::Zero(3, fit.covariance.cols());
-  d_fit.topLeftCorner<2, 2>().setIdentity();
-  d_fit.row(2).head<2>() << level.col(1).dot(centre_in_world), -level.col(0).dot(centre_in_world);
-  d_fit(2, static_cast<Eigen::Index>(2 + plane)) = 1.0;
-  return d_fit * fit.covariance * d_fit.transpose();
-}
-
-// Adds the scatter of fits that leave out one sector each (delete-a-block jackknife).
-void AddScatter(const std::vector<GroundPoint>& points, const UpPrior& up_prior, const Fit& fit,
-                HorizontalPlanes* result) {
-  constexpr double kShare = (kSectors - 1.0) / kSectors;
-  for (const auto& others : WithoutSectors(points, fit)) {
-    const Fit without = FitPlanes(others, up_prior, fit.up, fit.heights);
-    for (size_t k = 0; k < result->planes.size(); ++k) {
-      PlaneOfPoints& plane = result->planes[k];
-      const Eigen::Vector3d change = Change(fit, without, k, plane.centre_in_world);
-      plane.covariance += kShare * change * change.transpose();
-    }
-  }
-}
-
 HorizontalPlanes PlanesOf(const std::vector<GroundPoint>& points, const UpPrior& up_prior,
                           const Fit& fit, const Eigen::Matrix2d& ambiguity) {
   HorizontalPlanes result;
@@ -291,12 +241,30 @@ HorizontalPlanes PlanesOf(const std::vector<GroundPoint>& points, const UpPrior&
     plane.centre_in_world += (point.position_in_world - plane.centre_in_world) /
                              static_cast<double>(plane.points_in_world.size());
   }
+  const Eigen::Matrix3d level = UprightRotation(fit.up, 0.0).toRotationMatrix();
   for (size_t k = 0; k < fit.heights.size(); ++k) {
     PlaneOfPoints& plane = result.planes[k];
     plane.height = fit.heights[k];
-    plane.covariance = CovarianceOf(fit, k, plane.centre_in_world);
+    Eigen::MatrixXd d_fit = Eigen::MatrixXd::Zero(3, fit.covariance.cols());
+    d_fit.topLeftCorner<2, 2>().setIdentity();
+    d_fit.row(2).head<2>() << level.col(1).dot(plane.centre_in_world),
+        -level.col(0).dot(plane.centre_in_world);
+    d_fit(2, static_cast<Eigen::Index>(2 + k)) = 1.0;
+    plane.covariance = d_fit * fit.covariance * d_fit.transpose();
   }
-  AddScatter(points, up_prior, fit, &result);
+  // The scatter of fits that leave out one sector each (delete-a-block jackknife).
+  constexpr double kShare = (kSectors - 1.0) / kSectors;
+  for (const auto& others : WithoutSectors(points, fit)) {
+    const Fit without = FitPlanes(others, up_prior, fit.up, fit.heights);
+    const Eigen::Vector3d turn = without.up - fit.up;
+    for (size_t k = 0; k < result.planes.size(); ++k) {
+      PlaneOfPoints& plane = result.planes[k];
+      const Eigen::Vector3d change(
+          -level.col(1).dot(turn), level.col(0).dot(turn),
+          without.heights[k] - fit.heights[k] - turn.dot(plane.centre_in_world));
+      plane.covariance += kShare * change * change.transpose();
+    }
+  }
   for (PlaneOfPoints& plane : result.planes) {
     plane.covariance.diagonal().head<2>().array() += kLyingThings * kLyingThings;
     plane.covariance(2, 2) += kCommonHeight * kCommonHeight;
@@ -351,8 +319,15 @@ std::vector<GroundPoint> GroundPoints(const Sequence& sequence,
 HorizontalPlanes FindHorizontalPlanes(const std::vector<GroundPoint>& points,
                                       const UpPrior& up_prior) {
   const std::vector<GroundPoint> usable = UsablePoints(points, up_prior.up_in_world);
+  const double lowest = up_prior.up_in_world.dot(up_prior.information * up_prior.up_in_world);
+  const std::vector<Eigen::Vector3d> directions = UpDirections(up_prior, kTiltStep);
+  std::vector<double> costs;
+  for (const Eigen::Vector3d& up : directions) {
+    const double cost = up.dot(up_prior.information * up) - lowest;
+    costs.push_back(-Sharpness(usable, up) * std::exp(-0.25 * cost));
+  }
   std::vector<Fit> fits;
-  for (const Eigen::Vector3d& start : Starts(usable, up_prior)) {
+  for (const Eigen::Vector3d& start : LowestApart(directions, costs, kBetweenStarts, kStarts)) {
     Eigen::Vector3d up = start;
     for (int round = 0; round < 2; ++round) {
       const std::vector<double> heights = PeakHeights(usable, up);

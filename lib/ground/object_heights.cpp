@@ -59,70 +59,6 @@ bool IsOverSurface(const PlaneOfPoints& plane, const Eigen::Vector3d& up,
   return excess(0, 0) > 0.0 && excess.determinant() > 0.0;
 }
 
-class Measurement {
- public:
-  Measurement(const Sequence& sequence, const HorizontalPlanes& planes, const UpEstimate& up,
-              const GroundOptions& options, MeasuredObject* object)
-      : sequence_(sequence),
-        planes_(planes),
-        up_(up),
-        options_(FitOptions(options)),
-        object_(object) {}
-
-  // Adds the hypotheses of a label. `votes` is the prior probability.
-  void Add(const std::string& label, ShapePrior prior, double votes) {
-    const LogNormal height_m = *prior.height_m;
-    prior.height_m.reset();  // the world is not in metres
-    const double planes = std::max<double>(1.0, static_cast<double>(planes_.planes.size()));
-    if (prior.mount == Mount::kStanding) {
-      for (size_t k = 0; k < planes_.planes.size(); ++k) {
-        const Plane plane{planes_.up_in_world, -planes_.planes[k].height};
-        Try({label, static_cast<int>(k), 0.0, 0.0, votes * (1.0 - kNoSupport) / planes}, prior,
-            height_m, plane);
-      }
-    }
-    const double free = prior.mount == Mount::kStanding ? kNoSupport : 1.0;
-    Try({label, kNoPlane, 0.0, 0.0, votes * free}, prior, height_m, up_);
-  }
-
-  // Turns costs into probabilities.
-  void Finish() {
-    if (costs_.empty()) return;
-    const double lowest = std::ranges::min(costs_);
-    double sum = 0.0;
-    auto& hypotheses = object_->evidence.hypotheses;
-    for (size_t i = 0; i < costs_.size(); ++i) {
-      hypotheses[i].probability *= std::exp(kEvidenceWeight * (lowest - costs_[i]));
-      sum += hypotheses[i].probability;
-    }
-    for (ScaleHypothesis& one : hypotheses) one.probability /= sum;
-  }
-
- private:
-  void Try(ScaleHypothesis hypothesis, const ShapePrior& prior, const LogNormal& height_m,
-           const std::variant<Plane, UpEstimate>& support) {
-    const auto fit = FitTrack(sequence_, object_->detections, prior, options_, support);
-    if (!fit) return;
-    if (hypothesis.plane != kNoPlane &&
-        !IsOverSurface(planes_.planes[hypothesis.plane], planes_.up_in_world,
-                       fit->landmark_in_world)) {
-      hypothesis.probability *= kBesidePlane;
-    }
-    hypothesis.log_scale = std::log(height_m.median / (2.0 * fit->landmark_in_world.half_axes.z()));
-    hypothesis.log_sigma = std::hypot(height_m.log_sigma, std::sqrt(fit->covariance(8, 8)));
-    object_->evidence.hypotheses.push_back(hypothesis);
-    object_->landmarks.push_back(fit->landmark_in_world);
-    costs_.push_back(fit->cost);
-  }
-
-  const Sequence& sequence_;
-  const HorizontalPlanes& planes_;
-  const UpEstimate& up_;
-  AssociateOptions options_;
-  MeasuredObject* object_;
-  std::vector<double> costs_;  // one per hypothesis
-};
-
 // Probability that an object is a false one or not what its boxes say: those that are detected in
 // few of the frames that show their place are seldom right.
 double WrongProbability(const Sequence& sequence, const MeasuredObject& object,
@@ -150,6 +86,56 @@ double WrongProbability(const Sequence& sequence, const MeasuredObject& object,
   return 1.0 - (1.0 - options.wrong_height_probability) * std::min(1.0, share / kUsualShare);
 }
 
+// Finds the hypotheses of an object whose detections and votes are known: its labels with a height,
+// on each plane or, as the world is not in metres, at a free height.
+void Measure(const Sequence& sequence, const SemanticTable& table, const HorizontalPlanes& planes,
+             const UpEstimate& up, const std::set<std::string>& moving_labels,
+             const GroundOptions& options, MeasuredObject* object) {
+  const AssociateOptions fit_options = FitOptions(options);
+  auto& hypotheses = object->evidence.hypotheses;
+  std::vector<double> costs;  // one per hypothesis
+  for (const auto& [label, votes] : object->votes) {
+    if (votes < kLeastVotes || moving_labels.contains(NormalisedLabel(label)) ||
+        !table.Contains(label)) {
+      continue;
+    }
+    ShapePrior prior = *table.Find(label);
+    if (!prior.height_m || prior.attitude != Attitude::kStanding) continue;
+    const LogNormal height_m = *prior.height_m;
+    prior.height_m.reset();
+    const auto add = [&, label = label](int plane, double probability,
+                                        const std::variant<Plane, UpEstimate>& support) {
+      const auto fit = FitTrack(sequence, object->detections, prior, fit_options, support);
+      if (!fit) return;
+      const Landmark& landmark = fit->landmark_in_world;
+      if (plane != kNoPlane && !IsOverSurface(planes.planes[plane], planes.up_in_world, landmark)) {
+        probability *= kBesidePlane;
+      }
+      hypotheses.push_back(
+          {label, plane, std::log(height_m.median / (2.0 * landmark.half_axes.z())),
+           std::hypot(height_m.log_sigma, std::sqrt(fit->covariance(8, 8))), probability});
+      object->landmarks.push_back(landmark);
+      costs.push_back(fit->cost);
+    };
+    const bool stands = prior.mount == Mount::kStanding;
+    const double count = std::max<double>(1.0, static_cast<double>(planes.planes.size()));
+    for (size_t k = 0; k < planes.planes.size() && stands; ++k) {
+      add(static_cast<int>(k), votes * (1.0 - kNoSupport) / count,
+          Plane{planes.up_in_world, -planes.planes[k].height});
+    }
+    add(kNoPlane, votes * (stands ? kNoSupport : 1.0), up);
+  }
+  if (hypotheses.empty()) return;
+  const double lowest = std::ranges::min(costs);
+  double sum = 0.0;
+  for (size_t i = 0; i < costs.size(); ++i) {
+    hypotheses[i].probability *= std::exp(kEvidenceWeight * (lowest - costs[i]));
+    sum += hypotheses[i].probability;
+  }
+  for (ScaleHypothesis& one : hypotheses) one.probability /= sum;
+  object->evidence.wrong_probability = WrongProbability(sequence, *object, options);
+}
+
 }  // namespace
 
 AssociateOptions FitOptions(const GroundOptions& options) {
@@ -171,17 +157,7 @@ std::vector<MeasuredObject> MeasureObjects(const Sequence& sequence,
     objects.push_back({group, VotesOf(sequence, group), {}, {}});
   }
   ParallelFor("objects", objects.size(), threads, [&](size_t i) {
-    MeasuredObject& object = objects[i];
-    Measurement measurement(sequence, planes, up, options, &object);
-    for (const auto& [label, votes] : object.votes) {
-      if (votes < kLeastVotes || moving.contains(NormalisedLabel(label))) continue;
-      const auto prior = table.Contains(label) ? table.Find(label) : std::nullopt;
-      const bool has_height = prior && prior->height_m && prior->attitude == Attitude::kStanding;
-      if (has_height) measurement.Add(label, *prior, votes);
-    }
-    measurement.Finish();
-    if (object.evidence.hypotheses.empty()) return;
-    object.evidence.wrong_probability = WrongProbability(sequence, object, options);
+    Measure(sequence, table, planes, up, moving, options, &objects[i]);
   });
   return objects;
 }

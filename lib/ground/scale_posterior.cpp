@@ -33,35 +33,6 @@ double Density(const ScaleEvidence& object, double log_scale) {
   return (1.0 - object.wrong_probability) * density + object.wrong_probability * kWrongDensity;
 }
 
-struct Range {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -low;
-  void Add(double log_scale, double log_sigma) {
-    low = std::min(low, log_scale - kReach * log_sigma);
-    high = std::max(high, log_scale + kReach * log_sigma);
-  }
-};
-
-Range RangeOf(const std::vector<ScaleEvidence>& objects, const std::vector<KnownScale>& known) {
-  Range range;
-  for (const ScaleEvidence& object : objects) {
-    for (const ScaleHypothesis& one : object.hypotheses) {
-      if (one.probability >= kNegligible) range.Add(one.log_scale, one.log_sigma);
-    }
-  }
-  for (const KnownScale& one : known) range.Add(one.log_scale, one.log_sigma);
-  return range;
-}
-
-// Logarithms to probabilities with the sum 1.
-std::vector<double> Normalised(std::vector<double> logs) {
-  const double highest = std::ranges::max(logs);
-  for (double& value : logs) value = std::exp(value - highest);
-  const double sum = std::accumulate(logs.begin(), logs.end(), 0.0);
-  for (double& value : logs) value /= sum;
-  return logs;
-}
-
 // Factor on the variance: the mean squared deviation of the objects, with a prior of 1 that has the
 // weight of kSpreadKnowledge objects; at least 1.
 double MisfitOf(const std::vector<ScaleEvidence>& objects, double log_scale) {
@@ -139,11 +110,21 @@ std::vector<double> HypothesisProbabilities(const ScaleEvidence& object, double 
 
 std::optional<ScalePosterior> EstimateScale(const std::vector<ScaleEvidence>& objects,
                                             const std::vector<KnownScale>& known) {
-  const Range range = RangeOf(objects, known);
-  if (!(range.high > range.low)) return std::nullopt;
-  std::vector<double> logs(static_cast<size_t>((range.high - range.low) / kGridStep) + 1);
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  const auto extend = [&](double log_scale, double log_sigma) {
+    low = std::min(low, log_scale - kReach * log_sigma);
+    high = std::max(high, log_scale + kReach * log_sigma);
+  };
+  for (const ScaleEvidence& object : objects) {
+    for (const ScaleHypothesis& one : object.hypotheses) {
+      if (one.probability >= kNegligible) extend(one.log_scale, one.log_sigma);
+    }
+  }
+  for (const KnownScale& one : known) extend(one.log_scale, one.log_sigma);
+  if (!(high > low)) return std::nullopt;
+  std::vector<double> logs(static_cast<size_t>((high - low) / kGridStep) + 1);
   for (size_t i = 0; i < logs.size(); ++i) {
-    const double x = range.low + kGridStep * static_cast<double>(i);
+    const double x = low + kGridStep * static_cast<double>(i);
     for (const ScaleEvidence& object : objects) {
       logs[i] += object.weight * std::log(Density(object, x));
     }
@@ -153,11 +134,14 @@ std::optional<ScalePosterior> EstimateScale(const std::vector<ScaleEvidence>& ob
     }
   }
   const double mode =
-      range.low + kGridStep * static_cast<double>(std::ranges::max_element(logs) - logs.begin());
+      low + kGridStep * static_cast<double>(std::ranges::max_element(logs) - logs.begin());
   const double misfit = MisfitOf(objects, mode);
-  for (double& value : logs) value /= misfit;
-  const std::vector<double> probabilities = Normalised(std::move(logs));
-  ScalePosterior posterior = Summary(range.low, probabilities);
+  const double highest = std::ranges::max(logs) / misfit;
+  std::vector<double> probabilities;
+  for (const double value : logs) probabilities.push_back(std::exp(value / misfit - highest));
+  const double sum = std::accumulate(probabilities.begin(), probabilities.end(), 0.0);
+  for (double& probability : probabilities) probability /= sum;
+  ScalePosterior posterior = Summary(low, probabilities);
   posterior.misfit = misfit;
   posterior.second_mode_share = ShareOfOtherModes(probabilities);
   for (const ScaleEvidence& object : objects) {

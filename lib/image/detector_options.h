@@ -4,17 +4,21 @@
 #include <string>
 
 #include "base/options.h"
-#include "geometry/image_size.h"
 #include "image/yolo_output.h"
 
 namespace soslam {
+
+// The images that boxes refer to, where EXIF turns them; kSurer: those in which the network is
+// surer.
+enum class BoxOrientation { kUpright, kStored, kSurer };
+inline constexpr const char* kBoxOrientationNames[] = {"upright", "stored", "surer"};
 
 struct DetectorOptions {
   YoloLayout output_layout = YoloLayout::kAuto;
   PixelValues pixel_values = PixelValues::kAuto;
   int input_width = 0;  // 0 for automatic, as the height
   int input_height = 0;
-  ImageOrientation image_orientation = ImageOrientation::kUpright;
+  BoxOrientation image_orientation = BoxOrientation::kUpright;
   std::string rename_labels;
   std::string keep_labels;
   double min_score = 0.25;
@@ -37,10 +41,11 @@ struct DetectorOptions {
     visit.Integer("input_height_px", &input_height, {0, 8192},
                   "height of the network's input, likewise");
     visit.Group("Images");
-    visit.Choice("image_orientation", &image_orientation, kImageOrientationNames,
-                 "where EXIF turns images: boxes refer to the image as viewers show it, or to the "
-                 "pixels as the file stores them. For the latter the network sees both, and its "
-                 "boxes are those with the larger sum of scores");
+    visit.Choice("image_orientation", &image_orientation, kBoxOrientationNames,
+                 "where EXIF turns images, the network sees both the image as viewers show it and "
+                 "the pixels as the file stores them, and its boxes are those with the larger sum "
+                 "of scores. They refer to the former (upright), to the latter (stored), or to "
+                 "those that they were found in, as the first line of the file says (surer)");
     visit.Group("Detections that are kept");
     visit.Text("rename_labels", &rename_labels,
                "other names for the network's labels: 'tv=monitor, couch=sofa'");

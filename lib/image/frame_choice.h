@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "base/options.h"
-#include "geometry/image_size.h"
 
 namespace soslam {
 
@@ -18,7 +17,7 @@ struct FrameOptions {
   double min_motion = 0.005;
   double min_sharpness = 0.35;
   int max_image_px = 1600;
-  ImageOrientation image_orientation = ImageOrientation::kUpright;
+  bool keep_exif_turn = false;
 
   void Describe(OptionVisitor& visit) {
     visit.Group("Choice");
@@ -33,10 +32,9 @@ struct FrameOptions {
     visit.Group("Images");
     visit.Integer("max_image_px", &max_image_px, {64, 16384},
                   "longer side of the images; larger ones are scaled down");
-    visit.Choice("image_orientation", &image_orientation, kImageOrientationNames,
-                 "where EXIF turns photos: they are turned upright, or kept as the file stores "
-                 "them, as for poses of COLMAP, for stages with the same setting; boxes that are "
-                 "given are of the upright photos in either case");
+    visit.Flag("keep_exif_turn", &keep_exif_turn,
+               "photos that EXIF turns are copied with their note, as a finished model of COLMAP "
+               "needs it; otherwise they are turned upright. All stages read them upright");
   }
 };
 
@@ -53,6 +51,7 @@ enum class FrameRejection {
 inline constexpr std::array kFrameRejectionNames = {"unreadable",         "duplicate", "other_size",
                                                     "other_focal_length", "blurred",   "no_motion",
                                                     "over_limit"};
+inline constexpr const auto& NamesOf(FrameRejection) { return kFrameRejectionNames; }
 
 // The size of an image whose longer side is scaled down to `longer_side`, if it is longer.
 cv::Size SizeWithin(const cv::Size& size, int longer_side);

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <initializer_list>
 #include <limits>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
@@ -23,17 +22,6 @@
 
 namespace soslam {
 namespace {
-
-// EXIF's orientation states at which sides of the upright image the first stored row and the first
-// stored column are:
-//   1 top, left    2 top, right    3 bottom, right    4 bottom, left
-//   5 left, top    6 right, top    7 right, bottom    8 left, bottom
-ImageTurn TurnOf(int exif_orientation) {
-  const auto is_one_of = [&](std::initializer_list<int> orientations) {
-    return std::ranges::find(orientations, exif_orientation) != orientations.end();
-  };
-  return {exif_orientation >= 5, is_one_of({2, 3, 6, 7}), is_one_of({3, 4, 7, 8})};
-}
 
 std::vector<char> ReadBytes(const std::filesystem::path& path) {
   if (!IsFile(path)) {
@@ -124,7 +112,7 @@ cv::Mat ReadImage(const std::filesystem::path& path, int mode, ImageOrientation 
                                  path.string(), format->name));
   }
   const bool is_upright = orientation == ImageOrientation::kUpright;
-  cv::Mat image = is_upright ? Turned(stored, TurnOf(header.orientation)) : stored;
+  cv::Mat image = is_upright ? Turned(stored, ExifTurn(header.orientation)) : stored;
   if (!size || image.size() == *size) return image;
   std::string hint;
   if (header.IsTurnedByAQuarter() && image.cols == size->height && image.rows == size->width) {
@@ -137,21 +125,6 @@ cv::Mat ReadImage(const std::filesystem::path& path, int mode, ImageOrientation 
   throw InputError(fmt::format("{}: is {} x {} pixels; expected the camera's {} x {}{}",
                                path.string(), image.cols, image.rows, size->width, size->height,
                                hint));
-}
-
-Box BoxInStoredImage(const Box& in_upright_image, const ImageHeader& header) {
-  const ImageTurn turn = TurnOf(header.orientation);
-  const ImageSize size = header.Size(ImageOrientation::kUpright);
-  Box box = in_upright_image;
-  if (turn.mirrors_x) {
-    const double last = static_cast<double>(size.width) - 1.0;
-    box = {last - box.x_max, box.y_min, last - box.x_min, box.y_max};
-  }
-  if (turn.mirrors_y) {
-    const double last = static_cast<double>(size.height) - 1.0;
-    box = {box.x_min, last - box.y_max, box.x_max, last - box.y_min};
-  }
-  return turn.swaps_axes ? Box{box.y_min, box.x_min, box.y_max, box.x_max} : box;
 }
 
 ImageUndistorter::ImageUndistorter(const Camera& camera, const Distortion& distortion) {

@@ -6,7 +6,6 @@
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
 
-#include "geometry/box.h"
 #include "geometry/camera.h"
 #include "geometry/distortion.h"
 #include "geometry/image_size.h"
@@ -21,9 +20,6 @@ namespace soslam {
 cv::Mat ReadImage(const std::filesystem::path& path, int mode,
                   ImageOrientation orientation = ImageOrientation::kUpright,
                   const std::optional<cv::Size>& size = std::nullopt);
-
-// A box of the upright image in the pixels that the file stores.
-Box BoxInStoredImage(const Box& in_upright_image, const ImageHeader& header);
 
 // Undistorts images: the result is that of a pinhole camera of the same size and intrinsics.
 class ImageUndistorter {

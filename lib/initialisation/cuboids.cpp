@@ -25,44 +25,7 @@ Eigen::Vector3d HorizontalRay(const CuboidView& view) {
   return ray - up.dot(ray) * up;
 }
 
-// The planes through the camera and the box's edges, with normals into the box.
-std::array<Eigen::Vector3d, 4> InwardNormals(const CuboidView& view) {
-  std::array<Eigen::Vector3d, 4> normals;
-  const auto lines = view.box.EdgeLines();
-  const Eigen::Vector3d ray = view.camera.Ray(view.box.Centre());
-  for (size_t i = 0; i < lines.size(); ++i) {
-    normals[i] = view.camera.BackProject(lines[i]).normal;
-    if (normals[i].dot(ray) < 0.0) normals[i] = -normals[i];
-  }
-  return normals;
-}
-
 double Sign(double value) { return value < 0.0 ? -1.0 : 1.0; }
-
-// The condition that a corner is in a plane through the camera: row . unknowns = value. Unknowns:
-// foot along x and y from the plane's point nearest to the camera, half axes along x and y, height.
-struct Equation {
-  Vector5 row;
-  double value;
-};
-
-Equation CornerInPlane(const Eigen::Matrix3d& axes, const Eigen::Vector3d& corner,
-                       const Eigen::Vector3d& plane_normal, const Plane& support) {
-  const Eigen::Vector3d along = axes.transpose() * plane_normal;
-  Equation equation;
-  equation.row << along.x(), along.y(), corner.x() * along.x(), corner.y() * along.y(),
-      (corner.z() > 0.0 ? along.z() : 0.0);
-  equation.value = support.offset * along.z();
-  return equation;
-}
-
-// The top corner farthest along the view, as signs along the axes.
-Eigen::Vector3d FarthestTopCorner(const CuboidView& view, const Eigen::Matrix3d& axes) {
-  // At the yaw that faces the camera two corners are equally far, up to rounding.
-  constexpr double kTie = 1e-9;
-  const Eigen::Vector3d along = axes.transpose() * HorizontalRay(view).normalized();
-  return {Sign(along.x() - kTie), Sign(along.y() - kTie), 1.0};
-}
 
 // How far line segments may lie outside the box, as a fraction of its diagonal.
 constexpr double kMargin = 0.05;
@@ -76,18 +39,6 @@ struct ImageEdge {
   int axis;
   LineSegment segment;
 };
-
-std::vector<ImageEdge> VisibleEdges(const CuboidView& view, const Landmark& cuboid) {
-  std::vector<ImageEdge> visible;
-  for (const LineSegment3& edge : VisibleCuboidEdges(cuboid)) {
-    const auto begin = view.camera.Project(PointAt(cuboid, edge[0]));
-    const auto end = view.camera.Project(PointAt(cuboid, edge[1]));
-    int axis = 0;
-    (edge[1] - edge[0]).maxCoeff(&axis);
-    if (begin && end) visible.push_back({axis, {*begin, *end}});
-  }
-  return visible;
-}
 
 // The mean over the points in the image; its diagonal if there are none.
 double MeanDistance(const std::vector<ImageEdge>& edges, const cv::Mat& distance, int samples) {
@@ -116,22 +67,6 @@ double AngleFrom(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
   return YawDifferenceModuloPi(std::atan2(to.y(), to.x()), std::atan2(from.y(), from.x()));
 }
 
-// The axis to whose vanishing point a segment runs best; none beyond the largest angle.
-std::optional<int> AxisOf(const LineSegment& segment,
-                          const std::array<Eigen::Vector3d, 3>& vanishing_points,
-                          double largest_angle) {
-  const Eigen::Vector2d middle = 0.5 * (segment.begin + segment.end);
-  std::optional<int> best;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double angle = std::abs(
-        AngleFrom(DirectionTo(vanishing_points[axis], middle), segment.end - segment.begin));
-    if (angle > largest_angle) continue;
-    largest_angle = angle;
-    best = axis;
-  }
-  return best;
-}
-
 // The differences between outmost line segments and outmost edges, summed over the axes. Angles
 // count from the direction in which the vanishing point is seen from the centre of the box. Where
 // an axis has no segments or no visible edges, both its differences are `largest_angle`.
@@ -150,9 +85,18 @@ double AngleError(const CuboidView& view, const Landmark& cuboid,
         Eigen::AlignedBox1d::VectorType(AngleFrom(reference, segment.end - segment.begin)));
   };
   for (const LineSegment& segment : segments) {
-    if (const auto axis = AxisOf(segment, vanishing_points, largest_angle)) {
-      add(*axis, segment, &of_segments);
+    // The axis to whose vanishing point it runs best.
+    const Eigen::Vector2d middle = 0.5 * (segment.begin + segment.end);
+    std::optional<int> best_axis;
+    double least = largest_angle;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double angle = std::abs(
+          AngleFrom(DirectionTo(vanishing_points[axis], middle), segment.end - segment.begin));
+      if (angle > least) continue;
+      least = angle;
+      best_axis = axis;
     }
+    if (best_axis) add(*best_axis, segment, &of_segments);
   }
   for (const ImageEdge& edge : edges) add(edge.axis, edge.segment, &of_edges);
   double sum = 0.0;
@@ -186,20 +130,31 @@ std::optional<Landmark> CuboidAt(const CuboidView& view, double yaw, double corn
   const Eigen::Quaterniond rotation = UprightRotation(support.normal, yaw);
   const Eigen::Matrix3d axes = rotation.toRotationMatrix();
 
+  // Conditions that corners, as signs along the axes, are in planes through the camera. Unknowns:
+  // foot along x and y from the plane's point nearest to the camera, half axes along x and y,
+  // height.
   Matrix5 rows;
   Vector5 values;
   int count = 0;
-  const auto add = [&](const Equation& equation) {
-    rows.row(count) = equation.row.transpose();
-    values[count++] = equation.value;
+  const auto add = [&](const Eigen::Vector3d& corner, const Eigen::Vector3d& plane_normal) {
+    const Eigen::Vector3d along = axes.transpose() * plane_normal;
+    rows.row(count) << along.x(), along.y(), corner.x() * along.x(), corner.y() * along.y(),
+        (corner.z() > 0.0 ? along.z() : 0.0);
+    values[count++] = support.offset * along.z();
   };
-  for (const Eigen::Vector3d& inward : InwardNormals(view)) {
-    const Eigen::Vector3d touching = -(axes.transpose() * inward).unaryExpr(&Sign);
-    add(CornerInPlane(axes, touching, inward, support));
+  const Eigen::Vector3d ray = view.camera.Ray(view.box.Centre());
+  for (const Eigen::Vector3d& line : view.box.EdgeLines()) {
+    Eigen::Vector3d inward = view.camera.BackProject(line).normal;
+    if (inward.dot(ray) < 0.0) inward = -inward;
+    add(-(axes.transpose() * inward).unaryExpr(&Sign), inward);
   }
+  // The top corner farthest along the view; at the yaw that faces the camera two corners are
+  // equally far, up to rounding.
+  constexpr double kTie = 1e-9;
+  const Eigen::Vector3d along = axes.transpose() * HorizontalRay(view).normalized();
   const Eigen::Vector3d column(1.0, 0.0, -corner_column_px);
-  add(CornerInPlane(axes, FarthestTopCorner(view, axes), view.camera.BackProject(column).normal,
-                    support));
+  add({Sign(along.x() - kTie), Sign(along.y() - kTie), 1.0},
+      view.camera.BackProject(column).normal);
 
   const Eigen::FullPivLU<Matrix5> decomposition(rows);
   if (!decomposition.isInvertible()) return std::nullopt;
@@ -254,7 +209,14 @@ CuboidEvidence EvidenceInBox(const EdgeMaps& maps, const Box& box, double min_se
 
 CuboidErrors ErrorsOf(const CuboidView& view, const Landmark& cuboid,
                       const CuboidEvidence& evidence, const CuboidOptions& options) {
-  const std::vector<ImageEdge> edges = VisibleEdges(view, cuboid);
+  std::vector<ImageEdge> edges;
+  for (const LineSegment3& edge : VisibleCuboidEdges(cuboid)) {
+    const auto begin = view.camera.Project(PointAt(cuboid, edge[0]));
+    const auto end = view.camera.Project(PointAt(cuboid, edge[1]));
+    int axis = 0;
+    (edge[1] - edge[0]).maxCoeff(&axis);
+    if (begin && end) edges.push_back({axis, {*begin, *end}});
+  }
   CuboidErrors errors{};
   errors.distance =
       MeanDistance(edges, evidence.distance, options.edge_samples) / Diagonal(view.box);

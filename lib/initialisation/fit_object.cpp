@@ -2,7 +2,6 @@
 #include "initialisation/fit_object.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -78,28 +77,6 @@ constexpr double kGap = 1.5;
 // Number of integration steps of the likelihood between two yaws of the grid.
 constexpr int kLikelihoodSteps = 100;
 
-// Integrals of exp(-height^2) between two angles from -pi/2 to pi, with the height linear in the
-// angle: mass, and second moment about 0 modulo pi.
-struct Likelihood {
-  double mass = 0.0;
-  double squares = 0.0;
-};
-void AddInterval(const std::array<double, 2>& angles, const std::array<double, 2>& heights,
-                 Likelihood* sum) {
-  const auto [from, to] = angles;
-  const auto [from_height, to_height] = heights;
-  const double step = (to - from) / kLikelihoodSteps;
-  for (int k = 0; k < kLikelihoodSteps; ++k) {
-    const double share = (k + 0.5) / kLikelihoodSteps;
-    const double height = from_height + share * (to_height - from_height);
-    const double angle = from + share * (to - from);
-    const double distance = angle < std::numbers::pi / 2.0 ? angle : std::numbers::pi - angle;
-    const double density = std::exp(-height * height);
-    sum->mass += step * density;
-    sum->squares += step * density * distance * distance;
-  }
-}
-
 }  // namespace
 
 std::vector<double> YawProfile::Costs() const {
@@ -131,19 +108,33 @@ double YawProfile::StandardDeviation(const std::vector<Optimum>& optima) const {
   for (const auto& [at, cost] : nodes) lowest = std::min(lowest, cost);
   nodes.emplace_back(nodes.front().first + std::numbers::pi, nodes.front().second);
 
-  const auto height = [&](double cost) { return std::sqrt(cost - lowest); };
-  Likelihood likelihood;
+  // Integrals of exp(-height^2), with the height linear in the angle between two angles from -pi/2
+  // to pi: mass, and second moment about 0 modulo pi.
+  double mass = 0.0, squares = 0.0;
+  const auto add_interval = [&](double from, double from_cost, double to, double to_cost) {
+    const double from_height = std::sqrt(from_cost - lowest);
+    const double to_height = std::sqrt(to_cost - lowest);
+    const double width = (to - from) / kLikelihoodSteps;
+    for (int k = 0; k < kLikelihoodSteps; ++k) {
+      const double share = (k + 0.5) / kLikelihoodSteps;
+      const double height = from_height + share * (to_height - from_height);
+      const double angle = from + share * (to - from);
+      const double distance = angle < std::numbers::pi / 2.0 ? angle : std::numbers::pi - angle;
+      const double density = std::exp(-height * height);
+      mass += width * density;
+      squares += width * density * distance * distance;
+    }
+  };
   for (size_t i = 1; i < nodes.size(); ++i) {
     const auto& [from, from_cost] = nodes[i - 1];
     const auto& [to, to_cost] = nodes[i];
     if (to - from > kGap * step) continue;
-    AddInterval({from, to}, {height(from_cost), height(to_cost)}, &likelihood);
+    add_interval(from, from_cost, to, to_cost);
   }
   if (yaws_beside <= 1) {  // alone, it stands for the step around it
-    const double of_first = height(optima.front().cost);
-    AddInterval({-0.5 * step, 0.5 * step}, {of_first, of_first}, &likelihood);
+    add_interval(-0.5 * step, optima.front().cost, 0.5 * step, optima.front().cost);
   }
-  return std::sqrt(likelihood.squares / likelihood.mass);
+  return std::sqrt(squares / mass);
 }
 
 double YawProfile::Step() const { return std::numbers::pi / static_cast<double>(yaw.size()); }

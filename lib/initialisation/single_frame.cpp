@@ -89,18 +89,6 @@ bool IsPlausible(const SingleFrameObservation& observation, const Hypothesis& hy
          OutlineBox(observation.camera, landmark).has_value();
 }
 
-// Tie-break score of a solution: 0 if the x axis is along the preferred direction or, for the
-// scene's axes, at right angles to it.
-double Oddity(const SingleFrameObservation& observation, const Landmark& landmark,
-              TieBreak tie_break) {
-  const bool scene_axes = tie_break == TieBreak::kSceneAxes && observation.scene_axis_in_camera;
-  const Eigen::Vector3d preferred =
-      scene_axes ? *observation.scene_axis_in_camera : landmark.Centre();
-  const Eigen::Vector2d front =
-      (landmark.frame_from_object.rotation.conjugate() * preferred).head<2>().normalized();
-  return scene_axes ? std::abs(front.x() * front.y()) : std::abs(front.y());
-}
-
 }  // namespace
 
 double SingleFrameCost(const SingleFrameObservation& observation,
@@ -152,8 +140,16 @@ ObservationEstimate InitialiseFromSingleFrame(const SingleFrameObservation& obse
   const auto tied_end = std::stable_partition(
       found.begin(), found.end(),
       [&](const Hypothesis& hypothesis) { return edge_rms(hypothesis) <= tied_rms; });
+  // 0 if the x axis is along the preferred direction or, for the scene's axes, at right angles to
+  // it.
   const auto oddity = [&](const Hypothesis& hypothesis) {
-    return Oddity(observation, hypothesis.landmark_in_camera, options.tie_break);
+    const Landmark& landmark = hypothesis.landmark_in_camera;
+    const auto& axis = observation.scene_axis_in_camera;
+    const bool scene_axes = options.tie_break == TieBreak::kSceneAxes && axis;
+    const Eigen::Vector3d preferred = scene_axes ? *axis : landmark.Centre();
+    const Eigen::Vector2d front =
+        (landmark.frame_from_object.rotation.conjugate() * preferred).head<2>().normalized();
+    return scene_axes ? std::abs(front.x() * front.y()) : std::abs(front.y());
   };
   std::ranges::stable_sort(found.begin(), tied_end, {}, oddity);
   return {0, found, ""};

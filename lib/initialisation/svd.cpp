@@ -12,25 +12,6 @@ namespace {
 constexpr int kCoefficients = 10;  // of a symmetric 4 x 4 matrix
 constexpr int kMinPlanes = kCoefficients - 1;
 
-// Row whose product with the upper triangle of Q* is pi^T Q* pi.
-Eigen::Matrix<double, 1, kCoefficients> TangencyRow(const Eigen::Vector4d& plane) {
-  Eigen::Matrix<double, 1, kCoefficients> row;
-  int k = 0;
-  for (int i = 0; i < 4; ++i) {
-    for (int j = i; j < 4; ++j) row(k++) = (i == j ? 1.0 : 2.0) * plane(i) * plane(j);
-  }
-  return row;
-}
-
-Eigen::Matrix4d SymmetricMatrix(const Eigen::Matrix<double, kCoefficients, 1>& upper_triangle) {
-  Eigen::Matrix4d matrix;
-  int k = 0;
-  for (int i = 0; i < 4; ++i) {
-    for (int j = i; j < 4; ++j) matrix(i, j) = matrix(j, i) = upper_triangle(k++);
-  }
-  return matrix;
-}
-
 }  // namespace
 
 std::optional<DualQuadricLandmark> LandmarkFromTangentPlanes(
@@ -55,10 +36,20 @@ std::optional<DualQuadricLandmark> LandmarkFromTangentPlanes(
     const Plane& plane = planes_in_world[i];
     Eigen::Vector4d scaled;
     scaled << plane.normal, plane.SignedDistance(centre) / size;
-    equations.row(static_cast<Eigen::Index>(i)) = TangencyRow(scaled);
+    // The product of this row with the upper triangle of Q* is pi^T Q* pi.
+    auto row = equations.row(static_cast<Eigen::Index>(i));
+    for (int j = 0, n = 0; j < 4; ++j) {
+      for (int k = j; k < 4; ++k) row(n++) = (j == k ? 1.0 : 2.0) * scaled(j) * scaled(k);
+    }
   }
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(equations, Eigen::ComputeFullV);
-  auto result = LandmarkFromDualQuadric(SymmetricMatrix(svd.matrixV().col(kCoefficients - 1)));
+  Eigen::Matrix4d dual_quadric;
+  for (int j = 0, n = 0; j < 4; ++j) {
+    for (int k = j; k < 4; ++k) {
+      dual_quadric(j, k) = dual_quadric(k, j) = svd.matrixV()(n++, kCoefficients - 1);
+    }
+  }
+  auto result = LandmarkFromDualQuadric(dual_quadric);
   if (!result) return std::nullopt;
   Rigid3d& world_from_object = result->landmark.frame_from_object;
   world_from_object.translation = centre + size * world_from_object.translation;

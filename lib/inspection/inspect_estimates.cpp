@@ -9,11 +9,11 @@
 
 #include "artefact/hdf5_artefact.h"
 #include "artefact/json_file.h"
-#include "artefact/model_json.h"
 #include "base/text.h"
 #include "geometry/angles.h"
 #include "geometry/landmark.h"
 #include "inspection/inspection.h"
+#include "model/describe_estimates.h"
 #include "model/estimates.h"
 
 // Landmarks and maps: rows are observations, then objects.
@@ -104,13 +104,13 @@ json ObservationRow(const json& observation) {
               {"hypotheses", hypotheses.size()},
               {"failure", FailureOf(observation.at("failure"))}};
   if (hypotheses.empty()) return row;
-  row.update(CellsOf(LandmarkFromJson(hypotheses[0].at("landmark"), "camera")));
+  row.update(CellsOf(DescribedFromJson<Hypothesis>(hypotheses[0]).landmark_in_camera));
   row["cost"] = hypotheses[0].at("cost").get<double>();
   return row;
 }
 
 json ObjectRow(const json& fields) {
-  const ObjectEstimate estimate = ObjectEstimateFromJson(fields);
+  const ObjectEstimate estimate = DescribedFromJson<ObjectEstimate>(fields);
   json row = PointCells(estimate.points);
   row["object"] = fields.at("object");
   row["views"] = estimate.observations;
@@ -156,7 +156,7 @@ std::string TrajectoryInWords(const json& trajectory) {
   double length = 0.0;
   for (size_t i = 1; i < trajectory.size(); ++i) {
     const auto place = [&](size_t k) {
-      return trajectory[k].at("world_from_camera").get<Rigid3d>().translation;
+      return DescribedFromJson<Rigid3d>(trajectory[k].at("world_from_camera")).translation;
     };
     length += (place(i) - place(i - 1)).norm();
   }

@@ -6,7 +6,6 @@
 
 #include "artefact/files.h"
 #include "artefact/json_file.h"
-#include "artefact/model_json.h"
 #include "base/text.h"
 #include "inspection/inspection.h"
 #include "model/label_groups.h"

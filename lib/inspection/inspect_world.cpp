@@ -9,28 +9,26 @@
 #include <vector>
 
 #include "artefact/files.h"
-#include "artefact/json_file.h"
 #include "base/text.h"
+#include "evaluation/result_checks.h"
 #include "evaluation/statistics.h"
+#include "ground/ground_checks.h"
 #include "inspection/inspection.h"
 
 namespace soslam {
 namespace {
 
-using nlohmann::json;
-
-std::string UpInWords(const json& up) {
-  const char* edges = up.at("verticals").get<bool>() ? " and by vertical edges" : "";
+std::string UpInWords(const WorldReport::Up& up) {
+  const char* edges = up.verticals ? " and by vertical edges" : "";
   return fmt::format(
-      "z; to {:.2f} degrees (one standard deviation), by {}", up.at("sigma_deg").get<double>(),
-      up.at("found_by") == "planes"
+      "z; to {:.2f} degrees (one standard deviation), by {}", up.sigma_deg,
+      up.found_by == "planes"
           ? "horizontal planes of points"
           : fmt::format("the way cameras are held{}, as no support plane was found", edges));
 }
 
 // What the scale is, what it rests on, and what contradicts it.
-std::vector<Fact> ScaleFacts(const json& world) {
-  const auto scale = ScaleOfWorld(world);
+std::vector<Fact> ScaleFacts(const std::optional<WorldScale>& scale) {
   if (!scale) {
     return {{"scale", "unknown: nothing tells it; lengths have the unit of the input's world"}};
   }
@@ -40,9 +38,8 @@ std::vector<Fact> ScaleFacts(const json& world) {
                    "+- {:.0f} %)",
                    scale->metres_per_unit, scale->low, scale->high, HalfIntervalPercent(*scale))},
       {"scale rests on", SourcesInWords(*scale)}};
-  const auto labels = world.at("scale").at("labels").get<std::vector<std::string>>();
-  if (!labels.empty()) {
-    facts.push_back({"labels of these", fmt::format("{}", fmt::join(labels, ", "))});
+  if (!scale->labels.empty()) {
+    facts.push_back({"labels of these", fmt::format("{}", fmt::join(scale->labels, ", "))});
   }
   const std::string contradictions = ContradictionsInWords(*scale);
   if (!contradictions.empty()) {
@@ -52,33 +49,22 @@ std::vector<Fact> ScaleFacts(const json& world) {
   return facts;
 }
 
-// The objects with their scales by their labels alone, which are log-normal, and percentages.
-json ObjectsOf(const json& world) {
-  json objects = world.at("objects");
-  for (json& object : objects) {
-    object["agreement"] = 100.0 * object["agreement"].get<double>();
-    if (!object.at("log_scale").is_number()) continue;
-    object["scale"] = std::exp(object["log_scale"].get<double>());
-    object["sigma"] = 100.0 * object.at("log_sigma").get<double>();
-  }
-  return objects;
-}
+Value ValueOf(const auto& optional) { return optional ? Value(*optional) : Value(); }
 
 }  // namespace
 
-Inspection InspectWorld(const json& document) {
+Inspection InspectWorld(const std::filesystem::path& file) {
+  const auto [header, findings, world] = ReadWorld(file);
   Inspection inspection;
-  inspection.facts = {{"dataset", document.at("dataset")}, {"up", UpInWords(document.at("up"))}};
-  const std::string doubt = DoubtOfUp(document);
+  inspection.facts = {{"dataset", world.dataset}, {"up", UpInWords(world.up)}};
+  const std::string doubt = DoubtOfUp(findings);
   if (!doubt.empty()) {
     inspection.facts.push_back({"up uncertain", doubt + "; it may be wrong by more than that"});
   }
-  for (const Fact& fact : ScaleFacts(document)) inspection.facts.push_back(fact);
+  for (const Fact& fact : ScaleFacts(world.scale)) inspection.facts.push_back(fact);
   inspection.facts.push_back(
-      {"support planes",
-       fmt::format("{} with objects on them, of {} horizontal ones in {} points",
-                   document.at("planes").size(), document.at("planes_of_points").get<int>(),
-                   document.at("points").get<int>())});
+      {"support planes", fmt::format("{} with objects on them, of {} horizontal ones in {} points",
+                                     world.planes.size(), world.planes_of_points, world.points)});
   inspection.facts.push_back(
       {"columns",
        "one row per group of boxes that are taken for one object. plane: that it stands on, none "
@@ -86,15 +72,15 @@ Inspection InspectWorld(const json& document) {
        "its label; sigma: standard deviation of that. weight: below 1 for several of one label, "
        "which may be of one model. agrees: probability that its height is right at the scale of "
        "the map; objects below 50 % do not count"});
-  inspection.table = TableOf({{"label"},
-                              {"boxes"},
-                              {"plane"},
-                              {"height", "m", 2, "height_m"},
-                              {"scale", "m", 3},
-                              {"sigma", "%", 0},
-                              {"weight"},
-                              {"agrees", "%", 0, "agreement"}},
-                             ObjectsOf(document));
+  inspection.table.columns = {{"label"},         {"boxes"},         {"plane"},  {"height", "m"},
+                              {"scale", "m", 3}, {"sigma", "%", 0}, {"weight"}, {"agrees", "%", 0}};
+  for (const WorldReport::ObjectRow& object : world.objects) {
+    inspection.table.rows.push_back(
+        {object.label, object.boxes, ValueOf(object.plane), ValueOf(object.height_m),
+         object.log_scale ? Value(std::exp(*object.log_scale)) : Value(),
+         object.log_sigma ? Value(100.0 * *object.log_sigma) : Value(), object.weight,
+         100.0 * object.agreement});
+  }
   return inspection;
 }
 
@@ -147,18 +133,16 @@ Inspection InspectPoints(const std::filesystem::path& file) {
 }
 
 Inspection InspectReconstruction(const std::filesystem::path& file) {
-  const ReconstructionSummary summary = ReadReconstruction(file);
+  const ReconstructionSummary summary = ReadReconstruction(file).body;
   const auto in_words = [](const std::optional<double>& value, const char* unit) {
     return value ? fmt::format("{:.2f} {}", *value, unit) : "unknown";
   };
   constexpr size_t kMaxNames = 20;
-  const auto source = [](bool is_given) { return is_given ? "given" : "estimated"; };
   Inspection inspection;
   inspection.facts = {
       {"COLMAP", summary.colmap.empty() ? "ran before; its model was given" : summary.colmap},
       {"registered", fmt::format("{} of {} images", summary.registered, summary.images)},
-      {"poses, camera",
-       fmt::format("{}, {}", source(summary.poses_are_given), source(summary.camera_is_given))},
+      {"poses, camera", fmt::format("{}, {}", NameOf(summary.poses), NameOf(summary.camera))},
       {"points", fmt::format("{}, {} observations", summary.points, summary.observations)},
       {"medians", fmt::format("reprojection error {}, triangulation angle {}",
                               in_words(summary.median_reprojection_error_px, "px"),

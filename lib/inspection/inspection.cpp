@@ -9,7 +9,7 @@
 #include <array>
 
 #include "artefact/hdf5_artefact.h"
-#include "artefact/model_json.h"
+#include "artefact/json_file.h"
 #include "association/options.h"
 #include "base/error.h"
 #include "base/options.h"
@@ -142,7 +142,7 @@ constexpr std::array<Kind, 13> kKinds = {{
     {"sequence", "a dataset, checked and gated", nullptr, &InspectSequence},
     {"symmetry", "what symmetry and edges say about the yaw of observations", nullptr,
      &InspectSymmetry},
-    {"world", "up, scale and support planes of a world that had neither", &InspectWorld},
+    {"world", "up, scale and support planes of a world that had neither", nullptr, &InspectWorld},
 }};
 
 const Kind& FindKind(std::string_view name, const std::filesystem::path& file) {
@@ -171,7 +171,7 @@ void AddLabels(const Sequence& sequence, ValueTable* table) {
 std::vector<Fact> FindingFacts(const std::filesystem::path& file) {
   std::vector<Fact> facts;
   if (IsHdf5(file)) return facts;
-  for (const Finding& finding : FindingsFromJson(ParseJsonFile(file))) {
+  for (const Finding& finding : FindingsOf(ParseJsonFile(file))) {
     facts.push_back(
         {kSeverityNames[static_cast<size_t>(finding.severity)], OneLine(InWords(finding))});
   }
@@ -184,9 +184,8 @@ Inspection Inspect(const std::filesystem::path& file, const std::optional<Sequen
   const nlohmann::json header = ReadArtefactHeader(file);
   const Kind& kind = FindKind(header.at("kind").get_ref<const std::string&>(), file);
   CheckArtefactHeader(header, kind.name, file.string());
-  Inspection inspection = kind.of_file != nullptr
-                              ? kind.of_file(file)
-                              : ReadArtefactAs(file, kind.name, kind.of_document);
+  Inspection inspection = kind.of_file != nullptr ? kind.of_file(file)
+                                                  : kind.of_document(ReadArtefact(file, kind.name));
   if (sequence) AddLabels(*sequence, &inspection.table);
   inspection.title = fmt::format("{}: {} ({})", file.string(), kind.name, kind.title);
   try {

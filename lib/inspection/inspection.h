@@ -83,6 +83,6 @@ Inspection InspectReconstruction(const std::filesystem::path& file);
 Inspection InspectSemanticTable(const std::filesystem::path& file);
 Inspection InspectSequence(const std::filesystem::path& file);
 Inspection InspectSymmetry(const std::filesystem::path& file);
-Inspection InspectWorld(const nlohmann::json& document);
+Inspection InspectWorld(const std::filesystem::path& file);
 
 }  // namespace soslam

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/error.h"
 #include "mapping/back_end_problem.h"
 #include "mapping/covariance.h"
 #include "mapping/input_alternatives.h"
@@ -130,6 +131,29 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
     AddCovariances(input.sequence, covariances, dispersion, &problem, &map);
   }
   return map;
+}
+
+std::optional<OptimisedObject> OptimiseObject(const BackEndInput& input, size_t object_index,
+                                              const Landmark& start,
+                                              const OptimiseOptions& options) {
+  OptimiseOptions alone = options;
+  alone.hold_poses = true;
+  alone.refine_planes = false;
+  alone.covariances = false;
+  alone.check_inputs = false;
+  BackEndInput of_object = input;
+  of_object.edges_weighed_at = input.initial_landmarks;
+  std::ranges::fill(of_object.initial_landmarks, std::nullopt);
+  of_object.initial_landmarks[object_index] = start;
+  try {
+    const MapEstimate map = OptimiseMap(of_object, alone);
+    const auto& landmark = map.objects[object_index].landmark_in_world;
+    if (!landmark) return std::nullopt;
+    return OptimisedObject{*landmark, map.solver.final_cost + map.solver.constant_cost,
+                           map.solver.initial_cost};
+  } catch (const NumericalError&) {
+    return std::nullopt;
+  }
 }
 
 }  // namespace soslam

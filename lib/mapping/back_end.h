@@ -30,6 +30,9 @@ struct BackEndInput {
   std::map<int, std::shared_ptr<const EdgeImage>> edge_images;
   // Points of each object (FindObjectPoints); empty: none are used.
   std::vector<PointsOfObject> points = {};
+  // Landmarks in the world whose edges say how much each image's edges weigh, so that the costs of
+  // several solutions can be compared; empty: those of each solution.
+  std::vector<std::optional<Landmark>> edges_weighed_at = {};
 };
 
 // Eq. (1): the camera poses and landmarks that minimise detection, odometry, support, ratio,
@@ -41,5 +44,18 @@ struct BackEndInput {
 // move, and with collapsed if their landmark ends without HasExtent. The result does not depend on
 // the number of threads. Throws NumericalError when the solver has no usable solution.
 MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& options, int threads = 1);
+
+// One object at the minimum of the back end's cost near a start, with all else constant.
+struct OptimisedObject {
+  Landmark landmark_in_world;
+  double cost;
+  double cost_of_start;  // without images
+};
+
+// The object's minimum near `start`, with the poses and planes of the input's sequence; its initial
+// landmarks only say how much edges weigh. None if there is no minimum.
+std::optional<OptimisedObject> OptimiseObject(const BackEndInput& input, size_t object_index,
+                                              const Landmark& start,
+                                              const OptimiseOptions& options);
 
 }  // namespace soslam

@@ -28,6 +28,7 @@ void BackEndProblem::RenewImageResiduals() {
     for (const ceres::ResidualBlockId block : *blocks) problem_.RemoveResidualBlock(block);
     blocks->clear();
   }
+  summary_.constant_cost = 0.0;
   for (const char* kind : {kSymmetry, kEdges, kPoints}) summary_.residuals.erase(kind);
   for (const char* reason : {kTooFewPairs, kNoEdgeCounts, kNoPoints}) summary_.gated.erase(reason);
   const auto is_used = [&](int detection_index) {
@@ -61,10 +62,10 @@ void BackEndProblem::RenewImageResiduals() {
   ParallelFor(makers.size(), threads_, [&](size_t i) { made[i] = makers[i](); });
   for (size_t i = 0; i < made.size(); ++i) AddImageBlocks(detections[i], std::move(made[i]));
   SetManifolds();
-  FixPoses();
 }
 
 void BackEndProblem::AddImageBlocks(size_t index, ImageBlocks blocks) {
+  summary_.constant_cost += blocks.constant_cost;
   if (blocks.functions.empty()) {
     ++summary_.gated[blocks.reason_for_none];
     return;
@@ -72,9 +73,10 @@ void BackEndProblem::AddImageBlocks(size_t index, ImageBlocks blocks) {
   summary_.residuals[blocks.kind] += blocks.count;
   const Detection& detection = input_.sequence.detections[index];
   auto& added = blocks.kind == kPoints ? point_blocks_ : image_blocks_;
+  // Costs of bodies of any shape are bounded.
+  ceres::LossFunction* loss = IsTangency() ? nullptr : &loss_;
   for (auto& function : blocks.functions) {
-    added.push_back(problem_.AddResidualBlock(function.release(),
-                                              blocks.is_bounded ? nullptr : &loss_, Pose(detection),
+    added.push_back(problem_.AddResidualBlock(function.release(), loss, Pose(detection),
                                               LandmarkOf(detection)));
   }
 }
@@ -86,8 +88,10 @@ BackEndProblem::ImageBlocks BackEndProblem::TextureBlocks(
   auto texture = std::make_unique<AsymmetryCost>(image, input_.sequence.CameraOf(detection),
                                                  in_camera, options_.texture,
                                                  options_.symmetry_options, view_weights_[index]);
-  ImageBlocks blocks{kSymmetry, kTooFewPairs, texture->NumPairs(), {}, true};
-  if (blocks.count > 0) {
+  ImageBlocks blocks{kSymmetry, kTooFewPairs, texture->NumPairs(), {}};
+  if (blocks.count == 0) {
+    blocks.constant_cost = view_weights_[index] * options_.texture.asymmetry_cost;
+  } else {
     blocks.functions.push_back(
         std::make_unique<ImageResidual>(std::move(texture), in_camera.shape_exponents));
   }
@@ -106,7 +110,7 @@ BackEndProblem::ImageBlocks BackEndProblem::PairBlocks(
   for (const Eigen::Vector2d& pixel : samples) {
     if (descriptor.Evaluate(pixel, symmetry.min_viewing_cosine, false)) visible.push_back(pixel);
   }
-  ImageBlocks blocks{kSymmetry, kTooFewPairs, static_cast<int>(visible.size()), {}, false};
+  ImageBlocks blocks{kSymmetry, kTooFewPairs, static_cast<int>(visible.size()), {}};
   if (blocks.count < symmetry.MinPairs(samples.size())) return blocks;
   for (const Eigen::Vector2d& pixel : visible) {
     blocks.functions.push_back(
@@ -152,7 +156,7 @@ BackEndProblem::ImageBlocks BackEndProblem::PointBlocks(size_t object_index,
   const Detection& detection = input_.sequence.detections[view.detection_index];
   const Landmark in_camera = LandmarkInCamera(detection);
   auto points = std::make_unique<PointCost>(PointCostOf(object_index, view, in_camera));
-  ImageBlocks blocks{kPoints, nullptr, static_cast<int>(view.points.size()), {}, true};
+  ImageBlocks blocks{kPoints, nullptr, static_cast<int>(view.points.size()), {}};
   blocks.functions.push_back(
       std::make_unique<ImageResidual>(std::move(points), in_camera.shape_exponents));
   return blocks;
@@ -166,9 +170,15 @@ BackEndProblem::ImageBlocks BackEndProblem::EdgeBlocks(
                                           options_.edges);
   // Where an object's model edges are not visible in the image, as for the cuboid of a chair, the
   // edges that happen to be near carry no information.
-  const double support = edges->Support(in_camera);
+  double support = edges->Support(in_camera);
+  if (!input_.edges_weighed_at.empty()) {
+    const Landmark other = Transform(variables_.PoseValue(detection.frame_index).Inverse(),
+                                     *input_.edges_weighed_at[detection.object_index]);
+    support =
+        EdgeCost(image, input_.sequence.CameraOf(detection), other, options_.edges).Support(other);
+  }
   edges->Weigh(view_weights_[index] * support * support);
-  ImageBlocks blocks{kEdges, kNoEdgeCounts, 1, {}, true};
+  ImageBlocks blocks{kEdges, kNoEdgeCounts, 1, {}, edges->ConstantCost()};
   if (edges->NumPoints() > 0) {
     blocks.functions.push_back(
         std::make_unique<ImageResidual>(std::move(edges), in_camera.shape_exponents));

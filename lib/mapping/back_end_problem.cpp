@@ -18,13 +18,6 @@
 namespace soslam {
 namespace {
 
-ceres::Problem::Options ProblemOptions() {
-  ceres::Problem::Options options;
-  options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;  // losses outlive the problem
-  options.enable_fast_removal = true;
-  return options;
-}
-
 ceres::Solver::Options SolverOptions(int max_iterations) {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
@@ -64,7 +57,8 @@ BackEndProblem::BackEndProblem(const BackEndInput& input, const OptimiseOptions&
       threads_(threads),
       variables_(input),
       loss_(options.upright.huber_delta),
-      problem_(ProblemOptions()) {
+      problem_({.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP,  // they outlive it
+                .enable_fast_removal = true}) {
   WeighViews();
   if (!options.hold_poses) AddOdometry();
   for (size_t i = 0; i < input.initial_landmarks.size(); ++i) {
@@ -72,7 +66,6 @@ BackEndProblem::BackEndProblem(const BackEndInput& input, const OptimiseOptions&
   }
   AddDetections();
   SetManifolds();
-  FixPoses();
   if (problem_.HasParameterBlock(variables_.LogFocal())) {
     problem_.SetParameterBlockConstant(variables_.LogFocal());
   }
@@ -254,24 +247,20 @@ void BackEndProblem::SetManifolds() {
       problem_.SetManifold(block, make());
     }
   };
-  for (size_t i = 0; i < input_.sequence.frames.size(); ++i) {
-    set(variables_.Pose(i), NewPoseManifold);
-  }
-  for (size_t i = 0; i < input_.initial_landmarks.size(); ++i)
-    set(variables_.Landmark(i), NewLandmarkManifold);
-  for (size_t i = 0; i < input_.sequence.planes.size(); ++i) {
-    set(variables_.Normal(i), NewNormalManifold);
-  }
-}
-
-// The first pose of each segment defines its world.
-void BackEndProblem::FixPoses() {
   const auto& frames = input_.sequence.frames;
   for (size_t i = 0; i < frames.size(); ++i) {
+    set(variables_.Pose(i), NewPoseManifold);
+    // The first pose of each segment defines its world.
     const bool is_first = i == 0 || frames[i].segment != frames[i - 1].segment;
     if ((options_.hold_poses || is_first) && problem_.HasParameterBlock(variables_.Pose(i))) {
       problem_.SetParameterBlockConstant(variables_.Pose(i));
     }
+  }
+  for (size_t i = 0; i < input_.initial_landmarks.size(); ++i) {
+    set(variables_.Landmark(i), NewLandmarkManifold);
+  }
+  for (size_t i = 0; i < input_.sequence.planes.size(); ++i) {
+    set(variables_.Normal(i), NewNormalManifold);
   }
 }
 

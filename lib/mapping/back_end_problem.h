@@ -66,7 +66,7 @@ class BackEndProblem {
     const char* reason_for_none;
     int count;
     std::vector<std::unique_ptr<ceres::CostFunction>> functions;
-    bool is_bounded = false;  // if true, they need no Huber loss
+    double constant_cost = 0.0;
   };
 
   bool IsTangency() const { return options_.detection_model == DetectionModel::kTangency; }
@@ -76,8 +76,7 @@ class BackEndProblem {
   void AddStanding(size_t object_index);
   void AddDetections();
   void AddDetection(size_t index, const Landmark& initial_in_camera);
-  void SetManifolds();
-  void FixPoses();
+  void SetManifolds();  // and which poses are constant
   ImageBlocks TextureBlocks(size_t index, const std::shared_ptr<const SymmetryImage>& image) const;
   ImageBlocks PairBlocks(size_t index, const std::shared_ptr<const SymmetryImage>& image) const;
   PointCost PointCostOf(size_t object_index, const PointsInView& view,

@@ -2,22 +2,6 @@
 #include "mapping/back_end_variables.h"
 
 namespace soslam {
-namespace {
-
-// Index of the first plane whose normal is the same or opposite, if both planes are estimated; else
-// that of the plane itself.
-size_t FirstParallelPlane(const std::vector<SupportPlane>& planes, size_t index) {
-  const SupportPlane& plane = planes[index];
-  for (size_t i = 0; i < index && plane.attitude_information; ++i) {
-    if (!planes[i].attitude_information) continue;
-    const Eigen::Vector3d& normal = planes[i].plane_in_world.normal;
-    if (normal == plane.plane_in_world.normal || normal == -plane.plane_in_world.normal) return i;
-  }
-  return index;
-}
-
-}  // namespace
-
 BackEndVariables::BackEndVariables(const BackEndInput& input)
     : input_(input),
       first_landmark_(kPoseSize * input.sequence.frames.size()),
@@ -35,9 +19,14 @@ BackEndVariables::BackEndVariables(const BackEndInput& input)
   }
   for (size_t i = 0; i < sequence.planes.size(); ++i) {
     const Plane& plane = sequence.planes[i].plane_in_world;
-    const size_t shared = FirstParallelPlane(sequence.planes, i);
-    const bool is_opposite = sequence.planes[shared].plane_in_world.normal != plane.normal;
-    planes_.push_back({shared, is_opposite ? -1.0 : 1.0});
+    const auto is_estimated = [&](size_t k) { return sequence.planes[k].attitude_information; };
+    const auto normal_of = [&](size_t k) { return sequence.planes[k].plane_in_world.normal; };
+    size_t shared = is_estimated(i) ? 0 : i;
+    while (shared < i && !(is_estimated(shared) && (normal_of(shared) == plane.normal ||
+                                                    normal_of(shared) == -plane.normal))) {
+      ++shared;
+    }
+    planes_.push_back({shared, normal_of(shared) == plane.normal ? 1.0 : -1.0});
     if (shared == i) std::ranges::copy(plane.normal, Normal(i));
     *Offset(i) = plane.offset;
   }

@@ -15,29 +15,6 @@ namespace {
 // million times the standard deviation that it would have if they were known.
 constexpr double kLeastIndependentShare = 1e-12;
 
-using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-// Without the curvature rows, which solvers need and covariances do not.
-Eigen::SparseMatrix<double> Jacobian(const std::vector<double*>& blocks, ceres::Problem* problem) {
-  ceres::Problem::EvaluateOptions options;
-  options.parameter_blocks = blocks;
-  ceres::CRSMatrix rows;
-  if (!problem->Evaluate(options, nullptr, nullptr, nullptr, &rows)) return {};
-  std::vector<ceres::ResidualBlockId> residuals;
-  problem->GetResidualBlocks(&residuals);
-  size_t row = 0;  // the first one after the present block
-  for (const ceres::ResidualBlockId residual : residuals) {
-    const ceres::CostFunction* cost = problem->GetCostFunctionForResidualBlock(residual);
-    row += static_cast<size_t>(cost->num_residuals());
-    if (dynamic_cast<const TangencyResidual*>(cost) == nullptr) continue;
-    std::fill(rows.values.begin() + rows.rows[row - TangencyResidual::kCurvatureRows],
-              rows.values.begin() + rows.rows[row], 0.0);
-  }
-  return Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>>(
-      rows.num_rows, rows.num_cols, static_cast<int>(rows.values.size()), rows.rows.data(),
-      rows.cols.data(), rows.values.data());
-}
-
 }  // namespace
 
 // Columns of unit length: units do not count when it is decided what is determined.
@@ -51,8 +28,25 @@ MarginalCovariances::MarginalCovariances(ceres::Problem* problem) : problem_(pro
     first_column_[block] = columns;
     columns += problem->ParameterBlockTangentSize(block);
   }
-  Eigen::SparseMatrix<double> jacobian = Jacobian(blocks, problem);
-  if (jacobian.cols() != columns) return;
+  ceres::Problem::EvaluateOptions options;
+  options.parameter_blocks = blocks;
+  ceres::CRSMatrix rows;
+  if (!problem->Evaluate(options, nullptr, nullptr, nullptr, &rows)) return;
+  // The curvature rows are for solvers alone.
+  std::vector<ceres::ResidualBlockId> residuals;
+  problem->GetResidualBlocks(&residuals);
+  size_t row = 0;  // the first one after the present block
+  for (const ceres::ResidualBlockId residual : residuals) {
+    const ceres::CostFunction* cost = problem->GetCostFunctionForResidualBlock(residual);
+    row += static_cast<size_t>(cost->num_residuals());
+    if (dynamic_cast<const TangencyResidual*>(cost) == nullptr) continue;
+    std::fill(rows.values.begin() + rows.rows[row - TangencyResidual::kCurvatureRows],
+              rows.values.begin() + rows.rows[row], 0.0);
+  }
+  Eigen::SparseMatrix<double> jacobian =
+      Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>>(
+          rows.num_rows, rows.num_cols, static_cast<int>(rows.values.size()), rows.rows.data(),
+          rows.cols.data(), rows.values.data());
   column_norms_ =
       (jacobian.cwiseAbs2().transpose() * Eigen::VectorXd::Ones(jacobian.rows())).cwiseSqrt();
   if (!column_norms_.allFinite() || !(column_norms_.minCoeff() > 0.0)) return;
@@ -85,7 +79,7 @@ Covariance9 MarginalCovariances::OfLandmark(const double* landmark) const {
 Eigen::Matrix4d MarginalCovariances::OfPlane(const double* normal, const double* offset) const {
   Eigen::Matrix<double, Eigen::Dynamic, 4> half = Eigen::MatrixXd::Zero(column_norms_.size(), 4);
   if (const Eigen::MatrixXd of_normal = HalfInverse(normal); of_normal.cols() > 0) {
-    RowMajorMatrix normal_by_tangent(3, of_normal.cols());
+    ceres::Matrix normal_by_tangent(3, of_normal.cols());
     problem_->GetManifold(normal)->PlusJacobian(normal, normal_by_tangent.data());
     half.leftCols<3>() = of_normal * normal_by_tangent.transpose();
   }

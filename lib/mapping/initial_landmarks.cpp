@@ -20,21 +20,6 @@
 namespace soslam {
 namespace {
 
-// The median over the object's detections of the distance between box and outline; large where the
-// outline does not exist.
-double MedianEdgeRms(const Sequence& sequence, const std::vector<int>& detections,
-                     const Landmark& landmark_in_world) {
-  std::vector<double> distances;
-  for (const int index : detections) {
-    const Detection& detection = sequence.detections[index];
-    const Frame& frame = sequence.frames[detection.frame_index];
-    distances.push_back(OutlineEdgeRms(
-        sequence.CameraOf(frame), Transform(frame.world_from_camera.Inverse(), landmark_in_world),
-        detection.box));
-  }
-  return UpperMedian(std::move(distances));
-}
-
 // Yaws closer than this lead to the same optimum.
 constexpr double kYawBin = 6.0 * kRadPerDeg;
 constexpr double kYawStep = 3.0 * kRadPerDeg;
@@ -82,21 +67,6 @@ ObjectEvidence EvidenceOfViews(const BackEndInput& input, size_t object_index,
   return evidence;
 }
 
-// Adds the points of an object, with the widths of one size for all of its landmarks.
-void AddPoints(const BackEndInput& input, size_t object_index, double size_m,
-               const PointOptions& options, ObjectEvidence* evidence) {
-  if (input.points.empty()) return;
-  const PointsOfObject& points = input.points[object_index];
-  const double weight = PointWeight(points, options);
-  for (const PointsInView& view : points) {
-    FurtherEvidence further = InCamera({view.points, size_m, weight, options});
-    further.camera_from_reference =
-        input.sequence.FrameOf(input.sequence.detections[view.detection_index])
-            .world_from_camera.Inverse();
-    evidence->further.push_back(further);
-  }
-}
-
 // The cheapest of each bin of yaw, cheapest first.
 std::vector<Landmark> BestOfEachYaw(const std::vector<Landmark>& landmarks,
                                     const ObjectEvidence& evidence) {
@@ -141,7 +111,16 @@ std::optional<Landmark> ChooseLandmark(const BackEndInput& input, size_t object_
   const double point_size_m = SizeForPoints(hypotheses);
   std::vector<std::vector<ObjectFit>> fits;
   for (ObjectEvidence& on_face : on_faces) {
-    AddPoints(input, object_index, point_size_m, options.points, &on_face);
+    if (!input.points.empty()) {
+      const PointsOfObject& points = input.points[object_index];
+      for (const PointsInView& view : points) {
+        on_face.further.push_back(InCamera(
+            {view.points, point_size_m, PointWeight(points, options.points), options.points}));
+        on_face.further.back().camera_from_reference =
+            input.sequence.FrameOf(input.sequence.detections[view.detection_index])
+                .world_from_camera.Inverse();
+      }
+    }
     fits.push_back(FitObject(on_face, BestOfEachYaw(hypotheses, on_face), {}));
     if (fits.back().empty()) continue;
     // The body a quarter turn on, and the same body called by its other horizontal axis.
@@ -179,7 +158,16 @@ std::vector<std::optional<Landmark>> ChooseInitialLandmarks(const Sequence& sequ
     if (!sequence.objects[i].is_static) continue;
     double least = std::numeric_limits<double>::infinity();
     for (const Landmark& landmark : hypotheses[i]) {
-      const double distance = MedianEdgeRms(sequence, detections[i], landmark);
+      // Between box and outline, large where the outline does not exist.
+      std::vector<double> distances;
+      for (const int index : detections[i]) {
+        const Detection& detection = sequence.detections[index];
+        const Frame& frame = sequence.FrameOf(detection);
+        distances.push_back(OutlineEdgeRms(sequence.CameraOf(frame),
+                                           Transform(frame.world_from_camera.Inverse(), landmark),
+                                           detection.box));
+      }
+      const double distance = UpperMedian(std::move(distances));
       if (initial_landmarks[i] && !(distance < least)) continue;
       initial_landmarks[i] = landmark;
       least = distance;

@@ -15,38 +15,6 @@ namespace {
 constexpr int kMaxIterations = 50;
 constexpr size_t kMostPlanesAlone = 10;
 
-// The priors with their standard deviations multiplied by the root of how many objects have the
-// label.
-std::vector<std::optional<ShapePrior>> PriorsOfLabels(const BackEndInput& input) {
-  std::map<std::string, int> objects_of_label;
-  for (size_t i = 0; i < input.priors.size(); ++i) {
-    if (input.initial_landmarks[i]) ++objects_of_label[input.sequence.objects[i].label];
-  }
-  std::vector<std::optional<ShapePrior>> priors = input.priors;
-  for (size_t i = 0; i < priors.size(); ++i) {
-    if (!priors[i] || !input.initial_landmarks[i]) continue;
-    priors[i]->log_sigma *= std::sqrt(objects_of_label[input.sequence.objects[i].label]);
-  }
-  return priors;
-}
-
-PlaneAlternative PlaneFound(const Sequence& sequence, const BackEndVariables& variables,
-                            int plane_index) {
-  const Plane& given = sequence.planes[static_cast<size_t>(plane_index)].plane_in_world;
-  const Plane found = variables.PlaneValue(static_cast<size_t>(plane_index));
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  int count = 0;
-  const auto landmarks = variables.LandmarkValues();
-  for (size_t i = 0; i < landmarks.size(); ++i) {
-    if (!landmarks[i] || sequence.objects[i].plane_index != plane_index) continue;
-    sum += landmarks[i]->Centre();
-    ++count;
-  }
-  const Eigen::Vector3d centre = sum / std::max(1, count);
-  const Eigen::Vector3d on_given = centre - given.SignedDistance(centre) * given.normal;
-  return {found, -found.SignedDistance(on_given), AngleBetween(given.normal, found.normal)};
-}
-
 // The problem at the present values of its variables.
 InputAlternative AlternativeAt(const Sequence& sequence, const std::vector<int>& planes,
                                BackEndProblem* problem) {
@@ -54,8 +22,21 @@ InputAlternative AlternativeAt(const Sequence& sequence, const std::vector<int>&
   problem->problem().Evaluate({}, &found.cost, nullptr, nullptr, nullptr);
   found.box_cost = problem->BoxCost();
   found.focal_factor = problem->variables().FocalFactor();
-  for (const int plane : planes) {
-    found.planes[plane] = PlaneFound(sequence, problem->variables(), plane);
+  const auto landmarks = problem->variables().LandmarkValues();
+  for (const int index : planes) {
+    const Plane& given = sequence.planes[static_cast<size_t>(index)].plane_in_world;
+    const Plane plane = problem->variables().PlaneValue(static_cast<size_t>(index));
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    int count = 0;
+    for (size_t i = 0; i < landmarks.size(); ++i) {
+      if (!landmarks[i] || sequence.objects[i].plane_index != index) continue;
+      sum += landmarks[i]->Centre();
+      ++count;
+    }
+    const Eigen::Vector3d centre = sum / std::max(1, count);
+    const Eigen::Vector3d on_given = centre - given.SignedDistance(centre) * given.normal;
+    found.planes[index] = {plane, -plane.SignedDistance(on_given),
+                           AngleBetween(given.normal, plane.normal)};
   }
   return found;
 }
@@ -78,9 +59,9 @@ bool Add(const Sequence& sequence, const std::set<double*>& blocks, const std::v
   const double twice_by_chance = degrees + 2.0 * std::sqrt(2.0 * degrees);
   // A step that would raise the cost is not taken, and tells nothing of the correction.
   const bool is_refused = problem->variables().values() == before;
-  const bool is_promising =
-      2.0 * gain > twice_by_chance * dispersion &&
-      (is_refused || AlternativeAt(sequence, planes, problem).Correction() > kPromisingCorrection);
+  const bool is_promising = 2.0 * gain > twice_by_chance * dispersion &&
+                            (is_refused || LargestCorrection(AlternativeAt(
+                                               sequence, planes, problem)) > kPromisingCorrection);
   if (is_promising && problem->Minimise(kMaxIterations).IsSolutionUsable()) {
     alternatives->push_back(AlternativeAt(sequence, planes, problem));
     alternatives->back().degrees = degrees;
@@ -92,6 +73,18 @@ bool Add(const Sequence& sequence, const std::set<double*>& blocks, const std::v
 
 }  // namespace
 
+double LargestCorrection(const PlaneAlternative& found) {
+  return std::max(std::abs(found.height_change_m) / 0.02, found.tilt_rad / kRadPerDeg);
+}
+
+double LargestCorrection(const InputAlternative& found) {
+  double largest = std::abs(std::log(found.focal_factor)) / 0.02;
+  for (const auto& [index, plane] : found.planes) {
+    largest = std::max(largest, LargestCorrection(plane));
+  }
+  return largest;
+}
+
 std::vector<InputAlternative> FindInputAlternatives(const BackEndInput& map_input,
                                                     const OptimiseOptions& options,
                                                     const BackEndVariables& solution) {
@@ -100,8 +93,15 @@ std::vector<InputAlternative> FindInputAlternatives(const BackEndInput& map_inpu
       std::ranges::any_of(DetectionsByObject(sequence),
                           [](const std::vector<int>& of_object) { return of_object.size() > 1; });
   if (!has_views) return {};  // the priors alone would tell
-  const BackEndInput input{
-      sequence, map_input.initial_landmarks, PriorsOfLabels(map_input), {}, {}};
+  BackEndInput input{sequence, map_input.initial_landmarks, map_input.priors, {}, {}};
+  std::map<std::string, int> objects_of_label;
+  for (size_t i = 0; i < input.priors.size(); ++i) {
+    if (input.initial_landmarks[i]) ++objects_of_label[sequence.objects[i].label];
+  }
+  for (size_t i = 0; i < input.priors.size(); ++i) {
+    if (!input.priors[i] || !input.initial_landmarks[i]) continue;
+    input.priors[i]->log_sigma *= std::sqrt(objects_of_label[sequence.objects[i].label]);
+  }
   BackEndProblem problem(input, options);
   BackEndVariables& variables = problem.variables();
   variables.SetValues(solution.values());

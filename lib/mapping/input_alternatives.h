@@ -20,4 +20,9 @@ std::vector<InputAlternative> FindInputAlternatives(const BackEndInput& input,
                                                     const OptimiseOptions& options,
                                                     const BackEndVariables& solution);
 
+// The largest correction of what is given, in units of the least that matters: 2 % of the focal
+// length, 2 cm of a plane's height, 1 degree of its tilt.
+double LargestCorrection(const PlaneAlternative& found);
+double LargestCorrection(const InputAlternative& found);
+
 }  // namespace soslam

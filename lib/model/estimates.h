@@ -73,6 +73,7 @@ struct LandmarkEstimates {
 struct SolverSummary {
   double initial_cost = 0.0;
   double final_cost = 0.0;
+  double constant_cost = 0.0;      // of texture and edges that no landmark nearby shows
   double box_cost = 0.0;           // part of the boxes in final_cost
   double expected_box_cost = 0.0;  // of boxes that contain only their noise: 1/2 for each edge,
                                    // times the weight of its view
@@ -95,11 +96,6 @@ struct PlaneAlternative {
   Plane plane_in_world;
   double height_change_m = 0.0;  // along the given normal
   double tilt_rad = 0.0;
-
-  // In units of the least that matters: 2 cm, 1 degree.
-  double Correction() const {
-    return std::max(std::abs(height_change_m) / 0.02, tilt_rad / kRadPerDeg);
-  }
 };
 
 // How well the back end explains the boxes, without images and points, if some of what is given to
@@ -110,14 +106,6 @@ struct InputAlternative {
   double box_cost = 0.0;                        // part of the boxes in it
   double focal_factor = 1.0;                    // of fx and fy of all cameras
   std::map<int, PlaneAlternative> planes = {};  // those that are free, by index in Sequence::planes
-
-  // The largest correction, in units of the least that matters: 2 % of the focal length, or that of
-  // a plane.
-  double Correction() const {
-    double largest = std::abs(std::log(focal_factor)) / 0.02;
-    for (const auto& [index, plane] : planes) largest = std::max(largest, plane.Correction());
-    return largest;
-  }
 };
 
 // The result of the back end.

@@ -12,6 +12,7 @@ enum class Severity {
   kError,    // cannot be right
 };
 inline constexpr std::array kSeverityNames = {"warning", "error"};
+inline constexpr const auto& NamesOf(Severity) { return kSeverityNames; }
 
 // A violation found by a check of data or of a result.
 struct Finding {
@@ -24,6 +25,16 @@ struct Finding {
 
   bool operator==(const Finding&) const = default;
 };
+
+template <typename Visitor>
+void Describe(Visitor& visit, Finding& finding) {
+  visit.Field("check", &finding.check, "name of the check");
+  visit.Field("severity", &finding.severity, "error: cannot be right; warning: may be right");
+  visit.Field("found", &finding.found, "what was found, with its numbers");
+  visit.Field("expected", &finding.expected, "what data that are as they should be have");
+  visit.Field("cause", &finding.cause, "the likely cause");
+  visit.Field("remedy", &finding.remedy, "what to do");
+}
 
 // The finding as one sentence for a person, without name and severity.
 std::string InWords(const Finding& finding);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <fmt/format.h>
+
 #include <Eigen/Core>
 #include <array>
 #include <map>
@@ -42,6 +44,77 @@ struct SemanticRows {
   std::optional<SemanticRow> default_row;  // its label is "default"
   std::vector<SemanticRow> rows;           // sorted by label
 };
+
+// An entry of the file, whose key is the label.
+template <typename Visitor>
+void Describe(Visitor& visit, SemanticRow& row) {
+  constexpr double kLogSigma = 0.3, kShapeExponent = 1.1;  // of entries that have a ratio only
+  constexpr Limits kCorrelation = {-0.99, 0.99}, kBias = {-1.0, 0.4};
+  ShapePrior& prior = row.prior;
+  visit.Field("a_by_c", &prior.ratio.x(), "a / c: depth by height", kPositive);
+  visit.Field("b_by_c", &prior.ratio.y(), "b / c: width by height", kPositive);
+  visit.OrDefault("a_by_c_log_sigma", &prior.log_sigma.x(), kLogSigma,
+                  "standard deviation of log(a / c) among objects of the label", kPositive);
+  visit.OrDefault("b_by_c_log_sigma", &prior.log_sigma.y(), kLogSigma,
+                  "standard deviation of log(b / c) among objects of the label", kPositive);
+  DescribeExponents(visit, prior.shape_exponents, kShapeExponent);
+  visit.OrDefault("log_correlation", &prior.log_correlation, 0.0,
+                  "of log(a / c) and log(b / c) among objects of the label", kCorrelation);
+  std::optional<double> height_m, height_log_sigma;
+  if (prior.height_m)
+    height_m = prior.height_m->median, height_log_sigma = prior.height_m->log_sigma;
+  visit.OrAbsent("height_m", &height_m, "2 c: median height, metres; absent: the size is not known",
+                 kPositive);
+  visit.OrAbsent("height_log_sigma", &height_log_sigma,
+                 "standard deviation of log(height) among objects of the label; 0.3 if absent",
+                 kPositive);
+  visit.AfterReading([&] {
+    prior.height_m.reset();
+    if (height_m) prior.height_m = {*height_m, height_log_sigma.value_or(kLogSigma)};
+  });
+  visit.OrAbsent("mount", &prior.mount,
+                 "side of the upright thing that its support plane is at: below (standing), above "
+                 "(hanging, as a lamp from a ceiling) or behind (on_wall, as a picture)");
+  visit.OrAbsent("attitude", &prior.attitude,
+                 "how the thing may be held by its support plane: with the face of its mount on it "
+                 "(standing), with its bottom, back or side on it (any_face), or leaning, so that "
+                 "the plane only touches it (free). any_face and free need the mount standing");
+  visit.Check([&] {
+    return prior.attitude == Attitude::kStanding || prior.mount == Mount::kStanding
+               ? std::string()
+               : fmt::format("attitude is {} and mount {}; expected standing for one of the two",
+                             NameOf(prior.attitude), NameOf(prior.mount));
+  });
+  visit.OrAbsent("edge_bias", &prior.edge_bias,
+                 "mean distance by which the left, top, right and bottom edges of a detector's "
+                 "boxes lie outside the outline of the body, as fractions of the width or height "
+                 "of the box; negative: inside",
+                 kBias);
+  visit.OrDefault("samples", &row.samples, 0,
+                  "objects that the ratios were learned from; 0: general knowledge", kNotNegative);
+  visit.OrAbsent("aliases", &row.aliases,
+                 "other names of the label; case, blanks, underscores and hyphens do not count",
+                 kNotEmpty);
+  visit.Field("source", &row.source, "where the numbers come from", kNotEmpty);
+}
+
+template <typename Visitor>
+void Describe(Visitor& visit, SemanticRows& rows) {
+  visit.OrDefault("description", &rows.description, std::string(), "what the table is of");
+  visit.OrAbsent("default", &rows.default_row,
+                 "for labels that are not listed; absent: objects of such labels are left out");
+  std::map<std::string, SemanticRow> labels;
+  for (const SemanticRow& row : rows.rows) labels[row.label] = row;
+  visit.Field("labels", &labels, "entries by label");
+  visit.AfterReading([&] {
+    if (rows.default_row) rows.default_row->label = "default";
+    rows.rows.clear();
+    for (auto& [label, row] : labels) {
+      row.label = label;
+      rows.rows.push_back(row);
+    }
+  });
+}
 
 // Indices of the rows by NormalisedLabel of their labels and aliases. Throws InputError if two of
 // these are the same.

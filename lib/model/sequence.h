@@ -64,11 +64,13 @@ enum class OdometryWorld {
   kOwn,           // another frame, in metres
   kOwnWithScale,  // another frame, of any unit
 };
-inline constexpr const char* kOdometryWorldNames[] = {"of_truth", "own", "own_with_scale"};
+inline constexpr std::array kOdometryWorldNames = {"of_truth", "own", "own_with_scale"};
+inline constexpr const auto& NamesOf(OdometryWorld) { return kOdometryWorldNames; }
 
 // Stages that reject detections.
 enum class RejectingStage { kImport, kAssociate, kPlanes };
-inline constexpr const char* kRejectingStageNames[] = {"import", "associate", "planes"};
+inline constexpr std::array kRejectingStageNames = {"import", "associate", "planes"};
+inline constexpr const auto& NamesOf(RejectingStage) { return kRejectingStageNames; }
 
 // A detection that is not used.
 struct RejectedDetection {
@@ -212,6 +214,11 @@ struct Sequence {
   const Camera& CameraOf(const Frame& frame) const { return frame.camera ? *frame.camera : camera; }
   const Camera& CameraOf(const Detection& detection) const { return CameraOf(FrameOf(detection)); }
 };
+
+// True if the lengths of a sequence without a world.json are in metres.
+inline bool IsInMetresWithoutWorld(const Sequence& sequence) {
+  return sequence.odometry_world != OdometryWorld::kOwnWithScale;
+}
 
 // The estimated pose of each frame: odometry.
 inline std::vector<Rigid3d> PosesOf(const Sequence& sequence) {

@@ -24,6 +24,7 @@ enum class Mount {
   kOnWall,    // behind it, as for a picture
 };
 inline constexpr std::array kMountNames = {"standing", "hanging", "on_wall"};
+inline constexpr const auto& NamesOf(Mount) { return kMountNames; }
 
 // How an object may be held by its support plane.
 enum class Attitude {
@@ -32,6 +33,7 @@ enum class Attitude {
   kFree,      // leaning: the plane only touches it
 };
 inline constexpr std::array kAttitudeNames = {"standing", "any_face", "free"};
+inline constexpr const auto& NamesOf(Attitude) { return kAttitudeNames; }
 
 // Mean distances by which the edges of a detector's boxes (left, top, right, bottom) lie outside
 // the outline of the body, as fractions of the width or height of the box; negative: inside. Those

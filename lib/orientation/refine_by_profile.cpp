@@ -94,22 +94,6 @@ RefinedObservation RefineOnFace(const Sequence& sequence, const Detection& detec
   return result;
 }
 
-// Joins the hypotheses of two faces; the record is that of the better one, if equal of the first.
-RefinedObservation Joined(RefinedObservation one, RefinedObservation other) {
-  const auto rank = [](const RefinedObservation& observation) {
-    const std::vector<Hypothesis>& hypotheses = observation.estimate.hypotheses;
-    return hypotheses.empty() ? std::numeric_limits<float>::infinity()
-                              : RankOfCost(hypotheses.front().cost);
-  };
-  if (rank(other) < rank(one)) std::swap(one, other);
-  std::vector<Hypothesis>& hypotheses = one.estimate.hypotheses;
-  std::ranges::copy(other.estimate.hypotheses, std::back_inserter(hypotheses));
-  std::ranges::stable_sort(
-      hypotheses, {}, [](const Hypothesis& hypothesis) { return RankOfCost(hypothesis.cost); });
-  hypotheses.resize(std::min(hypotheses.size(), kMaxHypotheses));
-  return one;
-}
-
 }  // namespace
 
 RefinedObservation RefineByProfile(const Sequence& sequence, int detection_index,
@@ -119,12 +103,27 @@ RefinedObservation RefineByProfile(const Sequence& sequence, int detection_index
                                    const SymmetryOptions& symmetry_options,
                                    const std::optional<PointEvidence>& points) {
   const Detection& detection = sequence.detections[detection_index];
+  const auto rank = [](const RefinedObservation& observation) {
+    const std::vector<Hypothesis>& hypotheses = observation.estimate.hypotheses;
+    return hypotheses.empty() ? std::numeric_limits<float>::infinity()
+                              : RankOfCost(hypotheses.front().cost);
+  };
+  // The hypotheses of all faces; the record is that of the best one, if equal of the first.
   std::optional<RefinedObservation> joined;
   for (const auto& on_face : OnPossibleFaces(prior)) {
     if (!on_face) continue;
     RefinedObservation refined =
         RefineOnFace(sequence, detection, edges, *on_face, options, symmetry_options, points);
-    joined = joined ? Joined(std::move(*joined), std::move(refined)) : std::move(refined);
+    if (!joined) {
+      joined = std::move(refined);
+      continue;
+    }
+    if (rank(refined) < rank(*joined)) std::swap(*joined, refined);
+    std::vector<Hypothesis>& hypotheses = joined->estimate.hypotheses;
+    std::ranges::copy(refined.estimate.hypotheses, std::back_inserter(hypotheses));
+    std::ranges::stable_sort(hypotheses, {},
+                             [](const Hypothesis& one) { return RankOfCost(one.cost); });
+    hypotheses.resize(std::min(hypotheses.size(), kMaxHypotheses));
   }
   RefinedObservation result = joined.value_or(RefinedObservation());
   if (!joined) result.estimate.failure = "no_ratio_for_label";

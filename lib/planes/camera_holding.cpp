@@ -29,18 +29,6 @@ const double kWrongObject = std::log(1e4);
 
 constexpr double kSameUp = 5.0 * kRadPerDeg;
 
-double CostOf(const HoldingEvidence& evidence, const std::vector<double>& lowest, double misfit) {
-  double cost = evidence.other_cost / misfit + kFromBelow * evidence.share_from_below;
-  if (evidence.holding != CameraHolding::kLevel) cost += kNotLevel;
-  if (evidence.ignores_verticals) cost += kWrongVerticals;
-  for (size_t i = 0; i < lowest.size(); ++i) {
-    if (!std::isfinite(lowest[i])) continue;
-    const auto& own = evidence.object_costs[i];
-    cost += own ? std::min(kWrongObject, (*own - lowest[i]) / misfit) : kWrongObject;
-  }
-  return cost;
-}
-
 }  // namespace
 
 bool IsSameUp(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
@@ -63,7 +51,15 @@ HoldingChoice ChooseHolding(const std::vector<HoldingEvidence>& evidence, double
   const double misfit = expected_cost > 0.0 ? std::max(1.0, sum_of_lowest / expected_cost) : 1.0;
   HoldingChoice choice;
   for (const HoldingEvidence& one : evidence) {
-    choice.costs.push_back(CostOf(one, lowest, misfit));
+    double cost = one.other_cost / misfit + kFromBelow * one.share_from_below;
+    if (one.holding != CameraHolding::kLevel) cost += kNotLevel;
+    if (one.ignores_verticals) cost += kWrongVerticals;
+    for (size_t i = 0; i < lowest.size(); ++i) {
+      if (!std::isfinite(lowest[i])) continue;
+      const auto& own = one.object_costs[i];
+      cost += own ? std::min(kWrongObject, (*own - lowest[i]) / misfit) : kWrongObject;
+    }
+    choice.costs.push_back(cost);
   }
   for (size_t i = 1; i < evidence.size(); ++i) {
     if (!evidence[i].can_be_chosen) continue;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <utility>
 
 #include "base/parallel.h"
@@ -21,6 +23,7 @@ Mount MountOf(const std::optional<ShapePrior>& prior) { return prior.value_or(Sh
 
 // Views per object in the search for up.
 constexpr size_t kViewsOfSearch = 12;
+constexpr size_t kAllViews = std::numeric_limits<size_t>::max();
 
 constexpr double kYawStep = 3.0 * kRadPerDeg;
 constexpr int kMaxRounds = 10;
@@ -40,258 +43,238 @@ double ExpectedCost(const ObjectEvidence& observation) {
   return 0.5 * std::max(1.0, edges + ratios - kParameters);
 }
 
-// Estimates the planes of all objects with one mount. The z axes of their bodies point up as in
-// `up_prior`.
-class Estimator {
- public:
-  Estimator(const Sequence& sequence, const std::vector<std::optional<ShapePrior>>& priors,
-            Mount mount, const UpPrior& up_prior, const PlanesOptions& options, int threads)
-      : sequence_(sequence), options_(options), threads_(threads), up_prior_(up_prior) {
-    auto detections = DetectionsByObject(sequence);
-    for (size_t i = 0; i < sequence.objects.size(); ++i) {
-      // A moving object has no single place in the world.
-      const bool takes_part = sequence.objects[i].is_static && MountOf(priors[i]) == mount;
-      if (!takes_part) detections[i].clear();
-      observations_.push_back(Observe(detections[i], priors[i]));
-      sparse_.push_back(Observe(SpreadOver(detections[i], kViewsOfSearch), priors[i]));
-    }
-  }
+// Per object; none for an object that takes no part.
+using Observations = std::vector<std::optional<ObjectEvidence>>;
 
-  // Adds the costs of the objects with this mount.
-  void AddCostsOfUprightBodies(BodyCosts* costs) const {
-    const Eigen::Vector3d up = SearchUp(up_prior_, sparse_, threads_).front();
-    for (size_t i = 0; i < sparse_.size(); ++i) {
-      if (!sparse_[i]) continue;
-      costs->of_objects[i] = CostOfUprightBody(up, *sparse_[i]);
-      costs->expected += ExpectedCost(*sparse_[i]);
-    }
-  }
-
-  // None when no object's boxes determine the height of a plane.
-  std::optional<PlanesEstimate> Estimate() {
-    std::optional<PlanesEstimate> best;
-    double lowest = 0.0;
-    for (const Eigen::Vector3d& up : SearchUp(up_prior_, sparse_, threads_)) {
-      auto estimate = EstimateFrom(up);
-      if (!estimate) continue;
-      const double cost = CostOfAll(*estimate);
-      if (best && cost >= lowest) continue;
-      best = std::move(estimate);
-      lowest = cost;
-    }
-    return best;
-  }
-
- private:
-  std::optional<ObjectEvidence> Observe(const std::vector<int>& detections,
-                                        const std::optional<ShapePrior>& prior) const {
-    if (detections.empty() || (prior && prior->attitude == Attitude::kFree)) return std::nullopt;
-    ObjectEvidence observation = EvidenceInWorld(sequence_, detections, prior, options_.upright);
+// The objects with this mount, each with at most `max_views`.
+Observations Observe(const Sequence& sequence, const std::vector<std::optional<ShapePrior>>& priors,
+                     Mount mount, const PlanesOptions& options, size_t max_views) {
+  Observations observations(sequence.objects.size());
+  const auto detections = DetectionsByObject(sequence);
+  for (size_t i = 0; i < observations.size(); ++i) {
+    const auto& prior = priors[i];
+    const bool may_lean = prior && prior->attitude == Attitude::kFree;
+    // A moving object has no single place in the world.
+    if (!sequence.objects[i].is_static || MountOf(prior) != mount || may_lean) continue;
+    if (detections[i].empty()) continue;
+    ObjectEvidence& observation = observations[i].emplace(
+        EvidenceInWorld(sequence, SpreadOver(detections[i], max_views), prior, options.upright));
     observation.height_is_free = true;
-    WeighViews(options_.upright.ViewCorrelation(), &observation);
+    WeighViews(options.upright.ViewCorrelation(), &observation);
     observation.ratio_is_free = prior && prior->attitude != Attitude::kStanding;
-    observation.size_is_known = options_.size_prior && !observation.ratio_is_free;
-    return observation;
+    observation.size_is_known = options.size_prior && !observation.ratio_is_free;
   }
+  return observations;
+}
 
-  // None when no body's views determine the height of its base, or a fit fails.
-  std::optional<PlanesEstimate> EstimateFrom(const Eigen::Vector3d& up) {
-    PlanesEstimate estimate;
-    estimate.up_of_cameras = up_prior_.up_in_world;
-    Plane reference{up, 0.0};
-    std::pair<std::vector<size_t>, std::vector<int>> before;
-    for (; estimate.rounds < kMaxRounds && !estimate.settled; ++estimate.rounds) {
-      FindOwnHeights(reference.normal);
-      if (deciding_.empty()) return std::nullopt;
-      Decide(&reference);
-      if (!RefineAll()) return std::nullopt;
-      estimate.settled = before == std::pair(deciding_, standing_.plane_of);
-      before = {deciding_, standing_.plane_of};
-      reference = standing_.planes.front();
+// The bodies whose own views determine the height of their base, given the normal; by object.
+std::map<size_t, StandingBody> FindOwnHeights(const Observations& observations,
+                                              const Eigen::Vector3d& normal, int threads) {
+  std::vector<std::optional<StandingBody>> found(observations.size());
+  ParallelFor("objects", found.size(), threads, [&](size_t i) {
+    if (!observations[i]) return;
+    auto body = FitBodyAtFreeHeight(*observations[i], normal, kYawStep);
+    if (!body) return;
+    const double information = EvidenceOf(*body, body->landmark.Centre()).information(2, 2);
+    const double size = 2.0 * body->landmark.half_axes.maxCoeff();
+    if (information * std::pow(kMaxHeightSigmaBySize * size, 2) > 1.0) found[i] = body;
+  });
+  std::map<size_t, StandingBody> own;
+  for (size_t i = 0; i < found.size(); ++i) {
+    if (found[i]) own.emplace(i, *found[i]);
+  }
+  return own;
+}
+
+// Assigns bodies, each on a plane of its own, to shared planes.
+StandingBodies OnSharedPlanes(const std::map<size_t, StandingBody>& own,
+                              const Eigen::Vector3d& normal, const UpPrior& up_prior,
+                              const PlanesOptions& options) {
+  StandingBodies standing{{}, {}, {}, up_prior, options.height_sigma_fraction};
+  for (const auto& [index, body] : own) standing.bodies.push_back(body);
+  const Eigen::Vector3d pivot = MeanBasePoint(standing.bodies);
+  const Plane reference{normal, -normal.dot(pivot)};
+  std::vector<PlaneEvidence> evidence;
+  std::vector<double> heights;
+  for (const StandingBody& body : standing.bodies) {
+    evidence.push_back(
+        WithHeightNoise(EvidenceOf(body, pivot), HeightSigma(body, options.height_sigma_fraction)));
+    heights.push_back(-body.evidence.plane.SignedDistance(pivot));
+  }
+  const PlaneHeights levels = ClusterPlaneHeights(
+      evidence, heights, EvidenceOf(up_prior, reference), kMaxTilt, options.new_plane_cost);
+  standing.plane_of = levels.level_of;
+  const Eigen::Vector2d& tilt = levels.tilt;
+  for (const double height : levels.heights) {
+    standing.planes.push_back(Moved(reference, pivot, {tilt.x(), tilt.y(), height}));
+  }
+  for (size_t i = 0; i < standing.bodies.size(); ++i) {
+    StandingBody& body = standing.bodies[i];
+    const auto level = static_cast<size_t>(levels.level_of[i]);
+    body.landmark = Moved(body.evidence.plane, pivot,
+                          {tilt.x(), tilt.y(), levels.heights[level] - heights[i]}, body.landmark);
+    body.evidence.plane = standing.planes[level];
+  }
+  return standing;
+}
+
+// Refines planes and bodies: together where planes are parallel, else those of one plane at a time.
+// None when the fit of a body fails.
+std::vector<RefinedPlanes> RefineAll(bool parallel, int threads, StandingBodies* standing) {
+  std::vector<RefinedPlanes> refined;
+  if (parallel) {
+    if (auto all = Refine(standing, threads)) refined.push_back(std::move(*all));
+    return refined;
+  }
+  for (size_t plane = 0; plane < standing->planes.size(); ++plane) {
+    StandingBodies alone{
+        {}, {}, {standing->planes[plane]}, standing->up_prior, standing->height_sigma_fraction};
+    for (size_t i = 0; i < standing->bodies.size(); ++i) {
+      if (standing->plane_of[i] != static_cast<int>(plane)) continue;
+      alone.bodies.push_back(standing->bodies[i]);
+      alone.plane_of.push_back(0);
     }
-    Write(&estimate);
-    return estimate;
+    auto one = Refine(&alone, threads);
+    if (!one) return {};
+    refined.push_back(std::move(*one));
+    standing->planes[plane] = alone.planes.front();
   }
+  return refined;
+}
 
-  // Cost of all objects' boxes (including objects that do not decide about planes), of the cameras'
-  // up prior, and of the number of planes.
-  double CostOfAll(const PlanesEstimate& estimate) const {
+EstimatedPlane EstimatedPlaneOf(const StandingBodies& standing,
+                                const std::vector<RefinedPlanes>& all_refined, bool parallel,
+                                size_t index) {
+  const Plane& plane = standing.planes[index];
+  std::vector<StandingBody> bodies;
+  for (size_t i = 0; i < standing.bodies.size(); ++i) {
+    if (standing.plane_of[i] == static_cast<int>(index)) bodies.push_back(standing.bodies[i]);
+  }
+  const Eigen::Vector3d feet = MeanBasePoint(bodies);
+  const Eigen::Vector3d point = feet - plane.SignedDistance(feet) * plane.normal;
+  const Eigen::Matrix3d level = UprightRotation(plane.normal, 0.0).toRotationMatrix();
+  const RefinedPlanes& refined = parallel ? all_refined.front() : all_refined[index];
+  const auto rise = static_cast<Eigen::Index>(parallel ? 2 + index : 2);
+  const std::array<Eigen::Index, 3> motion = {0, 1, rise};
+  const Eigen::Matrix3d covariance = refined.covariance(motion, motion);
+  // Rotations about the pivot raise the plane at the point.
+  Eigen::Matrix3d at_point = Eigen::Matrix3d::Identity();
+  const Eigen::Vector3d arm = point - refined.pivot;
+  at_point(2, 0) = level.col(1).dot(arm);
+  at_point(2, 1) = -level.col(0).dot(arm);
+  return {plane, point, level.col(0), at_point * covariance * at_point.transpose()};
+}
+
+// What an object stands on: the plane that it decided about, if any, or that of lowest cost.
+ObjectSupport FindSupport(const ObjectEvidence& evidence, const std::optional<int>& decided,
+                          const std::vector<EstimatedPlane>& planes) {
+  ObjectSupport support;
+  support.reason = decided ? SupportReason::kOwnHeight : SupportReason::kLowestCost;
+  if (decided) {
+    support.plane_index = *decided;
+    const Plane& plane = planes[*decided].plane_in_world;
+    if (const auto body = FitBodyAtFreeHeight(evidence, plane.normal, kYawStep)) {
+      const Eigen::Vector3d centre = body->landmark.Centre();
+      support.height = plane.SignedDistance(centre) - body->landmark.half_axes.z();
+      support.height_sigma = 1.0 / std::sqrt(EvidenceOf(*body, centre).information(2, 2));
+    }
+  }
+  for (size_t i = 0; i < planes.size(); ++i) {
+    if (decided && *decided != static_cast<int>(i)) continue;
+    ObjectEvidence on_plane = evidence;
+    on_plane.plane = planes[i].plane_in_world;
+    on_plane.height_is_free = false;
+    const auto fits = FitObject(on_plane, kYawStep, 1);
+    if (fits.empty() || (support.cost && fits.front().cost.total >= *support.cost)) continue;
+    support.cost = fits.front().cost.total;
+    support.plane_index = static_cast<int>(i);
+  }
+  if (!decided && !support.cost) support.reason = SupportReason::kNoBody;
+  return support;
+}
+
+// The planes near an up direction. None when no body's views determine the height of its base, or a
+// fit fails.
+std::optional<PlanesEstimate> EstimateFrom(const Eigen::Vector3d& up, const UpPrior& up_prior,
+                                           const Observations& observations,
+                                           const Sequence& sequence, const PlanesOptions& options,
+                                           int threads) {
+  PlanesEstimate estimate;
+  estimate.up_of_cameras = up_prior.up_in_world;
+  estimate.attitude_information = up_prior.information;
+  StandingBodies standing;
+  std::vector<RefinedPlanes> all_refined;
+  std::map<size_t, int> plane_of, before;  // by object
+  Eigen::Vector3d normal = up;
+  for (; estimate.rounds < kMaxRounds && !estimate.settled; ++estimate.rounds) {
+    const std::map<size_t, StandingBody> own = FindOwnHeights(observations, normal, threads);
+    if (own.empty()) return std::nullopt;
+    standing = OnSharedPlanes(own, normal, up_prior, options);
+    all_refined = RefineAll(options.parallel, threads, &standing);
+    if (all_refined.empty()) return std::nullopt;
+    before = std::exchange(plane_of, {});
+    size_t body_index = 0;
+    for (const auto& [object, body] : own) plane_of[object] = standing.plane_of[body_index++];
+    estimate.settled = before == plane_of;
+    normal = standing.planes.front().normal;
+  }
+  estimate.cost = 0.0;
+  for (const RefinedPlanes& refined : all_refined) *estimate.cost += refined.cost;
+  for (const auto& observation : observations) {
+    if (observation) estimate.expected_cost += ExpectedCost(*observation);
+  }
+  for (size_t i = 0; i < standing.planes.size(); ++i) {
+    estimate.planes.push_back(EstimatedPlaneOf(standing, all_refined, options.parallel, i));
+  }
+  std::vector<int> objects_on(standing.planes.size(), 0);
+  for (const auto& [object, plane] : plane_of) ++objects_on[plane];
+  const auto most = std::ranges::max_element(objects_on) - objects_on.begin();
+  estimate.objects.resize(observations.size());
+  ParallelFor("objects", observations.size(), threads, [&](size_t i) {
+    ObjectSupport& support = estimate.objects[i];
+    if (observations[i]) {
+      const auto decided = plane_of.find(i);
+      support =
+          FindSupport(*observations[i],
+                      decided == plane_of.end() ? std::nullopt : std::optional(decided->second),
+                      estimate.planes);
+    } else if (!sequence.objects[i].is_static) {
+      support.reason = SupportReason::kMoving;
+    }
+    const bool is_known = observations[i] && support.reason != SupportReason::kNoBody;
+    if (!is_known) support.plane_index = static_cast<int>(most);
+  });
+  return estimate;
+}
+
+// The planes of all objects with one mount, the z axes of whose bodies point up as in `up_prior`.
+// None when no object's boxes determine the height of a plane.
+std::optional<PlanesEstimate> EstimatePlanes(const Sequence& sequence,
+                                             const std::vector<std::optional<ShapePrior>>& priors,
+                                             Mount mount, const UpPrior& up_prior,
+                                             const PlanesOptions& options, int threads) {
+  const Observations all = Observe(sequence, priors, mount, options, kAllViews);
+  const Observations sparse = Observe(sequence, priors, mount, options, kViewsOfSearch);
+  std::optional<PlanesEstimate> best;
+  double lowest = 0.0;
+  for (const Eigen::Vector3d& up : SearchUp(up_prior, sparse, threads)) {
+    auto estimate = EstimateFrom(up, up_prior, all, sequence, options, threads);
+    if (!estimate) continue;
+    // The cost of all objects' boxes (including objects that do not decide about planes), of the
+    // cameras' up prior, and of the number of planes.
     double cost =
-        *estimate.cost + static_cast<double>(estimate.planes.size()) * options_.new_plane_cost;
-    for (const ObjectSupport& support : estimate.objects) {
+        *estimate->cost + static_cast<double>(estimate->planes.size()) * options.new_plane_cost;
+    for (const ObjectSupport& support : estimate->objects) {
       if (support.reason == SupportReason::kLowestCost) {
         cost += support.cost.value_or(kCostWithoutBody);
       }
     }
-    return cost;
+    if (best && cost >= lowest) continue;
+    best = std::move(estimate);
+    lowest = cost;
   }
-
-  // Finds the bodies whose own views determine the height of their base, given the normal.
-  void FindOwnHeights(const Eigen::Vector3d& normal) {
-    std::vector<std::optional<StandingBody>> found(observations_.size());
-    ParallelFor("objects", found.size(), threads_, [&](size_t i) {
-      if (!observations_[i]) return;
-      auto body = FitBodyAtFreeHeight(*observations_[i], normal, kYawStep);
-      if (!body) return;
-      const double information = EvidenceOf(*body, body->landmark.Centre()).information(2, 2);
-      const double size = 2.0 * body->landmark.half_axes.maxCoeff();
-      if (information * std::pow(kMaxHeightSigmaBySize * size, 2) > 1.0) found[i] = body;
-    });
-    deciding_.clear();
-    own_.clear();
-    for (size_t i = 0; i < found.size(); ++i) {
-      if (!found[i]) continue;
-      deciding_.push_back(i);
-      own_.push_back(*found[i]);
-    }
-  }
-
-  // Assigns these bodies to shared planes and computes the planes.
-  void Decide(Plane* reference) {
-    const Eigen::Vector3d pivot = MeanBasePoint(own_);
-    *reference = {reference->normal, -reference->normal.dot(pivot)};
-    std::vector<PlaneEvidence> evidence;
-    std::vector<double> heights;
-    for (const StandingBody& body : own_) {
-      evidence.push_back(WithHeightNoise(EvidenceOf(body, pivot),
-                                         HeightSigma(body, options_.height_sigma_fraction)));
-      heights.push_back(-body.evidence.plane.SignedDistance(pivot));
-    }
-    const PlaneHeights levels = ClusterPlaneHeights(
-        evidence, heights, EvidenceOf(up_prior_, *reference), kMaxTilt, options_.new_plane_cost);
-    standing_ = {own_, levels.level_of, {}, up_prior_, options_.height_sigma_fraction};
-    for (const double height : levels.heights) {
-      standing_.planes.push_back(
-          Moved(*reference, pivot, {levels.tilt.x(), levels.tilt.y(), height}));
-    }
-    for (size_t i = 0; i < own_.size(); ++i) {
-      StandingBody& body = standing_.bodies[i];
-      const Plane own = body.evidence.plane;
-      const auto level = static_cast<size_t>(levels.level_of[i]);
-      body.landmark =
-          Moved(own, pivot, {levels.tilt.x(), levels.tilt.y(), levels.heights[level] - heights[i]},
-                body.landmark);
-      body.evidence.plane = standing_.planes[level];
-    }
-  }
-
-  // False when the fit of a body fails.
-  bool RefineAll() {
-    refined_.clear();
-    if (options_.parallel) return RefineTogether(&standing_);
-    for (size_t plane = 0; plane < standing_.planes.size(); ++plane) {
-      StandingBodies alone{
-          {}, {}, {standing_.planes[plane]}, up_prior_, options_.height_sigma_fraction};
-      for (size_t i = 0; i < standing_.bodies.size(); ++i) {
-        if (standing_.plane_of[i] == static_cast<int>(plane)) {
-          alone.bodies.push_back(standing_.bodies[i]);
-          alone.plane_of.push_back(0);
-        }
-      }
-      if (!RefineTogether(&alone)) return false;
-      standing_.planes[plane] = alone.planes.front();
-    }
-    return true;
-  }
-
-  bool RefineTogether(StandingBodies* standing) {
-    auto refined = Refine(standing, threads_);
-    if (refined) refined_.push_back(std::move(*refined));
-    return refined.has_value();
-  }
-
-  void Write(PlanesEstimate* estimate) const {
-    estimate->cost = 0.0;
-    estimate->attitude_information = up_prior_.information;
-    for (const RefinedPlanes& refined : refined_) *estimate->cost += refined.cost;
-    for (const auto& observation : observations_) {
-      if (observation) estimate->expected_cost += ExpectedCost(*observation);
-    }
-    for (size_t i = 0; i < standing_.planes.size(); ++i) estimate->planes.push_back(WritePlane(i));
-    estimate->objects.resize(sequence_.objects.size());
-    ParallelFor("objects", estimate->objects.size(), threads_,
-                [&](size_t i) { estimate->objects[i] = WriteObject(i, estimate->planes); });
-  }
-
-  EstimatedPlane WritePlane(size_t index) const {
-    const Plane& plane = standing_.planes[index];
-    std::vector<StandingBody> bodies;
-    for (size_t i = 0; i < standing_.bodies.size(); ++i) {
-      if (standing_.plane_of[i] == static_cast<int>(index)) bodies.push_back(standing_.bodies[i]);
-    }
-    const Eigen::Vector3d feet = MeanBasePoint(bodies);
-    const Eigen::Vector3d point = feet - plane.SignedDistance(feet) * plane.normal;
-    const Eigen::Matrix3d level = UprightRotation(plane.normal, 0.0).toRotationMatrix();
-    const RefinedPlanes& refined = options_.parallel ? refined_.front() : refined_[index];
-    const auto rise = static_cast<Eigen::Index>(options_.parallel ? 2 + index : 2);
-    const std::array<Eigen::Index, 3> motion = {0, 1, rise};
-    const Eigen::Matrix3d covariance = refined.covariance(motion, motion);
-    // Rotations about the pivot raise the plane at the point.
-    Eigen::Matrix3d at_point = Eigen::Matrix3d::Identity();
-    const Eigen::Vector3d arm = point - refined.pivot;
-    at_point(2, 0) = level.col(1).dot(arm);
-    at_point(2, 1) = -level.col(0).dot(arm);
-    return {plane, point, level.col(0), at_point * covariance * at_point.transpose()};
-  }
-
-  int PlaneOfMost() const {
-    std::vector<int> objects(standing_.planes.size(), 0);
-    for (const int plane : standing_.plane_of) ++objects[plane];
-    return static_cast<int>(std::max_element(objects.begin(), objects.end()) - objects.begin());
-  }
-
-  ObjectSupport WriteObject(size_t index, const std::vector<EstimatedPlane>& planes) const {
-    ObjectSupport support;
-    if (!observations_[index]) {
-      support.plane_index = PlaneOfMost();
-      if (!sequence_.objects[index].is_static) support.reason = SupportReason::kMoving;
-      return support;
-    }
-    const auto deciding = std::find(deciding_.begin(), deciding_.end(), index);
-    const bool decides = deciding != deciding_.end();
-    if (decides) {
-      support.plane_index = standing_.plane_of[deciding - deciding_.begin()];
-      WriteOwnHeight(index, planes[support.plane_index].plane_in_world, &support);
-    }
-    support.reason = decides ? SupportReason::kOwnHeight : SupportReason::kLowestCost;
-    for (size_t i = 0; i < planes.size(); ++i) {
-      if (decides && support.plane_index != static_cast<int>(i)) continue;
-      ObjectEvidence observation = *observations_[index];
-      observation.plane = planes[i].plane_in_world;
-      observation.height_is_free = false;
-      const auto fits = FitObject(observation, kYawStep, 1);
-      if (fits.empty() || (support.cost && fits.front().cost.total >= *support.cost)) continue;
-      support.cost = fits.front().cost.total;
-      support.plane_index = static_cast<int>(i);
-    }
-    if (!decides && !support.cost) {
-      support.plane_index = PlaneOfMost();
-      support.reason = SupportReason::kNoBody;
-    }
-    return support;
-  }
-
-  void WriteOwnHeight(size_t index, const Plane& plane, ObjectSupport* support) const {
-    const auto body = FitBodyAtFreeHeight(*observations_[index], plane.normal, kYawStep);
-    if (!body) return;
-    const Eigen::Vector3d centre = body->landmark.Centre();
-    support->height = plane.SignedDistance(centre) - body->landmark.half_axes.z();
-    support->height_sigma = 1.0 / std::sqrt(EvidenceOf(*body, centre).information(2, 2));
-  }
-
-  const Sequence& sequence_;
-  const PlanesOptions& options_;
-  int threads_;
-  UpPrior up_prior_;
-  // Per object; none for an object without detections.
-  std::vector<std::optional<ObjectEvidence>> observations_;
-  std::vector<std::optional<ObjectEvidence>> sparse_;
-  // Objects that decide about planes, and their bodies, each on its own plane.
-  std::vector<size_t> deciding_;
-  std::vector<StandingBody> own_;
-  StandingBodies standing_;
-  std::vector<RefinedPlanes> refined_;  // one for all planes where they are parallel
-};
+  return best;
+}
 
 // Up prior for hanging objects, whose z axes point down. Ceilings are parallel to floors, if there
 // are any.
@@ -342,7 +325,13 @@ BodyCosts CostsOfUprightBodies(const Sequence& sequence,
                                const UpPrior& up_prior, const PlanesOptions& options, int threads) {
   BodyCosts costs{std::vector<std::optional<double>>(sequence.objects.size())};
   for (const Mount mount : {Mount::kStanding, Mount::kHanging}) {
-    Estimator(sequence, priors, mount, up_prior, options, threads).AddCostsOfUprightBodies(&costs);
+    const Observations observations = Observe(sequence, priors, mount, options, kViewsOfSearch);
+    const Eigen::Vector3d up = SearchUp(up_prior, observations, threads).front();
+    for (size_t i = 0; i < observations.size(); ++i) {
+      if (!observations[i]) continue;
+      costs.of_objects[i] = CostOfUprightBody(up, *observations[i]);
+      costs.expected += ExpectedCost(*observations[i]);
+    }
   }
   return costs;
 }
@@ -351,11 +340,10 @@ std::optional<PlanesEstimate> FindPlanes(const Sequence& sequence,
                                          const std::vector<std::optional<ShapePrior>>& priors,
                                          const UpPrior& up_prior, const PlanesOptions& options,
                                          int threads) {
-  const auto planes_of = [&](Mount mount, const UpPrior& up) {
-    return Estimator(sequence, priors, mount, up, options, threads).Estimate();
-  };
-  const auto floors = planes_of(Mount::kStanding, up_prior);
-  const auto ceilings = planes_of(Mount::kHanging, DownOf(up_prior, floors));
+  const auto floors =
+      EstimatePlanes(sequence, priors, Mount::kStanding, up_prior, options, threads);
+  const auto ceilings =
+      EstimatePlanes(sequence, priors, Mount::kHanging, DownOf(up_prior, floors), options, threads);
   std::optional<PlanesEstimate> estimate = floors ? floors : ceilings;
   if (!estimate) return std::nullopt;
   if (floors && ceilings) estimate = JoinedPlanes(*floors, *ceilings, options.parallel, priors);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace soslam {
 namespace {
@@ -17,70 +18,57 @@ struct Height {
   double information;
 };
 
-// Partition of heights into levels of least cost. PlaneHeights are contiguous in the sorted
-// heights, so dynamic programming over the first n heights finds the optimum.
-class Partition {
- public:
-  Partition(const std::vector<Height>& heights, double new_level_cost)
-      : heights_(heights), order_(heights.size()), cost_(heights.size() + 1) {
-    std::iota(order_.begin(), order_.end(), size_t{0});
-    std::stable_sort(order_.begin(), order_.end(), [&](size_t one, size_t other) {
-      return heights[one].mean < heights[other].mean;
-    });
-    begin_.resize(heights.size() + 1);
-    for (size_t end = 1; end <= order_.size(); ++end) {
-      cost_[end] = std::numeric_limits<double>::infinity();
-      Sums sums;
-      for (size_t begin = end; begin-- > 0;) {
-        sums.Add(heights_[order_[begin]], heights_[order_[end - 1]].mean);
-        const double cost = cost_[begin] + sums.Cost() + new_level_cost;
-        if (cost >= cost_[end]) continue;
-        cost_[end] = cost;
-        begin_[end] = begin;
-      }
-    }
+// Weighted sums of heights relative to one of them, which avoids cancellation of squares.
+struct Sums {
+  double weight = 0.0;
+  double first = 0.0;
+  double second = 0.0;
+
+  void Add(const Height& height, double reference) {
+    const double from_reference = height.mean - reference;
+    weight += height.information;
+    first += height.information * from_reference;
+    second += height.information * from_reference * from_reference;
   }
-
-  double Cost() const { return cost_.back(); }
-
-  void Write(PlaneHeights* levels) const {
-    std::vector<size_t> ends;
-    for (size_t end = order_.size(); end > 0; end = begin_[end]) ends.push_back(end);
-    std::reverse(ends.begin(), ends.end());
-    levels->level_of.resize(order_.size());
-    for (size_t level = 0; level < ends.size(); ++level) {
-      Sums sums;
-      const double reference = heights_[order_[begin_[ends[level]]]].mean;
-      for (size_t i = begin_[ends[level]]; i < ends[level]; ++i) {
-        sums.Add(heights_[order_[i]], reference);
-        levels->level_of[order_[i]] = static_cast<int>(level);
-      }
-      levels->heights.push_back(reference + sums.Mean());
-    }
-  }
-
- private:
-  // Weighted sums of heights relative to one of them, which avoids cancellation of squares.
-  struct Sums {
-    double weight = 0.0;
-    double first = 0.0;
-    double second = 0.0;
-
-    void Add(const Height& height, double reference) {
-      const double from_reference = height.mean - reference;
-      weight += height.information;
-      first += height.information * from_reference;
-      second += height.information * from_reference * from_reference;
-    }
-    double Mean() const { return first / weight; }
-    double Cost() const { return std::max(0.0, 0.5 * (second - first * first / weight)); }
-  };
-
-  const std::vector<Height>& heights_;
-  std::vector<size_t> order_;
-  std::vector<double> cost_;   // least cost of the first n heights
-  std::vector<size_t> begin_;  // first height of the last level of the first n
+  double Mean() const { return first / weight; }
+  double Cost() const { return std::max(0.0, 0.5 * (second - first * first / weight)); }
 };
+
+// The partition of heights into levels of least cost. Levels are contiguous in the sorted heights,
+// so dynamic programming over the first n heights finds the optimum.
+PlaneHeights BestPartition(const std::vector<Height>& heights, double new_level_cost) {
+  std::vector<size_t> order(heights.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::ranges::stable_sort(order, {}, [&](size_t i) { return heights[i].mean; });
+  std::vector<double> cost(heights.size() + 1);      // least cost of the first n heights
+  std::vector<size_t> begin_of(heights.size() + 1);  // first height of the last level of these
+  for (size_t end = 1; end <= order.size(); ++end) {
+    cost[end] = std::numeric_limits<double>::infinity();
+    Sums sums;
+    for (size_t begin = end; begin-- > 0;) {
+      sums.Add(heights[order[begin]], heights[order[end - 1]].mean);
+      const double with_level = cost[begin] + sums.Cost() + new_level_cost;
+      if (with_level >= cost[end]) continue;
+      cost[end] = with_level;
+      begin_of[end] = begin;
+    }
+  }
+  PlaneHeights levels;
+  levels.cost = cost.back();
+  levels.level_of.resize(order.size());
+  std::vector<size_t> ends;
+  for (size_t end = order.size(); end > 0; end = begin_of[end]) ends.insert(ends.begin(), end);
+  for (size_t level = 0; level < ends.size(); ++level) {
+    Sums sums;
+    const double reference = heights[order[begin_of[ends[level]]]].mean;
+    for (size_t i = begin_of[ends[level]]; i < ends[level]; ++i) {
+      sums.Add(heights[order[i]], reference);
+      levels.level_of[order[i]] = static_cast<int>(level);
+    }
+    levels.heights.push_back(reference + sums.Mean());
+  }
+  return levels;
+}
 
 }  // namespace
 
@@ -115,11 +103,10 @@ PlaneHeights ClusterPlaneHeights(const std::vector<PlaneEvidence>& evidence,
         // If it shares its plane with no other.
         at_tilt[n] = {heights[n] - slope / information(2, 2), information(2, 2)};
       }
-      const Partition partition(at_tilt, new_level_cost);
-      cost += partition.Cost();
-      if (cost >= best.cost) continue;
-      best = {tilt, {}, {}, cost};
-      partition.Write(&best);
+      PlaneHeights levels = BestPartition(at_tilt, new_level_cost);
+      levels.tilt = tilt;
+      levels.cost += cost;
+      if (levels.cost < best.cost) best = std::move(levels);
     }
   }
   return best;

@@ -46,18 +46,6 @@ std::vector<Eigen::Vector2d> SolveChain(double stiffness, std::vector<Eigen::Vec
   return tilts;
 }
 
-std::vector<Rigid3d> Joined(const std::vector<Rigid3d>& drifted,
-                            const std::vector<Eigen::Vector3d>& ups) {
-  std::vector<Rigid3d> levelled = {drifted.front()};
-  for (size_t i = 1; i < drifted.size(); ++i) {
-    const Rigid3d motion = drifted[i - 1].Inverse() * drifted[i];
-    const Eigen::Quaterniond turn = RotationBetween(ups[i], ups.front());
-    levelled.push_back(
-        {(turn * drifted[i].rotation).normalized(), levelled.back() * motion.translation});
-  }
-  return levelled;
-}
-
 constexpr double kSameAxis = 1e-9;  // one minus a cosine
 // Hypotheses whose cost after the fit of bodies is higher than this are dropped before planes are
 // estimated.
@@ -83,37 +71,6 @@ Sequence WithPoses(Sequence sequence, const std::vector<Rigid3d>& world_from_cam
     sequence.frames[i].world_from_camera = world_from_camera[i];
   }
   return sequence;
-}
-
-double ShareFromBelow(const PlanesAndHolding& held) {
-  int below = 0, seen = 0;
-  for (const Detection& detection : held.level.detections) {
-    const ObjectSupport& support = held.estimate.objects[detection.object_index];
-    if (support.reason == SupportReason::kNone) continue;
-    const Plane& plane = held.estimate.planes[support.plane_index].plane_in_world;
-    const Rigid3d& camera = held.level.FrameOf(detection).world_from_camera;
-    if (plane.SignedDistance(camera.translation) < 0.0) ++below;
-    ++seen;
-  }
-  return seen == 0 ? 0.0 : static_cast<double>(below) / seen;
-}
-
-// `of_bodies`: evidence from bodies of free height. A body of an object may not be found again when
-// it must stand on its plane.
-HoldingEvidence EvidenceOf(const HoldingEvidence& of_bodies, const PlanesAndHolding& held,
-                           const PlanesOptions& options) {
-  HoldingEvidence evidence = of_bodies;
-  evidence.up_in_world = held.estimate.planes.front().plane_in_world.normal;
-  for (size_t i = 0; i < evidence.object_costs.size(); ++i) {
-    const ObjectSupport& support = held.estimate.objects[i];
-    if (support.cost || support.reason != SupportReason::kOwnHeight) {
-      evidence.object_costs[i] = support.cost;
-    }
-  }
-  evidence.other_cost = static_cast<double>(held.estimate.planes.size()) * options.new_plane_cost;
-  evidence.share_from_below = ShareFromBelow(held);
-  evidence.can_be_chosen = true;
-  return evidence;
 }
 
 // Adds the hypothesis of one camera holding with the costs of upright bodies of free height, unless
@@ -145,25 +102,6 @@ void AddHypothesis(const Sequence& sequence, const LevelTrajectory& trajectory,
   hypotheses->push_back(std::move(hypothesis));
 }
 
-// All hypotheses with different up directions. Vertical edges are doubted because, when all cameras
-// look the same way, the up direction around which they are searched is uncertain.
-std::vector<Hypothesis> Hypotheses(const Sequence& sequence, const std::vector<SegmentView>& views,
-                                   const std::vector<std::optional<ShapePrior>>& priors,
-                                   const PlanesOptions& options, int threads) {
-  std::vector<Hypothesis> hypotheses;
-  for (const CameraHolding holding : kCameraHoldings) {
-    HoldingEvidence evidence;
-    evidence.holding = holding;
-    AddHypothesis(sequence, LevelFrames(sequence, views, options, holding), evidence, priors,
-                  options, threads, &hypotheses);
-    if (views.empty()) continue;
-    evidence.ignores_verticals = true;
-    AddHypothesis(sequence, LevelFrames(sequence, {}, options, holding), evidence, priors, options,
-                  threads, &hypotheses);
-  }
-  return hypotheses;
-}
-
 HoldingChoice Choose(const std::vector<Hypothesis>& hypotheses) {
   std::vector<HoldingEvidence> evidence;
   for (const Hypothesis& hypothesis : hypotheses) evidence.push_back(hypothesis.evidence);
@@ -188,7 +126,27 @@ void EstimatePlanesOf(const Sequence& sequence,
     return;
   }
   held.estimate = std::move(*estimate);
-  hypothesis->evidence = EvidenceOf(hypothesis->evidence, held, options);
+  HoldingEvidence& evidence = hypothesis->evidence;
+  evidence.up_in_world = held.estimate.planes.front().plane_in_world.normal;
+  for (size_t i = 0; i < evidence.object_costs.size(); ++i) {
+    // A body of free height may not be found again when it must stand on its plane.
+    const ObjectSupport& support = held.estimate.objects[i];
+    if (support.cost || support.reason != SupportReason::kOwnHeight) {
+      evidence.object_costs[i] = support.cost;
+    }
+  }
+  evidence.other_cost = static_cast<double>(held.estimate.planes.size()) * options.new_plane_cost;
+  int below = 0, seen = 0;
+  for (const Detection& detection : held.level.detections) {
+    const ObjectSupport& support = held.estimate.objects[detection.object_index];
+    if (support.reason == SupportReason::kNone) continue;
+    const Plane& plane = held.estimate.planes[support.plane_index].plane_in_world;
+    const Rigid3d& camera = held.level.FrameOf(detection).world_from_camera;
+    if (plane.SignedDistance(camera.translation) < 0.0) ++below;
+    ++seen;
+  }
+  evidence.share_from_below = seen == 0 ? 0.0 : static_cast<double>(below) / seen;
+  evidence.can_be_chosen = true;
   hypothesis->expected_cost = held.estimate.expected_cost;
   hypothesis->planes = std::move(held);
 }
@@ -269,8 +227,15 @@ LevelTrajectory Level(const std::vector<SegmentView>& views, CameraHolding holdi
   }
   const Basis about_first = LevelAxes(ups.front());
   const Eigen::Matrix2d turned = about_first.transpose() * level;
+  std::vector<Rigid3d> levelled = {poses.front()};
+  for (size_t i = 1; i < poses.size(); ++i) {
+    const Rigid3d motion = poses[i - 1].Inverse() * poses[i];
+    const Eigen::Quaterniond turn = RotationBetween(ups[i], ups.front());
+    levelled.push_back(
+        {(turn * poses[i].rotation).normalized(), levelled.back() * motion.translation});
+  }
   return {
-      Joined(poses, ups),
+      levelled,
       {about_first * (turned * information_of_first * turned.transpose()) * about_first.transpose(),
        ups.front()}};
 }
@@ -279,7 +244,19 @@ PlanesAndHolding EstimatePlanesAndHolding(const Sequence& sequence,
                                           const std::vector<SegmentView>& views,
                                           const std::vector<std::optional<ShapePrior>>& priors,
                                           const PlanesOptions& options, int threads) {
-  std::vector<Hypothesis> hypotheses = Hypotheses(sequence, views, priors, options, threads);
+  std::vector<Hypothesis> hypotheses;
+  for (const CameraHolding holding : kCameraHoldings) {
+    HoldingEvidence evidence;
+    evidence.holding = holding;
+    AddHypothesis(sequence, LevelFrames(sequence, views, options, holding), evidence, priors,
+                  options, threads, &hypotheses);
+    if (views.empty()) continue;
+    // Vertical edges are doubted because, when all cameras look the same way, the up direction
+    // around which they are searched is uncertain.
+    evidence.ignores_verticals = true;
+    AddHypothesis(sequence, LevelFrames(sequence, {}, options, holding), evidence, priors, options,
+                  threads, &hypotheses);
+  }
   const HoldingChoice by_bodies = Choose(hypotheses);
   std::vector<TriedHolding> tried;
   std::vector<Hypothesis> followed;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "geometry/angles.h"
@@ -93,6 +94,51 @@ PlanesEstimate PlanesBelowCameras(const Sequence& sequence, double height_m) {
          {}});
   }
   return estimate;
+}
+
+PlaneRow RowOf(const EstimatedPlane& plane, int id, double tilt_variance) {
+  PlaneRow row = {id, plane.plane_in_world, plane.point_in_world, plane.x_axis_in_world,
+                  plane.covariance};
+  if (const auto& covariance = plane.covariance) {
+    row.tilt_sigma_deg =
+        kDegPerRad * std::sqrt((*covariance)(0, 0) + (*covariance)(1, 1) + tilt_variance);
+    row.height_sigma_m = std::sqrt((*covariance)(2, 2));
+  }
+  return row;
+}
+
+PlanesReport ReportOf(const PlanesEstimate& estimate, const Sequence& given) {
+  PlanesReport report;
+  report.dataset = given.name;
+  for (int i = 0; i < std::ssize(estimate.planes); ++i) {
+    PlanesReport::EstimatedPlaneRow row = {
+        RowOf(estimate.planes[i], i, estimate.holding_tilt_variance)};
+    if (const auto error = CompareWithGiven(given, estimate, i)) {
+      row.error = {given.planes[error->given_plane_index].id, kDegPerRad * error->angle,
+                   error->offset};
+    }
+    report.planes.push_back(row);
+  }
+  for (size_t i = 0; i < estimate.objects.size(); ++i) {
+    const ObjectSupport& support = estimate.objects[i];
+    std::optional<int> plane;
+    if (support.reason != SupportReason::kNone) plane = support.plane_index;
+    report.objects.push_back({given.objects[i].id, given.objects[i].label, plane, support.reason,
+                              support.height, support.height_sigma, support.cost});
+  }
+  report.up_of_cameras_in_world = estimate.up_of_cameras;
+  if (!estimate.holdings.empty()) {
+    report.camera_holding = {estimate.holding, estimate.verticals,
+                             estimate.holding_tilt_variance == 0.0};
+    for (const TriedHolding& tried : estimate.holdings) {
+      report.camera_holding->tried.push_back(
+          {tried.holding, tried.verticals, tried.cost, tried.probability, tried.planes});
+    }
+  }
+  report.cost = estimate.cost;
+  report.rounds = estimate.rounds;
+  report.settled = estimate.settled;
+  return report;
 }
 
 }  // namespace soslam

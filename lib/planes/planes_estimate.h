@@ -8,6 +8,7 @@
 
 #include "geometry/plane.h"
 #include "model/sequence.h"
+#include "model/world.h"
 #include "planes/camera_holding.h"
 
 namespace soslam {
@@ -21,20 +22,6 @@ struct EstimatedPlane {
   // through the point, and of its translation (m) along the normal; none where unknown.
   std::optional<Eigen::Matrix3d> covariance;
 };
-
-// Reason why an object is assigned to its plane.
-enum class SupportReason {
-  kOwnHeight,     // its views determine the height of its lowest point
-  kLowestCost,    // its views do not: the plane on which its boxes are fitted best
-  kNoViews,       // it has no views: the plane of most objects
-  kCameraHeight,  // the ground below the cameras that see it
-  kGiven,         // the sequence's own planes stay
-  kNoBody,        // no body on any of the planes fits its boxes: the plane of most objects
-  kMoving,        // it is not static: the plane of most objects
-  kNone,          // no plane for its mount was found: its boxes cannot be used
-};
-inline constexpr std::array kSupportReasonNames = {
-    "own_height", "lowest_cost", "no_views", "camera_height", "given", "no_body", "moving", "none"};
 
 struct ObjectSupport {
   int plane_index = 0;
@@ -87,6 +74,12 @@ struct PlaneError {
 };
 std::optional<PlaneError> CompareWithGiven(const Sequence& given, const PlanesEstimate& estimate,
                                            int plane_index);
+
+// The row of a plane in reports. `tilt_variance` (rad^2) is added to the tilt of the covariance.
+PlaneRow RowOf(const EstimatedPlane& plane, int id, double tilt_variance = 0.0);
+
+// `given`: the sequence that the planes were estimated from, with its given planes.
+PlanesReport ReportOf(const PlanesEstimate& estimate, const Sequence& given);
 
 // Ground planes for cameras that a vehicle holds level at a known height (m): y = height in each
 // camera's frame. The ground of a long trajectory is not one plane, so each object gets its own:

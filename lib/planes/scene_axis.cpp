@@ -25,29 +25,6 @@ struct Direction {
   double weight;
 };
 
-std::vector<Direction> Directions(const Eigen::Vector3d& normal,
-                                  const std::vector<SegmentView>& views, double correlation_rad) {
-  const Eigen::Quaterniond level = UprightRotation(normal, 0.0);
-  const std::vector<double> shares = CameraWeights(PosesOf(views), correlation_rad);
-  std::vector<Direction> directions;
-  for (size_t i = 0; i < views.size(); ++i) {
-    const SegmentView& view = views[i];
-    for (const LineSegment& segment : view.segments) {
-      const Eigen::Vector3d across =
-          (view.world_from_camera.rotation *
-           view.camera.Ray(segment.begin).cross(view.camera.Ray(segment.end)))
-              .normalized();
-      if (std::abs(across.dot(normal)) < std::sin(kAlongNormal)) continue;
-      const Eigen::Vector3d along = level.conjugate() * normal.cross(across);
-      // The direction is as uncertain as its length is small.
-      directions.push_back(
-          {std::atan2(along.y(), along.x()),
-           shares[i] * (segment.end - segment.begin).norm() * along.squaredNorm()});
-    }
-  }
-  return directions;
-}
-
 // Sum of the weights of the directions near a yaw, each times exp(4 i (direction - yaw)).
 std::complex<double> Near(const std::vector<Direction>& directions, double yaw) {
   std::complex<double> sum = 0.0;
@@ -61,23 +38,29 @@ std::complex<double> Near(const std::vector<Direction>& directions, double yaw) 
   return sum;
 }
 
-double ShareNear(const std::vector<Direction>& directions, double yaw) {
-  double near = 0.0;
-  double all = 0.0;
-  for (const Direction& direction : directions) {
-    all += direction.weight;
-    const double off = std::remainder(direction.yaw - yaw, kQuarterTurn);
-    if (std::abs(off) <= kAxisBound * kAxisSpread) near += direction.weight;
-  }
-  return near / all;
-}
-
 }  // namespace
 
 std::optional<Eigen::Vector3d> SceneAxis(const Eigen::Vector3d& normal_in_world,
                                          const std::vector<SegmentView>& views,
                                          double correlation_rad) {
-  const std::vector<Direction> directions = Directions(normal_in_world, views, correlation_rad);
+  const Eigen::Quaterniond level = UprightRotation(normal_in_world, 0.0);
+  const std::vector<double> shares = CameraWeights(PosesOf(views), correlation_rad);
+  std::vector<Direction> directions;
+  for (size_t i = 0; i < views.size(); ++i) {
+    const SegmentView& view = views[i];
+    for (const LineSegment& segment : view.segments) {
+      const Eigen::Vector3d across =
+          (view.world_from_camera.rotation *
+           view.camera.Ray(segment.begin).cross(view.camera.Ray(segment.end)))
+              .normalized();
+      if (std::abs(across.dot(normal_in_world)) < std::sin(kAlongNormal)) continue;
+      const Eigen::Vector3d along = level.conjugate() * normal_in_world.cross(across);
+      // The direction is as uncertain as its length is small.
+      directions.push_back(
+          {std::atan2(along.y(), along.x()),
+           shares[i] * (segment.end - segment.begin).norm() * along.squaredNorm()});
+    }
+  }
   if (directions.empty()) return std::nullopt;
   double best = 0.0;
   double highest = 0.0;
@@ -92,7 +75,14 @@ std::optional<Eigen::Vector3d> SceneAxis(const Eigen::Vector3d& normal_in_world,
     best += step;
     if (std::abs(step) < kAxisTolerance) break;
   }
-  if (ShareNear(directions, best) < kLeastShare) return std::nullopt;
+  double near = 0.0;
+  double all = 0.0;
+  for (const Direction& direction : directions) {
+    all += direction.weight;
+    const double off = std::remainder(direction.yaw - best, kQuarterTurn);
+    if (std::abs(off) <= kAxisBound * kAxisSpread) near += direction.weight;
+  }
+  if (near / all < kLeastShare) return std::nullopt;
   return UprightRotation(normal_in_world, best) * Eigen::Vector3d::UnitX();
 }
 

@@ -26,19 +26,6 @@ Rigid3d MotionOf(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMo
   return {turn, pivot - turn * pivot + motion.z() * (turn * plane.normal)};
 }
 
-// d (nine parameters of kLandmarkDof) / d motion, at zero motion.
-Eigen::Matrix<double, kLandmarkDof, 3> MotionJacobian(const Plane& plane,
-                                                      const Eigen::Vector3d& pivot,
-                                                      const Landmark& landmark) {
-  const Eigen::Matrix3d level = UprightRotation(plane.normal, 0.0).toRotationMatrix();
-  Eigen::Matrix<double, kLandmarkDof, 3> d_motion;
-  d_motion.setZero();
-  d_motion.topLeftCorner<3, 2>() = level.leftCols<2>();
-  d_motion.block<3, 2>(3, 0) = -Skew(landmark.Centre() - pivot) * level.leftCols<2>();
-  d_motion.block<3, 1>(3, 2) = plane.normal;
-  return d_motion;
-}
-
 constexpr int kMaxIterations = 60;
 constexpr double kNegligiblePlaneDecrease = 1e-9;
 
@@ -113,7 +100,12 @@ std::optional<StandingBody> FitOnPlane(StandingBody body) {
 
 PlaneEvidence EvidenceOf(const StandingBody& body, const Eigen::Vector3d& pivot) {
   const Plane& plane = body.evidence.plane;
-  const auto d_motion = MotionJacobian(plane, pivot, body.landmark);
+  const Eigen::Matrix3d level = UprightRotation(plane.normal, 0.0).toRotationMatrix();
+  Eigen::Matrix<double, kLandmarkDof, 3> d_motion;  // at zero motion
+  d_motion.setZero();
+  d_motion.topLeftCorner<3, 2>() = level.leftCols<2>();
+  d_motion.block<3, 2>(3, 0) = -Skew(body.landmark.Centre() - pivot) * level.leftCols<2>();
+  d_motion.block<3, 1>(3, 2) = plane.normal;
   const Eigen::Matrix<double, kLandmarkDof, 6> d_upright =  // at a fixed height
       UprightGround(plane).ParameterJacobian(body.landmark).leftCols<6>();
   const LandmarkCosts outlines = OutlineCosts(body.evidence);

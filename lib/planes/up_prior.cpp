@@ -128,20 +128,6 @@ LevelDirections NormalsOf(const std::vector<SegmentView>& views, double sigma,
   return LevelDirections(std::move(normals));
 }
 
-// Directions of a half of the sphere, about three degrees apart.
-std::vector<Eigen::Vector3d> HalfSphere() {
-  constexpr int kDirections = 2400;
-  constexpr double kGoldenAngle = 2.399963229728653;
-  std::vector<Eigen::Vector3d> directions;
-  for (int i = 0; i < kDirections; ++i) {
-    const double z = (i + 0.5) / kDirections;
-    const double radius = std::sqrt(1.0 - z * z);
-    directions.emplace_back(radius * std::cos(i * kGoldenAngle),
-                            radius * std::sin(i * kGoldenAngle), z);
-  }
-  return directions;
-}
-
 // The axes of all cameras that are level when they are held so.
 LevelDirections AxesOfCameras(const std::vector<Rigid3d>& world_from_camera, const CameraTilt& tilt,
                               double correlation_rad, CameraHolding holding) {
@@ -177,7 +163,15 @@ UpPrior RobustUpPriorFromCameras(const std::vector<Rigid3d>& world_from_camera,
                                  const CameraTilt& tilt, double correlation_rad,
                                  CameraHolding holding) {
   const LevelDirections axes = AxesOfCameras(world_from_camera, tilt, correlation_rad, holding);
-  const std::vector<Eigen::Vector3d> half = HalfSphere();
+  // Directions of a half of the sphere, about three degrees apart.
+  constexpr int kDirections = 2400;
+  constexpr double kGoldenAngle = 2.399963229728653;
+  std::vector<Eigen::Vector3d> half;
+  for (int i = 0; i < kDirections; ++i) {
+    const double z = (i + 0.5) / kDirections;
+    const double radius = std::sqrt(1.0 - z * z);
+    half.emplace_back(radius * std::cos(i * kGoldenAngle), radius * std::sin(i * kGoldenAngle), z);
+  }
   Eigen::Vector3d lowest =
       *std::ranges::min_element(half, {}, [&](const Eigen::Vector3d& up) { return axes.Cost(up); });
   if (lowest.dot(AboveCameras(world_from_camera, holding)) < 0.0) lowest = -lowest;

@@ -22,11 +22,6 @@ double HalfAxis(const CsvRow& row, const char* column) {
   return 0.5 * length_m;
 }
 
-CatalogueName NameFromJson(const nlohmann::json& json) {
-  if (json.is_string()) return {json.get<std::string>(), ""};
-  return {json.at("name").get<std::string>(), json.at("category").get<std::string>()};
-}
-
 }  // namespace
 
 std::vector<CatalogueModel> ReadFurnitureCatalogue(const std::filesystem::path& path) {
@@ -42,13 +37,7 @@ std::vector<CatalogueModel> ReadFurnitureCatalogue(const std::filesystem::path& 
 }
 
 CatalogueNames ReadCatalogueNames(const std::filesystem::path& path) {
-  const nlohmann::json document = ParseJsonFile(path);
-  ValidateAgainstSchema(document, "furniture_labels", path.string());
-  CatalogueNames names;
-  for (const auto& label : document.at("labels").items()) {
-    for (const auto& name : label.value()) names[label.key()].push_back(NameFromJson(name));
-  }
-  return names;
+  return ReadDocument<CatalogueLabels>(ParseJsonFile(path), path.string()).labels;
 }
 
 bool GoesBy(const CatalogueModel& model, const std::vector<CatalogueName>& names) {

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "base/description.h"
+
 namespace soslam {
 
 // A model of a furniture catalogue. Half axes along x (front), y and z (up), metres.
@@ -28,7 +30,25 @@ struct CatalogueName {
 };
 using CatalogueNames = std::map<std::string, std::vector<CatalogueName>>;  // by label
 
-// Reads schemas/furniture_labels.schema.json. Throws InputError.
+// The file that says which models of a catalogue count as which label of the semantic table.
+struct CatalogueLabels {
+  std::string description;
+  CatalogueNames labels;
+};
+template <typename Visitor>
+void Describe(Visitor& visit, CatalogueName& name) {
+  if (visit.IsText(&name.name, "name of models, whatever its case, in any category")) return;
+  visit.Field("name", &name.name, "name of models", kNotEmpty);
+  visit.Field("category", &name.category, "their category", kNotEmpty);
+}
+template <typename Visitor>
+void Describe(Visitor& visit, CatalogueLabels& file) {
+  visit.OrAbsent("description", &file.description, "for readers of the file");
+  visit.Field("labels", &file.labels,
+              "by label or alias of the semantic table; a model may count as several");
+}
+
+// Reads such a file. Throws InputError.
 CatalogueNames ReadCatalogueNames(const std::filesystem::path& path);
 
 // True if a model has one of the names, whatever their case.

@@ -108,7 +108,8 @@ std::optional<double> ResidualOf(const json& alignments) {
   return frames == 0 ? std::nullopt : std::optional(std::sqrt(squares / frames));
 }
 
-// "alignment similarity, scale 2.31 to 2.34, cameras 0.01 m apart", for the maps of a dataset.
+// "alignment similarity, scale 2.31 to 2.34, cameras 0.01 m from the true ones", for the maps of a
+// dataset.
 std::string AlignmentInWords(const std::vector<VariantResult>& maps) {
   std::set<std::string> kinds;
   std::vector<double> scales, residuals;
@@ -122,7 +123,7 @@ std::string AlignmentInWords(const std::vector<VariantResult>& maps) {
   }
   std::string text = fmt::format("alignment {}", fmt::join(kinds, " and "));
   if (!scales.empty()) text += ", scale " + Range(scales);
-  if (!residuals.empty()) text += ", cameras " + Range(residuals) + " m apart";
+  if (!residuals.empty()) text += ", cameras " + Range(residuals) + " m from the true ones";
   return text;
 }
 
@@ -190,7 +191,7 @@ std::vector<Table> QualityTables(const DatasetResult& dataset) {
   if (maps.empty()) return {};
   Table quality;
   quality.name = "map_quality_" + dataset.name;
-  quality.title = dataset.name + ": maps against all that is true, " + AlignmentInWords(maps);
+  quality.title = dataset.name + ": maps compared with all true objects, " + AlignmentInWords(maps);
   quality.header = {"variant", "true (det.)", "landmarks (ign.)", "R det."};
   for (const double min_iou : kMapIous) {
     for (const char* column : {"right", "P", "R", "F1", "IoU"}) {
@@ -199,7 +200,7 @@ std::vector<Table> QualityTables(const DatasetResult& dataset) {
   }
   Table errors;
   errors.name = "map_errors_" + dataset.name;
-  errors.title = fmt::format("{}: errors of what is right at IoU {}, {}", dataset.name,
+  errors.title = fmt::format("{}: errors of landmarks that are right at IoU {}, {}", dataset.name,
                              kMapIous.front(), AlignmentInWords(maps));
   errors.header = {"variant",   "centre m",        "centre / size", "log size x, y, z",
                    "log scale", "yaw of body deg", "up deg",        "plane m",

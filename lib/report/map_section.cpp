@@ -131,8 +131,8 @@ class MapOfVariant {
   MapOfVariant(const fs::path& folder, const Sequence& sequence, const ImageSource& images)
       : folder_(folder), sequence_(sequence), images_(images) {
     map_ = ReadMap(folder / "map.json", sequence);
-    json world;
-    if (Exists(folder / "world.json")) world = ReadArtefact(folder / "world.json", "world");
+    std::optional<Artefact<WorldReport>> world;
+    if (Exists(folder / "world.json")) world = ReadWorld(folder / "world.json");
     scale_ = ScaleFromWorld(world, sequence);
     const std::vector<std::string> doubts = DoubtsOfMap(folder, map_, sequence);
     for (size_t i = 0; i < doubts.size(); ++i) {

@@ -95,7 +95,7 @@ std::vector<Cell> LimitsRow(const json& landmark) {
 
 Table MapsTable(const std::vector<DatasetResult>& datasets,
                 const std::vector<std::string>& variants) {
-  Table table = {"maps", "Maps against all that is true", {}, {}, 4, {}};
+  Table table = {"maps", "Maps compared with all true objects", {}, {}, 4, {}};
   for (const EvaluatedMap& map : MapsOf(datasets, variants)) {
     const Table one = QualityTables({map.dataset, {map.variant}}).front();
     if (table.header.empty()) {

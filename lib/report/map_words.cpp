@@ -8,25 +8,26 @@
 #include <vector>
 
 #include "artefact/files.h"
+#include "evaluation/result_checks.h"
 #include "evaluation/statistics.h"
+#include "ground/ground_checks.h"
 #include "model/segments.h"
 #include "report/page_parts.h"
 #include "report/plan_view.h"
 
 namespace soslam {
 
-using nlohmann::json;
-
-ScaleOfMap ScaleFromWorld(const json& world, const Sequence& sequence) {
+ScaleOfMap ScaleFromWorld(const std::optional<Artefact<WorldReport>>& world,
+                          const Sequence& sequence) {
   constexpr const char* kNoUnit =
       "Nothing tells the scale of this map: lengths have no unit, only their proportions count.";
   ScaleOfMap scale;
-  if (world.is_null()) {
+  if (!world) {
     scale.in_metres = IsInMetresWithoutWorld(sequence);
     if (!scale.in_metres) scale.sentence = kNoUnit;
     return scale;
   }
-  const auto found = ScaleOfWorld(world);
+  const std::optional<WorldScale>& found = world->body.scale;
   scale.in_metres = found.has_value();
   scale.sentence = kNoUnit;
   if (found) {
@@ -38,9 +39,9 @@ ScaleOfMap ScaleFromWorld(const json& world, const Sequence& sequence) {
       scale.warning = fmt::format("The scale may be wrong by more than that: {}.", contradictions);
     }
   }
-  scale.sentence += fmt::format(" Up ± {:.1f}° (one standard deviation).",
-                                world.at("up").at("sigma_deg").get<double>());
-  const std::string doubt = DoubtOfUp(world);
+  scale.sentence +=
+      fmt::format(" Up ± {:.1f}° (one standard deviation).", world->body.up.sigma_deg);
+  const std::string doubt = DoubtOfUp(world->findings);
   scale.up_is_in_doubt = !doubt.empty();
   if (scale.up_is_in_doubt) {
     if (!scale.warning.empty()) scale.warning += " ";

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "artefact/files.h"
 #include "geometry/box.h"
 #include "geometry/camera.h"
 #include "geometry/landmark.h"
@@ -62,7 +63,8 @@ struct ScaleOfMap {
 };
 
 // `world`: world.json, or null without it.
-ScaleOfMap ScaleFromWorld(const nlohmann::json& world, const Sequence& sequence);
+ScaleOfMap ScaleFromWorld(const std::optional<Artefact<WorldReport>>& world,
+                          const Sequence& sequence);
 
 // Width, depth and height with their 95 % intervals: "52 × 61 × 86 cm (± 5 × 6 × 8)". The
 // covariance of a map is for the scale that it has; the error of the scale is independent.

@@ -166,7 +166,7 @@ std::string Mistakes(const std::vector<json>& variants) {
 std::string QualitySection(const json& page) {
   const std::string table = QualityHtml(page.at("dataset"), page.at("variants"));
   if (table.empty()) return "";
-  return Section("quality", "Maps against all that is true",
+  return Section("quality", "Maps compared with all true objects",
                  Faint("Landmarks and true objects are matched by overlap, whatever their ids and "
                        "labels, in the world of the true poses: alignment none where the map is in "
                        "it, rigid where it has to be moved there, similarity where it is scaled as "
@@ -421,9 +421,9 @@ std::string OverviewTables(const json& overview) {
     if (!dataset.at("variants").empty()) {
       const std::string quality = QualityHtml(dataset.at("dataset"), dataset.at("variants"));
       content += MetricsTable(dataset.at("variants"), dataset.at("has_true_objects"));
-      if (!quality.empty()) content += "<h3>Maps against all that is true</h3>\n" + quality;
+      if (!quality.empty()) content += "<h3>Maps compared with all true objects</h3>\n" + quality;
     }
-    sections += Section(url, dataset.at("dataset"), content + Notes(dataset));
+    sections += Section(url, dataset.at("dataset"), content);
   }
   return "<h1>Results</h1>\n" + sections;
 }

@@ -11,12 +11,6 @@
 
 namespace soslam {
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(PublishedRow, dataset, objects, values)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PublishedTable, table, quantity, source, rows, average)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PublishedTime, variant, ms_mean, ms_sigma, observations)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(PublishedTimes, source, dataset, machine, values)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(Published, protocol, tables, times)
-
 const PublishedTable* Published::Find(const std::string& number, const Quantity& quantity) const {
   const auto found = std::ranges::find_if(tables, [&](const PublishedTable& table) {
     return table.table == number && table.quantity == quantity.key;
@@ -25,9 +19,7 @@ const PublishedTable* Published::Find(const std::string& number, const Quantity&
 }
 
 Published ReadPublished(const std::filesystem::path& path) {
-  const nlohmann::json document = ParseJsonFile(path);
-  ValidateAgainstSchema(document, "published", path.string());
-  return document.get<Published>();
+  return ReadDocument<Published>(ParseJsonFile(path), path.string());
 }
 
 namespace {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <opencv2/core/types.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "report/page_html.h"
 
@@ -177,9 +177,26 @@ double SharedArea(const Rectangle& one, const std::vector<Rectangle>& others) {
   return area;
 }
 
-// The place near the footprint at which a card of this size covers least.
+// The line from an object to its card; a point where the card is on the object.
+struct Leader {
+  cv::Point2d from, to;
+
+  bool Crosses(const Rectangle& card) const {
+    cv::Point first = from, last = to;
+    return from != to && cv::clipLine(cv::Rect(card), first, last);
+  }
+};
+
+Leader LeaderOf(const Rectangle& footprint, const Rectangle& card) {
+  const cv::Point2d from = 0.5 * (footprint.tl() + footprint.br());
+  return {from, {std::clamp(from.x, card.x, card.br().x), std::clamp(from.y, card.y, card.br().y)}};
+}
+
+// The place near the footprint at which a card of this size covers least: of other cards, of
+// leaders to them, and of footprints.
 Rectangle FreePlace(const Rectangle& footprint, const cv::Size2d& size, const Screen& screen,
-                    const std::vector<Rectangle>& cards, const std::vector<Rectangle>& footprints) {
+                    const std::vector<Rectangle>& cards, const std::vector<Leader>& leaders,
+                    const std::vector<Rectangle>& footprints) {
   constexpr int kDirections = 16;
   constexpr double kStep = 9.0, kPerFootprint = 150.0, kOverlap = 600.0;
   const Rectangle whole(2.0, 2.0, screen.width - 4.0, screen.height - 4.0);
@@ -196,11 +213,15 @@ Rectangle FreePlace(const Rectangle& footprint, const cv::Size2d& size, const Sc
                            std::max(whole.x, whole.br().x - size.width));
       place.y = std::clamp(place.y + distance * std::sin(angle), whole.y,
                            std::max(whole.y, whole.br().y - size.height));
+      const Leader own = LeaderOf(footprint, place);
+      const bool is_crossed =
+          std::ranges::any_of(cards, [&](const auto& card) { return own.Crosses(card); }) ||
+          std::ranges::any_of(leaders, [&](const auto& leader) { return leader.Crosses(place); });
       const double overlap = SharedArea(place, cards);
       double covered = 0.0;  // sum of the parts of footprints
       for (const Rectangle& other : footprints) covered += (place & other).area() / other.area();
-      const double cost =
-          distance + overlap + (overlap > 0.0 ? kOverlap : 0.0) + kPerFootprint * covered;
+      const double cost = distance + overlap + (overlap > 0.0 || is_crossed ? kOverlap : 0.0) +
+                          kPerFootprint * covered;
       if (cost < least) {
         least = cost;
         best = place;
@@ -236,6 +257,7 @@ CardLayout LayOut(const PlanView& plan, const Screen& screen, const PlanFormat& 
     footprints.push_back(AsRectangle(BoundsOf(screen.Place(object.footprint))));
   }
   CardLayout layout{picture_height};
+  std::vector<Leader> leaders;
   for (size_t i = 0; i < plan.objects.size(); ++i) {
     const PlanObject& object = plan.objects[i];
     const double height = layout.HeightOn(object);
@@ -243,24 +265,23 @@ CardLayout LayOut(const PlanView& plan, const Screen& screen, const PlanFormat& 
         kWidthOfLetter * format.font * static_cast<double>(Shortened(object.name).size());
     const cv::Size2d size(std::max(text, height * AspectOf(object)) + kGap,
                           height + 1.3 * format.font + kGap);
-    const Rectangle card = FreePlace(footprints[i], size, screen, taken, footprints);
+    const Rectangle card = FreePlace(footprints[i], size, screen, taken, leaders, footprints);
     layout.area += card.area();
     layout.overlap += SharedArea(card, taken);
     layout.cards.push_back(card);
     taken.push_back(card);
+    leaders.push_back(LeaderOf(footprints[i], card));
   }
   return layout;
 }
 
-// The line from an object to its card, unless the card is on the object.
-std::string Leader(const Eigen::Vector2d& centre, const Rectangle& card) {
-  const Eigen::Vector2d end(std::clamp(centre.x(), card.x, card.br().x),
-                            std::clamp(centre.y(), card.y, card.br().y));
-  if ((end - centre).norm() < 1.0) return "";
+std::string LeaderSvg(const Leader& leader) {
+  const auto& [from, to] = leader;
+  if (cv::norm(to - from) < 1.0) return "";
   return fmt::format(
       "<path class=\"leader\" d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\"/>\n"
       "<circle class=\"leader\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2\"/>\n",
-      centre.x(), centre.y(), end.x(), end.y(), centre.x(), centre.y());
+      from.x, from.y, to.x, to.y, from.x, from.y);
 }
 
 std::string CardSvg(const PlanObject& object, const Rectangle& card, double picture_height,
@@ -294,7 +315,7 @@ std::string PlanSvg(const PlanView& plan, const PlanFormat& format) {
     const Points footprint = screen.Place(object.footprint);
     shapes += fmt::format("<polygon{} points=\"{}\"/>\n",
                           object.is_uncertain ? " class=\"uncertain\"" : "", PointsText(footprint));
-    leaders += Leader(BoundsOf(footprint).center(), layout.cards[i]);
+    leaders += LeaderSvg(LeaderOf(AsRectangle(BoundsOf(footprint)), layout.cards[i]));
     cards += CardSvg(object, layout.cards[i], layout.HeightOn(object), format.font);
   }
   return fmt::format(

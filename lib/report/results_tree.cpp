@@ -17,9 +17,6 @@
 
 namespace soslam {
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Machine, cpu, cores)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(StageTiming, wall_s, cpu_s, threads, machine)
-
 namespace fs = std::filesystem;
 
 std::vector<std::string> RunsIn(const fs::path& list) {
@@ -58,9 +55,7 @@ auto VariantRank(const VariantResult& variant) {
 
 std::optional<StageTiming> ReadTiming(const fs::path& file) {
   if (!Exists(file)) return std::nullopt;
-  const json document = ParseJsonFile(file);
-  ValidateAgainstSchema(document, "timing", file.string());
-  return document.get<StageTiming>();
+  return ReadDocument<StageTiming>(ParseJsonFile(file), file.string());
 }
 
 std::vector<StageRun> ReadStages(const fs::path& dataset, const fs::path& variant) {
@@ -187,17 +182,17 @@ bool ShowsStage(const VariantResult& variant, const std::string& stage, const st
                              [&](const std::string& run) { return StageOf(run) == stage; });
 }
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(DatasetFacts, boxes_of, boxes, annotation,
-                                                partly_annotated, published, differs)
-
 void ReadAbout(const std::filesystem::path& settings, DatasetFacts* facts) {
   if (!Exists(settings)) return;
   const nlohmann::json document = ParseJsonFile(settings);
   const nlohmann::json about =
       document.is_object() ? document.value("about", nlohmann::json()) : nlohmann::json();
   if (about.is_null()) return;
-  ValidateAgainstSchema(about, "about", settings.string() + ": about");
-  about.get_to(*facts);
+  const auto counts = facts->counts;
+  const std::string odometry = facts->odometry;
+  *facts = ReadDocument<DatasetFacts>(about, settings.string() + ": about");
+  facts->counts = counts;
+  facts->odometry = odometry;
 }
 
 std::string MarksOf(const DatasetFacts& facts, int objects) {

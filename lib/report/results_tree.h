@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <fmt/format.h>
+
 #include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -20,21 +22,42 @@ struct DatasetCounts {
   int round_objects = 0;  // those of them whose yaw has no meaning
 };
 
+// Kind of a dataset's boxes.
+enum class BoxesOf { kDetector, kSimulation, kLabels };
+inline constexpr std::array kBoxesOfNames = {"detector", "simulation", "labels"};
+inline constexpr const auto& NamesOf(BoxesOf) { return kBoxesOfNames; }
+
 // What tables say of a dataset beside its name.
 struct DatasetFacts {
   std::optional<DatasetCounts> counts = std::nullopt;  // none without a sequence.json
   std::string odometry = {};                           // origin of the pose estimates
 
   // The field "about" of the dataset's settings (schemas/about.schema.json).
-  std::string boxes_of = {};  // "detector", "simulation", "labels"; empty: not said
+  std::optional<BoxesOf> boxes_of = {};  // none: not said
   std::string boxes = {};
   std::string annotation = {};
   bool partly_annotated = false;
   std::string published = {};
   std::string differs = {};
 
-  bool HasDetectorBoxes() const { return boxes_of == "detector"; }
+  bool HasDetectorBoxes() const { return boxes_of == BoxesOf::kDetector; }
 };
+
+// The field "about" of pipelines/datasets/<name>.json.
+template <typename Visitor>
+void Describe(Visitor& visit, DatasetFacts& facts) {
+  visit.OrAbsent("boxes_of", &facts.boxes_of,
+                 "kind of boxes; means over all datasets with a detector's boxes "
+                 "have rows of their own");
+  visit.OrAbsent("boxes", &facts.boxes, "whose boxes: names of detectors", kNotEmpty);
+  visit.OrAbsent("annotation", &facts.annotation, "who measured the objects, and how", kNotEmpty);
+  visit.OrAbsent("partly_annotated", &facts.partly_annotated,
+                 "true: things of the same kinds stand there that nobody has measured");
+  visit.OrAbsent("published", &facts.published,
+                 "dataset of the publication whose rows stand below, where it has another name",
+                 kNotEmpty);
+  visit.OrAbsent("differs", &facts.differs, "in what it differs from that", kNotEmpty);
+}
 
 // Reads the field "about" of a file of settings, if it is there and has one. Throws InputError.
 void ReadAbout(const std::filesystem::path& settings, DatasetFacts* facts);
@@ -83,11 +106,24 @@ inline constexpr Quantity kYawError = {"yaw error deg", "yaw_error_deg", "yaw_er
 
 // Run time of a stage, from its timing.json.
 struct StageTiming {
+  std::string stage;
+  double peak_memory_mb = 0.0;
   double wall_s = 0.0;
   double cpu_s = 0.0;
   int threads = 1;
   std::optional<Machine> machine;  // none in files from before it was recorded
 };
+
+// timing.json.
+template <typename Visitor>
+void Describe(Visitor& visit, StageTiming& timing) {
+  visit.Field("stage", &timing.stage, "name of the executable");
+  visit.Field("wall_s", &timing.wall_s, "from start to end", kNotNegative);
+  visit.Field("cpu_s", &timing.cpu_s, "of all threads, user and system", kNotNegative);
+  visit.Field("peak_memory_mb", &timing.peak_memory_mb, "resident", kNotNegative);
+  visit.Field("threads", &timing.threads, "that the stage was allowed", kAtLeastOne);
+  visit.OrAbsent("machine", &timing.machine, "that it ran on; absent in older files");
+}
 
 // One run of a stage of a variant.
 struct StageRun {

@@ -85,7 +85,50 @@ struct Published {
   const PublishedTable* Find(const std::string& number, const Quantity& quantity) const;
 };
 
-// Reads schemas/published.schema.json. Throws InputError.
+template <typename Visitor>
+void DescribeMeans(Visitor& visit, PublishedRow& row) {
+  visit.Field("objects", &row.objects, "number", kAtLeastOne);
+  visit.Field("values", &row.values, "by method; what the publication leaves out is absent");
+}
+template <typename Visitor>
+void Describe(Visitor& visit, PublishedRow& row) {
+  visit.Field("dataset", &row.dataset, "as folders of datasets are named", kNotEmpty);
+  DescribeMeans(visit, row);
+}
+template <typename Visitor>
+void Describe(Visitor& visit, PublishedTable& table) {
+  visit.Field("table", &table.table, "its number, as I", kNotEmpty);
+  visit.Field("quantity", &table.quantity, "iou or rotation_deg: means over objects", kNotEmpty);
+  visit.Field("source", &table.source, "where it is printed", kNotEmpty);
+  visit.Field("rows", &table.rows, "in the order of the publication");
+  visit.Field("average", &table.average, "as printed", {},
+              [](auto& visit, PublishedRow& row) { DescribeMeans(visit, row); });
+}
+template <typename Visitor>
+void Describe(Visitor& visit, PublishedTime& time) {
+  visit.Field("variant", &time.variant, "method", kNotEmpty);
+  visit.Field("ms_mean", &time.ms_mean, "milliseconds per landmark", kNotNegative);
+  visit.Field("ms_sigma", &time.ms_sigma, "standard deviation of that", kNotNegative);
+  visit.Field("observations", &time.observations, "mean number per landmark", kNotNegative);
+}
+template <typename Visitor>
+void Describe(Visitor& visit, PublishedTimes& times) {
+  visit.Field("source", &times.source, "where they are printed", kNotEmpty);
+  visit.Field("dataset", &times.dataset, "of the publication", kNotEmpty);
+  visit.Field("machine", &times.machine, "on which they were measured", kNotEmpty);
+  visit.Field("values", &times.values, "by method");
+}
+// pipelines/published.json.
+template <typename Visitor>
+void Describe(Visitor& visit, Published& published) {
+  std::string description;
+  visit.OrAbsent("description", &description, "for readers of the file");
+  visit.OrAbsent("protocol", &published.protocol, "how the values came about, one line", kNotEmpty);
+  visit.Field("tables", &published.tables, "tables I to IV");
+  visit.Field("times", &published.times, "run times");
+}
+
+// Reads pipelines/published.json. Throws InputError.
 Published ReadPublished(const std::filesystem::path& path);
 
 // A quantity averaged over the objects that have it.

@@ -82,10 +82,9 @@ void SetSize(const ImageSize& source, int max_image_px, ChosenFrames* chosen) {
   chosen->record.height = size.height;
 }
 
-void MeasurePhoto(const Photo& photo, ImageOrientation read_as, SourceFrame* frame,
-                  FrameView* view) {
+void MeasurePhoto(const Photo& photo, SourceFrame* frame, FrameView* view) {
   try {
-    *view = ViewOf(ReadImage(photo.path, cv::IMREAD_GRAYSCALE, read_as));
+    *view = ViewOf(ReadImage(photo.path, cv::IMREAD_GRAYSCALE));
     frame->sharpness = view->sharpness;
   } catch (const InputError& error) {
     const std::string message = error.what(), place = photo.path.string() + ": ";
@@ -140,15 +139,14 @@ std::vector<Finding> CheckVideo(const VideoReader& video, const FramesRecord& re
 
 bool IsCopied(const Photo& photo, const FrameOptions& options) {
   const ImageSize& size = photo.header.stored;
-  return (photo.header.orientation == 1 ||
-          options.image_orientation == ImageOrientation::kStored) &&
+  return (photo.header.orientation == 1 || options.keep_exif_turn) &&
          std::max(size.width, size.height) <= options.max_image_px;
 }
 
 ChosenFrames ChoosePhotos(const FrameOptions& options, const fs::path& folder, int threads,
                           std::vector<Photo>* photos) {
   *photos = ListPhotos(folder);
-  const CommonCamera camera = FindCommonCamera(folder, *photos, options.image_orientation);
+  const CommonCamera camera = FindCommonCamera(folder, *photos);
   ChosenFrames chosen;
   chosen.order = OrderByTime(camera, photos);
   chosen.record.ordered_by = chosen.order.is_by_time ? "time" : "name";
@@ -165,7 +163,7 @@ ChosenFrames ChoosePhotos(const FrameOptions& options, const fs::path& folder, i
   std::vector<FrameView> views(photos->size());
   ParallelFor("photos", photos->size(), threads, [&](size_t i) {
     if (IsLeftOut(frames[i])) return;
-    MeasurePhoto((*photos)[i], options.image_orientation, &frames[i], &views[i]);
+    MeasurePhoto((*photos)[i], &frames[i], &views[i]);
   });
   FrameSelector selector(options);
   for (size_t i = 0; i < views.size(); ++i) {

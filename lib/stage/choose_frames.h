@@ -16,7 +16,7 @@ namespace soslam {
 // Frames with what they were chosen from.
 struct ChosenFrames {
   FramesRecord record;
-  cv::Size source_size;  // of the images that were chosen from, in their orientation
+  cv::Size source_size;  // of the images that were chosen from, upright
   std::vector<std::filesystem::path> inputs;
   std::vector<Finding> findings;  // about the video
   PhotoOrder order;               // of photos
@@ -38,10 +38,8 @@ ChosenFrames ChoosePhotos(const FrameOptions& options, const std::filesystem::pa
 ChosenFrames ChooseFromVideo(const FrameOptions& options, const std::filesystem::path& path);
 
 // The text of detections.csv: the boxes of the chosen images among those of all images in the file
-// `path`, which are of the upright ones. `photos` are those of the frames, if these are kept as
-// they are stored, otherwise empty. Prints how many boxes there are. Throws InputError as
+// `path`, which are of the upright ones. Prints how many boxes there are. Throws InputError as
 // ReadDetectionsCsv, when there are none, and for a file of other images.
-std::string FrameBoxesText(const std::filesystem::path& path, const ChosenFrames& chosen,
-                           const std::vector<Photo>& photos);
+std::string FrameBoxesText(const std::filesystem::path& path, const ChosenFrames& chosen);
 
 }  // namespace soslam

@@ -7,7 +7,6 @@
 
 #include "artefact/files.h"
 #include "artefact/json_file.h"
-#include "artefact/model_json.h"
 #include "base/error.h"
 #include "base/paths.h"
 #include "base/run_log.h"
@@ -33,9 +32,9 @@ void AddReconstruction(const std::filesystem::path& folder, const ImportOptions&
   if (!Exists(path) || options.folder.trajectory_format != TrajectoryFormat::kTum) return;
   const nlohmann::json document = ParseJsonFile(path);
   if (!document.contains("artefact")) return;
-  std::ranges::move(FindingsFromJson(ReadArtefact(path, "reconstruction")),
-                    std::back_inserter(sequence->findings));
-  sequence->images_without_pose = ReadReconstruction(path).images_without_pose;
+  Artefact<ReconstructionSummary> reconstruction = ReadReconstruction(path);
+  std::ranges::move(reconstruction.findings, std::back_inserter(sequence->findings));
+  sequence->images_without_pose = std::move(reconstruction.body.images_without_pose);
   sequence->findings = WorstFirst(std::move(sequence->findings));
   inputs->push_back(path);
 }

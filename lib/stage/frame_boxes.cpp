@@ -13,7 +13,6 @@
 #include "dataset/labelled_box.h"
 #include "dataset/photo_folder.h"
 #include "image/image_format.h"
-#include "image/read_image.h"
 #include "stage/choose_frames.h"
 
 namespace soslam {
@@ -40,20 +39,17 @@ void RefuseBoxesOfOtherImages(const fs::path& path, size_t frames) {
 
 }  // namespace
 
-std::string FrameBoxesText(const fs::path& path, const ChosenFrames& chosen,
-                           const std::vector<Photo>& photos) {
+std::string FrameBoxesText(const fs::path& path, const ChosenFrames& chosen) {
   struct NumberedFrame {
     std::pair<std::string, std::string> name;  // see OrderOfName
-    size_t index;                              // in the record
     std::optional<int> row;                    // among the chosen ones
   };
   std::vector<NumberedFrame> frames;
   int row = 0;
-  for (size_t i = 0; i < chosen.record.frames.size(); ++i) {
-    const SourceFrame& frame = chosen.record.frames[i];
+  for (const SourceFrame& frame : chosen.record.frames) {
     if (HasNameOfRawPhoto(frame.source)) continue;  // detectors read the JPEGs beside them
     frames.push_back(
-        {OrderOfName(frame.source), i, IsLeftOut(frame) ? std::nullopt : std::optional(row++)});
+        {OrderOfName(frame.source), IsLeftOut(frame) ? std::nullopt : std::optional(row++)});
   }
   // All frames of a video have one name.
   std::ranges::stable_sort(frames, {}, &NumberedFrame::name);
@@ -70,9 +66,7 @@ std::string FrameBoxesText(const fs::path& path, const ChosenFrames& chosen,
       ++(is_known ? left_out : unknown);
       continue;
     }
-    const NumberedFrame& frame = frames[number];
-    box.frame = *frame.row;
-    if (!photos.empty()) box.box = BoxInStoredImage(box.box, photos[frame.index].header);
+    box.frame = *frames[number].row;
     box.box = {Scaled(box.box.x_min, scale_x), Scaled(box.box.y_min, scale_y),
                Scaled(box.box.x_max, scale_x), Scaled(box.box.y_max, scale_y)};
     of_chosen.push_back(std::move(box));

@@ -21,6 +21,7 @@
 #include "mapping/check_minima.h"
 #include "mapping/initial_landmarks.h"
 #include "mapping/options.h"
+#include "mapping/quarter_turns.h"
 #include "model/occlusion.h"
 #include "orientation/texture_asymmetry.h"
 #include "stage/read_evidence.h"
@@ -55,16 +56,6 @@ void CheckEvidence(const OptimiseOptions& options, const StageFiles& files) {
   }
 }
 
-// Observations of an object for which images are used: none unless it is static, and in frames with
-// an image.
-std::vector<int> ObservationsInImages(const Sequence& sequence, std::vector<int> detections) {
-  std::erase_if(detections, [&](int index) {
-    const Detection& detection = sequence.detections[index];
-    return sequence.FrameOf(detection).image.empty() || !sequence.ObjectOf(detection).is_static;
-  });
-  return detections;
-}
-
 // Reads the edge maps for symmetry and edge alignment.
 void ReadImages(const OptimiseOptions& options, const StageFiles& files, int threads,
                 BackEndInput* input) {
@@ -73,8 +64,11 @@ void ReadImages(const OptimiseOptions& options, const StageFiles& files, int thr
     return static_cast<size_t>(sequence.detections[static_cast<size_t>(index)].frame_index);
   };
   std::vector<int> for_symmetry, for_edges;  // indices of detections
-  for (const std::vector<int>& of_object : DetectionsByObject(sequence)) {
-    const std::vector<int> detections = ObservationsInImages(sequence, of_object);
+  for (std::vector<int>& detections : DetectionsByObject(sequence)) {
+    std::erase_if(detections, [&](int index) {
+      const Detection& detection = sequence.detections[index];
+      return sequence.FrameOf(detection).image.empty() || !sequence.ObjectOf(detection).is_static;
+    });
     if (options.symmetry) {
       const auto views = static_cast<size_t>(options.symmetry_views);
       std::ranges::copy(SpreadOver(detections, views), std::back_inserter(for_symmetry));
@@ -229,32 +223,12 @@ int RunCheckMinima(const NoOptions& /*options*/, const StageFiles& files, int th
   return above > 0 ? kFindings : static_cast<int>(ExitCode::kDone);
 }
 
-namespace {
-
-bool IsMap(const std::filesystem::path& path) {
-  const nlohmann::json::json_pointer kind("/artefact/kind");
-  const nlohmann::json document = ParseJsonFile(path);
-  return document.contains(kind) && document[kind] == "map";
-}
-
-void PrintQuality(const MapQuality& quality) {
-  for (const MapScore& score : quality.scores) {
-    fmt::print(
-        "IoU of at least {:g}: {} of {} true objects found ({} of the {} detectable), {} of {} "
-        "landmarks right, {} ignored; mean IoU of the found {}\n",
-        score.min_iou, score.found, score.true_objects, score.found_detectable, score.detectable,
-        score.found, score.landmarks - score.ignored, score.ignored,
-        score.of_found.iou_mean ? fmt::format("{:.3f}", *score.of_found.iou_mean) : "-");
-  }
-  ReportFindings("evaluate", quality.alignments.findings);
-}
-
-}  // namespace
-
 void RunEvaluate(const EvaluateOptions& options, const StageFiles& files, int /*threads*/) {
   const Sequence sequence = ReadSequence(files.at("sequence"));
   const std::filesystem::path& landmarks = files.at("landmarks");
-  const bool is_map = IsMap(landmarks);
+  const nlohmann::json document = ParseJsonFile(landmarks);
+  const nlohmann::json::json_pointer kind("/artefact/kind");
+  const bool is_map = document.contains(kind) && document[kind] == "map";
   CheckWasMadeOf(landmarks, is_map ? "map" : "landmarks", files.at("sequence"));
   const Metrics metrics =
       is_map ? EvaluateMap(sequence, ReadMap(landmarks, sequence), options.alignment)
@@ -266,7 +240,17 @@ void RunEvaluate(const EvaluateOptions& options, const StageFiles& files, int /*
                held_out->detections_matched, held_out->detections,
                held_out->iou_mean.value_or(0.0));
   }
-  if (metrics.map_quality) PrintQuality(*metrics.map_quality);
+  if (const auto& quality = metrics.map_quality) {
+    for (const MapScore& score : quality->scores) {
+      fmt::print(
+          "IoU of at least {:g}: {} of {} true objects found ({} of the {} detectable), {} of {} "
+          "landmarks right, {} ignored; mean IoU of the found {}\n",
+          score.min_iou, score.found, score.true_objects, score.found_detectable, score.detectable,
+          score.found, score.landmarks - score.ignored, score.ignored,
+          score.of_found.iou_mean ? fmt::format("{:.3f}", *score.of_found.iou_mean) : "-");
+    }
+    ReportFindings("evaluate", quality->alignments.findings);
+  }
   if (metrics.summary.objects == 0 && metrics.map_quality) {
     fmt::print("no observed object has ground truth of its own id\n");
   } else if (metrics.summary.objects == 0) {

@@ -26,37 +26,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// `settings` is the folder with the settings of the datasets, or empty.
-std::vector<DatasetResult> ReadEvaluated(const fs::path& results, const fs::path& settings) {
-  std::vector<DatasetResult> datasets = ReadResults(results);
-  std::erase_if(datasets, [](const DatasetResult& dataset) {
-    return std::ranges::all_of(
-        dataset.variants, [](const VariantResult& variant) { return variant.metrics.is_null(); });
-  });
-  if (datasets.empty()) {
-    throw NothingUsableError(results.string() +
-                             ": no <dataset>/<variant>/metrics.json; expected at least one");
-  }
-  for (DatasetResult& dataset : datasets) dataset.facts = ReadFacts(dataset, settings);
-  return datasets;
-}
-
-// Writes the Markdown file and, in the folder "tables" beside it, each table as CSV and LaTeX.
-// Returns the Markdown.
-std::string WriteTables(const std::vector<Table>& tables, const fs::path& markdown_file) {
-  const fs::path folder = markdown_file.parent_path() / "tables";
-  std::error_code error;  // a missing folder fails on writing below
-  fs::create_directory(folder, error);
-  std::string text;
-  for (const Table& table : tables) {
-    text += (text.empty() ? "" : "\n") + ToMarkdown(table);
-    WriteTextFile(folder / (table.name + ".csv"), ToCsv(table));
-    WriteTextFile(folder / (table.name + ".tex"), ToLatex(table));
-  }
-  WriteTextFile(markdown_file, text);
-  return text;
-}
-
 // All tables in the order of the report: the paper's tables, paired differences, maps, single
 // datasets.
 std::vector<Table> AllTables(const std::vector<DatasetResult>& datasets, const Published& published,
@@ -82,29 +51,45 @@ std::vector<Table> AllTables(const std::vector<DatasetResult>& datasets, const P
   return tables;
 }
 
-// Not recorded as an input: the report writes it anew.
-std::string ReadPage(const fs::path& page) {
-  std::ifstream stream(page, std::ios::binary);
-  if (!stream) throw InputError(page.string() + ": cannot be read; expected a page with tables");
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 }  // namespace
 
 void RunReport(const ReportOptions& options, const StageFiles& files, int /*threads*/) {
   const std::vector<Comparison> comparisons = ParseComparisons(options.compare);
   const Published published =
       files.contains("published") ? ReadPublished(files.at("published")) : Published();
-  const std::vector<DatasetResult> datasets = ReadEvaluated(
-      files.at("results"), files.contains("datasets") ? files.at("datasets") : fs::path());
+  const fs::path& results = files.at("results");
+  const fs::path settings = files.contains("datasets") ? files.at("datasets") : fs::path();
+  std::vector<DatasetResult> datasets = ReadResults(results);
+  std::erase_if(datasets, [](const DatasetResult& dataset) {
+    return std::ranges::all_of(
+        dataset.variants, [](const VariantResult& variant) { return variant.metrics.is_null(); });
+  });
+  if (datasets.empty()) {
+    throw NothingUsableError(results.string() +
+                             ": no <dataset>/<variant>/metrics.json; expected at least one");
+  }
+  for (DatasetResult& dataset : datasets) dataset.facts = ReadFacts(dataset, settings);
   const std::vector<Table> tables =
       AllTables(datasets, published, comparisons, SplitAtSpaces(options.maps),
                 SplitAtSpaces(options.what_if));
-  fmt::print("{}", WriteTables(tables, files.at("output")));
-  if (files.contains("page")) {
-    const fs::path& page = files.at("page");
-    WriteTextFile(page, FillPage(ReadPage(page), tables, page.string()));
+  const fs::path folder = files.at("output").parent_path() / "tables";
+  std::error_code error;  // a missing folder fails on writing below
+  fs::create_directory(folder, error);
+  std::string markdown;
+  for (const Table& table : tables) {
+    markdown += (markdown.empty() ? "" : "\n") + ToMarkdown(table);
+    WriteTextFile(folder / (table.name + ".csv"), ToCsv(table));
+    WriteTextFile(folder / (table.name + ".tex"), ToLatex(table));
   }
+  WriteTextFile(files.at("output"), markdown);
+  fmt::print("{}", markdown);
+  if (!files.contains("page")) return;
+  // Not recorded as an input: the report writes it anew.
+  const fs::path& page = files.at("page");
+  std::ifstream stream(page, std::ios::binary);
+  if (!stream) throw InputError(page.string() + ": cannot be read; expected a page with tables");
+  const std::string unfilled{std::istreambuf_iterator<char>(stream), {}};
+  WriteTextFile(page, FillPage(unfilled, tables, page.string()));
 }
 
 namespace {
@@ -126,18 +111,6 @@ ImageSource ImagesIn(const fs::path& dataset, const Sequence& sequence) {
           }};
 }
 
-// Prints what is missing on the page.
-void PrintProblems(const nlohmann::json& page) {
-  const auto print = [&](const std::string& what) {
-    fmt::print(stderr, "soslam-pages: {}: {}\n", page["dataset"].get<std::string>(), what);
-  };
-  for (const nlohmann::json& variant : page["unfinished"]) {
-    print(fmt::format("{} {}", variant["name"].get<std::string>(),
-                      variant["state"].get<std::string>()));
-  }
-  for (const nlohmann::json& problem : page["problems"]) print(problem.get<std::string>());
-}
-
 // Returns the data of the page, and writes the page unless it has nothing to show.
 nlohmann::json WriteDatasetPage(const DatasetResult& result, const fs::path& folder, int threads) {
   const auto page_with = [&](const std::string& tables, const nlohmann::json& data) {
@@ -148,7 +121,14 @@ nlohmann::json WriteDatasetPage(const DatasetResult& result, const fs::path& fol
   nlohmann::json data = PageData(
       result, [&](const Sequence& sequence) { return ImagesIn(dataset, sequence); }, max_data_bytes,
       threads);
-  PrintProblems(data);
+  const auto print = [&](const std::string& problem) {
+    fmt::print(stderr, "soslam-pages: {}: {}\n", result.name, problem);
+  };
+  for (const nlohmann::json& variant : data["unfinished"]) {
+    print(fmt::format("{} {}", variant["name"].get<std::string>(),
+                      variant["state"].get<std::string>()));
+  }
+  for (const nlohmann::json& problem : data["problems"]) print(problem.get<std::string>());
   if (data["variants"].empty()) return data;
   const std::string tables = DatasetTables(data);
   data.erase("map_section");

@@ -20,6 +20,7 @@
 #include "dataset/labelled_box.h"
 #include "dataset/trajectories.h"
 #include "image/detector_options.h"
+#include "image/image_turn.h"
 #include "image/read_image.h"
 #include "image/yolo_detector.h"
 #include "model/label_groups.h"
@@ -81,15 +82,6 @@ DetectorLabels LabelsForDetector(std::vector<std::string> classes, const Detecto
 
 namespace {
 
-std::vector<fs::path> ImagePaths(const fs::path& dataset) {
-  const fs::path list = dataset / "rgb.txt";
-  std::vector<fs::path> images;
-  for (const ListedImage& image : ReadImageList(list)) {
-    images.push_back(ImagePath(dataset, image.image, list.string()));
-  }
-  return images;
-}
-
 // The detections of each image, and the number of all boxes that were found. Each worker has its
 // own network, which OpenCV runs on one thread, so that the result does not depend on the number of
 // workers.
@@ -123,45 +115,43 @@ double SumOfScores(const std::vector<YoloDetection>& detections) {
   return sum;
 }
 
-// Replaces detections in upright images by those in the pixels that the files store. Networks want
-// upright images, but EXIF may be wrong, as where the camera looked down: they see the images that
-// it turns as stored, too, and the orientation in which they are surer of these together counts.
-void TurnToStored(const std::vector<fs::path>& images,
-                  const std::function<AllDetections(const std::vector<fs::path>&)>& detect_stored,
-                  AllDetections* all) {
+using DetectIn =
+    std::function<AllDetections(const std::vector<fs::path>& images, ImageOrientation orientation)>;
+
+// The detections in `orientation`, which becomes the one that they were found in if it is kSurer.
+// Networks want upright images, but EXIF may be wrong, as where the camera looked down: they see
+// the images that it turns in both orientations, and the one in which they are surer of these
+// together counts.
+AllDetections DetectInBoth(const std::vector<fs::path>& images, const DetectIn& detect,
+                           BoxOrientation* orientation) {
+  AllDetections all = detect(images, ImageOrientation::kUpright);
   std::vector<fs::path> turned;
-  std::vector<std::vector<YoloDetection>*> upright;
+  std::vector<std::vector<YoloDetection>*> detections;
   double sum = 0.0;
   for (size_t i = 0; i < images.size(); ++i) {
     if (ReadImageHeader(images[i]).value().orientation == 1) continue;
     turned.push_back(images[i]);
-    upright.push_back(&all->of_image[i]);
-    sum += SumOfScores(all->of_image[i]);
+    detections.push_back(&all.of_image[i]);
+    sum += SumOfScores(all.of_image[i]);
   }
-  if (turned.empty()) return;
-  const AllDetections stored = detect_stored(turned);
-  for (const auto& detections : stored.of_image) sum -= SumOfScores(detections);
+  AllDetections stored;
+  if (!turned.empty()) stored = detect(turned, ImageOrientation::kStored);
+  for (const auto& of_image : stored.of_image) sum -= SumOfScores(of_image);
+  const bool is_stored = sum < 0.0;
+  const auto found_in = is_stored ? BoxOrientation::kStored : BoxOrientation::kUpright;
+  if (*orientation == BoxOrientation::kSurer) *orientation = found_in;
   for (size_t i = 0; i < turned.size(); ++i) {
-    if (sum < 0.0) *upright[i] = stored.of_image[i];
+    if (is_stored) *detections[i] = stored.of_image[i];
+    if (*orientation == found_in) continue;
     const ImageHeader header = ReadImageHeader(turned[i]).value();
-    for (YoloDetection& detection : *upright[i]) {
-      if (sum >= 0.0) detection.box = BoxInStoredImage(detection.box, header);
+    const ImageTurn turn = ExifTurn(header.orientation);
+    for (YoloDetection& detection : *detections[i]) {
+      detection.box = is_stored ? TurnedBox(detection.box, header.stored, turn)
+                                : TurnedBox(detection.box, header.Size(ImageOrientation::kUpright),
+                                            turn.Inverse());
     }
   }
-}
-
-std::vector<LabelledBox> KeptBoxes(const std::vector<std::vector<YoloDetection>>& detections,
-                                   const DetectorLabels& labels) {
-  std::vector<LabelledBox> boxes;
-  for (size_t frame = 0; frame < detections.size(); ++frame) {
-    for (const YoloDetection& detection : detections[frame]) {
-      const int index = detection.class_index;
-      if (!labels.are_kept[index]) continue;
-      boxes.push_back(
-          {"", static_cast<int>(frame), labels.names[index], detection.score, detection.box});
-    }
-  }
-  return boxes;
+  return all;
 }
 
 // The artefact header as comments: one line, then one per input.
@@ -200,21 +190,28 @@ void RunDetect(const DetectorOptions& options, const StageFiles& files, int thre
   const NetworkFile network = ReadNetworkFile(files.at("network"));
   const DetectorLabels labels = LabelsForDetector(
       files.contains("labels") ? ReadLabelFile(files.at("labels")) : NamesIn(network), options);
-  const std::vector<fs::path> images = ImagePaths(dataset);
+  const fs::path list = dataset / "rgb.txt";
+  std::vector<fs::path> images;
+  for (const ListedImage& image : ReadImageList(list)) {
+    images.push_back(ImagePath(dataset, image.image, list.string()));
+  }
   const YoloFormat format = FindFormat(network, static_cast<int>(labels.names.size()), options,
                                        ReadImage(images.front(), cv::IMREAD_COLOR).size());
   const auto detect = [&](const std::vector<fs::path>& some, ImageOrientation orientation) {
     return DetectAll(some, network, format, labels, options, orientation, threads);
   };
-  AllDetections all = detect(images, ImageOrientation::kUpright);
-  if (options.image_orientation == ImageOrientation::kStored) {
-    const auto detect_stored = [&](const std::vector<fs::path>& turned) {
-      return detect(turned, ImageOrientation::kStored);
-    };
-    TurnToStored(images, detect_stored, &all);
-  }
+  // What was found in place of "auto" and "surer": the same comes out again.
+  DetectorOptions found = options;
+  const AllDetections all = DetectInBoth(images, detect, &found.image_orientation);
   CheckBoxesArePossible(all.tally, format, network.name);
-  const auto boxes = KeptBoxes(all.of_image, labels);
+  std::vector<LabelledBox> boxes;
+  for (size_t i = 0; i < images.size(); ++i) {
+    for (const YoloDetection& found : all.of_image[i]) {
+      const int index = found.class_index;
+      if (!labels.are_kept[index]) continue;
+      boxes.push_back({"", static_cast<int>(i), labels.names[index], found.score, found.box});
+    }
+  }
   if (boxes.empty()) {
     throw NothingUsableError(fmt::format(
         "{}: nothing was detected in {} images with a score of at least {}{}; taken for {}: do "
@@ -226,9 +223,8 @@ void RunDetect(const DetectorOptions& options, const StageFiles& files, int thre
         format.Text()));
   }
   std::vector<fs::path> inputs = images;
-  inputs.insert(inputs.end(), {dataset / "rgb.txt", files.at("network")});
+  inputs.insert(inputs.end(), {list, files.at("network")});
   if (files.contains("labels")) inputs.push_back(files.at("labels"));
-  DetectorOptions found = options;  // the format in place of "auto": the same comes out again
   found.output_layout = format.layout;
   found.pixel_values = format.pixel_values;
   found.input_width = format.input.width;

@@ -19,19 +19,6 @@ namespace soslam {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-// Checks the image size, as nearest edges are stored as 16-bit coordinates.
-void CheckCamera(const Camera& camera, const fs::path& sequence_file) {
-  constexpr int kMaxSide = std::numeric_limits<std::int16_t>::max();
-  if (std::max(camera.width, camera.height) > kMaxSide) {
-    throw InputError(fmt::format("{}: camera is {} x {} pixels; expected at most {} a side",
-                                 sequence_file.string(), camera.width, camera.height, kMaxSide));
-  }
-}
-
-}  // namespace
-
 void RunEdges(const EdgesOptions& options, const StageFiles& files, int threads) {
   options.Check();
   const fs::path& sequence_file = files.at("sequence");
@@ -39,7 +26,13 @@ void RunEdges(const EdgesOptions& options, const StageFiles& files, int threads)
   const std::vector<FrameImage> images = FrameImages(sequence, files.at("dataset"), sequence_file);
   std::vector<fs::path> inputs = {sequence_file};
   for (const FrameImage& image : images) {
-    CheckCamera(sequence.CameraOf(*image.frame), sequence_file);
+    // Nearest edges are stored as 16-bit coordinates.
+    constexpr int kMaxSide = std::numeric_limits<std::int16_t>::max();
+    const Camera& camera = sequence.CameraOf(*image.frame);
+    if (std::max(camera.width, camera.height) > kMaxSide) {
+      throw InputError(fmt::format("{}: camera is {} x {} pixels; expected at most {} a side",
+                                   sequence_file.string(), camera.width, camera.height, kMaxSide));
+    }
     inputs.push_back(image.path);
   }
   EdgesWriter writer(files.at("output"), {OptionsToJson(options), inputs});

@@ -57,26 +57,6 @@ void CheckFiles(const ExportOptions& options, const StageFiles& files) {
   }
 }
 
-// Map quality from the evaluation of the map; null where the dataset has no ground truth.
-nlohmann::json ReadQuality(const fs::path& metrics, const fs::path& map) {
-  CheckWasMadeOf(metrics, "metrics", map);
-  return ReadArtefact(metrics, "metrics").value("map_quality", nlohmann::json());
-}
-
-void ApplyEvaluation(const ExportOptions& options, const StageFiles& files,
-                     std::vector<World>* worlds) {
-  if (!files.contains("metrics")) return;
-  const nlohmann::json quality = ReadQuality(files.at("metrics"), files.at("map"));
-  if (!quality.is_null()) {
-    AddVerdicts(quality, worlds);
-    if (options.aligned) AlignWorlds(quality, worlds);
-  } else if (options.aligned) {
-    throw NothingUsableError(files.at("metrics").string() +
-                             ": has no map_quality, so no alignment; expected metrics of a map "
-                             "whose dataset says what is true (objects.json)");
-  }
-}
-
 std::vector<World> ReadWorlds(const ExportOptions& options, const StageFiles& files) {
   const PlaneNeed need = OnlyTrajectory(files) ? PlaneNeed::kNotNeeded : PlaneNeed::kNeeded;
   const Sequence sequence = ReadSequence(files.at("sequence"), need);
@@ -84,32 +64,19 @@ std::vector<World> ReadWorlds(const ExportOptions& options, const StageFiles& fi
   if (!files.contains("map")) return WorldsOfOdometry(sequence);
   CheckWasMadeOf(files.at("map"), "map", files.at("sequence"));
   std::vector<World> worlds = WorldsOfMap(sequence, ReadMap(files.at("map"), sequence));
-  ApplyEvaluation(options, files, &worlds);
+  if (!files.contains("metrics")) return worlds;
+  const fs::path& metrics = files.at("metrics");
+  CheckWasMadeOf(metrics, "metrics", files.at("map"));
+  const auto quality = ReadArtefact(metrics, "metrics").value("map_quality", nlohmann::json());
+  if (!quality.is_null()) {
+    AddVerdicts(quality, &worlds);
+    if (options.aligned) AlignWorlds(quality, &worlds);
+  } else if (options.aligned) {
+    throw NothingUsableError(metrics.string() +
+                             ": has no map_quality, so no alignment; expected metrics of a map "
+                             "whose dataset says what is true (objects.json)");
+  }
   return worlds;
-}
-
-bool HasLandmark(const World& world) {
-  return std::ranges::any_of(world.objects, [](const WorldObject& object) {
-    return object.estimate.landmark_in_world.has_value();
-  });
-}
-
-void CheckWorlds(const std::vector<World>& worlds, const StageFiles& files) {
-  const bool has_frame =
-      std::ranges::any_of(worlds, [](const World& world) { return !world.frames.empty(); });
-  if (files.contains("trajectory") && !has_frame) {
-    throw NothingUsableError(files.at("sequence").string() + ": has no poses of this kind");
-  }
-  if (!OnlyTrajectory(files) && std::ranges::none_of(worlds, HasLandmark)) {
-    throw NothingUsableError(files.at(files.contains("map") ? "map" : "sequence").string() +
-                             ": has no landmarks of this kind");
-  }
-}
-
-// Path of a segment's file: map.ply and segment 3 give map-3.ply.
-fs::path SegmentPath(const fs::path& path, int segment) {
-  return path.parent_path() /
-         fmt::format("{}-{}{}", path.stem().string(), segment, path.extension().string());
 }
 
 // Creates all outputs before any is written, so that a failure leaves no partial result.
@@ -125,8 +92,11 @@ std::vector<Output> MakeOutputs(const std::vector<World>& worlds, const ExportOp
     if (!files.contains(name)) return;
     const fs::path& path = files.at(name);
     for (const World& world : worlds) {
+      // With several segments, segment 3 of map.ply becomes map-3.ply.
+      const std::string name_of_segment =
+          fmt::format("{}-{}{}", path.stem().string(), world.segment, path.extension().string());
       outputs.push_back(
-          {worlds.size() == 1 ? path : SegmentPath(path, world.segment), text(world)});
+          {worlds.size() == 1 ? path : path.parent_path() / name_of_segment, text(world)});
     }
   };
   const LabelColours colours = ColoursOfLabels(worlds);
@@ -150,7 +120,20 @@ std::vector<Output> MakeOutputs(const std::vector<World>& worlds, const ExportOp
 void RunExport(const ExportOptions& options, const StageFiles& files, int /*threads*/) {
   CheckFiles(options, files);
   const std::vector<World> worlds = ReadWorlds(options, files);
-  CheckWorlds(worlds, files);
+  const bool has_frame =
+      std::ranges::any_of(worlds, [](const World& world) { return !world.frames.empty(); });
+  if (files.contains("trajectory") && !has_frame) {
+    throw NothingUsableError(files.at("sequence").string() + ": has no poses of this kind");
+  }
+  const bool has_landmark = std::ranges::any_of(worlds, [](const World& world) {
+    return std::ranges::any_of(world.objects, [](const WorldObject& object) {
+      return object.estimate.landmark_in_world.has_value();
+    });
+  });
+  if (!OnlyTrajectory(files) && !has_landmark) {
+    throw NothingUsableError(files.at(files.contains("map") ? "map" : "sequence").string() +
+                             ": has no landmarks of this kind");
+  }
   for (const Output& output : MakeOutputs(worlds, options, files)) {
     WriteTextFile(output.path, output.bytes);
     fmt::print("{}\n", output.path.string());

@@ -62,10 +62,9 @@ constexpr int kFewestToJudge = 6;
 
 bool IsMoreThanAThird(int part, int all) { return all >= kFewestToJudge && 3 * part > all; }
 
-// The findings about the video, more than a third of the images left out for one reason, times that
-// contradict the order of more than a third of the photos, and stored photos that EXIF turns.
-std::vector<Finding> CheckFrames(const FrameOptions& options, const ChosenFrames& chosen,
-                                 const std::vector<Photo>& photos) {
+// The findings about the video, more than a third of the images left out for one reason, and times
+// that contradict the order of more than a third of the photos.
+std::vector<Finding> CheckFrames(const ChosenFrames& chosen, const std::vector<Photo>& photos) {
   const FramesRecord& record = chosen.record;
   std::vector<Finding> findings = chosen.findings;
   const int all = static_cast<int>(record.frames.size());
@@ -95,31 +94,7 @@ std::vector<Finding> CheckFrames(const FrameOptions& options, const ChosenFrames
          "if the times are right, rename the photos: exiftool '-FileName<DateTimeOriginal' -d "
          "%Y%m%d_%H%M%S%%-c.%%e FOLDER"});
   }
-  const auto turned = std::ranges::count_if(
-      photos, [](const Photo& photo) { return photo.header.orientation > 1; });
-  if (turned > 0 && options.image_orientation == ImageOrientation::kStored) {
-    findings.push_back(
-        {"image_orientation", Severity::kWarning,
-         fmt::format("{} of {} photos are turned by EXIF, and used as they are stored", turned,
-                     photos.size()),
-         "stored photos that are upright: which way is up is sought as if they were",
-         "photos of a phone that was held upright or upside down, and a model of the stored ones",
-         "compare up in planes.json with the photos; if it is wrong, turn the photos (exiftran "
-         "-ai) and reconstruct them again, or give planes.json"});
-  }
   return findings;
-}
-
-// The text of rgb.txt. Times are those of the video; photos are numbered.
-std::string FrameListText(const std::vector<SourceFrame>& frames) {
-  std::string text = "# timestamp filename\n";
-  int count = 0;
-  for (const SourceFrame& frame : frames) {
-    if (IsLeftOut(frame)) continue;
-    text += fmt::format("{} {}\n", frame.time_s.value_or(count), frame.image);
-    ++count;
-  }
-  return text;
 }
 
 // `focal_over_diagonal`, if known, becomes part of the file, where reconstructions look for it.
@@ -144,15 +119,6 @@ void CheckEnough(const FramesRecord& record, const fs::path& images) {
       "camera sideways, not only turn it",
       images.string(), std::ssize(record.frames) - left_out, record.frames.size(),
       CountsInWords(CountLeftOut(record.frames))));
-}
-
-void WritePhoto(const Photo& photo, const FrameOptions& options, const std::string& name,
-                const DatasetFolder& output) {
-  if (!IsCopied(photo, options)) {
-    return WriteJpeg(ReadImage(photo.path, cv::IMREAD_COLOR, options.image_orientation),
-                     options.max_image_px, photo.header.focal_over_diagonal, name, output);
-  }
-  output.Write(name, ReadWholeFile(photo.path, "photo"));
 }
 
 void WriteVideoFrames(const FramesRecord& record, const fs::path& path, int max_image_px,
@@ -186,24 +152,37 @@ void RunFrames(const FrameOptions& options, const StageFiles& files, int threads
       is_video ? ChooseFromVideo(options, images) : ChoosePhotos(options, images, threads, &photos);
   const FramesRecord& record = chosen.record;
   CheckEnough(record, images);
-  const std::vector<Finding> findings = CheckFrames(options, chosen, photos);
+  const std::vector<Finding> findings = CheckFrames(chosen, photos);
   ReportFindings("frames", findings);
   fs::create_directory(output.Temporary() / "rgb");
   if (is_video) WriteVideoFrames(record, images, options.max_image_px, output);
   ParallelFor("images", photos.size(), threads, [&](size_t i) {
     if (IsLeftOut(record.frames[i])) return;
-    WritePhoto(photos[i], options, record.frames[i].image, output);
+    const Photo& photo = photos[i];
+    const std::string& name = record.frames[i].image;
+    if (IsCopied(photo, options)) {
+      output.Write(name, ReadWholeFile(photo.path, "photo"));
+    } else {
+      WriteJpeg(ReadImage(photo.path, cv::IMREAD_COLOR), options.max_image_px,
+                photo.header.focal_over_diagonal, name, output);
+    }
   });
   if (files.contains("detections")) {
-    const bool is_stored = options.image_orientation == ImageOrientation::kStored;
-    output.Write("detections.csv", FrameBoxesText(files.at("detections"), chosen,
-                                                  is_stored ? photos : std::vector<Photo>()));
+    output.Write("detections.csv", FrameBoxesText(files.at("detections"), chosen));
     chosen.inputs.push_back(files.at("detections"));
   }
   output.Write("README.md", ReadmeText(output));
-  output.Write("rgb.txt", FrameListText(record.frames));
-  output.Write("frames.json", FramesText(folder / "frames.json", record,
-                                         {OptionsToJson(options), chosen.inputs, findings}));
+  std::string list = "# timestamp filename\n";
+  int count = 0;
+  for (const SourceFrame& frame : record.frames) {
+    if (IsLeftOut(frame)) continue;
+    list += fmt::format("{} {}\n", frame.time_s.value_or(count), frame.image);
+    ++count;
+  }
+  output.Write("rgb.txt", list);
+  output.Write("frames.json", ArtefactText(folder / "frames.json", "frames",
+                                           {OptionsToJson(options), chosen.inputs, findings},
+                                           DescribedToJson(record)));
   output.Commit();
   const auto left_out = std::ranges::count_if(record.frames, IsLeftOut);
   fmt::print(

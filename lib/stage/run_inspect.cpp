@@ -12,6 +12,8 @@
 #include "base/paths.h"
 #include "base/text.h"
 #include "dataset/image_path.h"
+#include "evaluation/result_checks.h"
+#include "ground/ground_checks.h"
 #include "inspection/doubts.h"
 #include "inspection/inspection.h"
 #include "inspection/overlay.h"
@@ -135,14 +137,6 @@ void WritePng(const fs::path& path, const cv::Mat& picture) {
   WriteTextFile(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-// Refuses a sequence from which estimates were not made.
-void CheckSequence(const InspectRequest& request) {
-  const std::string kind = ReadArtefactHeader(request.file).at("kind");
-  if (kind == "landmarks" || kind == "map" || kind == "symmetry" || kind == "metrics") {
-    CheckWasMadeOf(request.file, kind, *request.sequence);
-  }
-}
-
 std::string InBrackets(const std::string& doubts) {
   return doubts.empty() ? "" : fmt::format(" (uncertain: {})", doubts);
 }
@@ -152,50 +146,52 @@ std::string InBrackets(const std::string& doubts) {
 std::string WorldInHeadline(const fs::path& path, const Sequence& sequence) {
   constexpr const char* kUnknown = ", scale unknown";
   if (!Exists(path)) return IsInMetresWithoutWorld(sequence) ? "" : kUnknown;
-  const nlohmann::json world = ReadArtefact(path, "world");
+  const Artefact<WorldReport> world = ReadWorld(path);
   std::string words = kUnknown;
-  if (const auto scale = ScaleOfWorld(world)) {
+  if (const auto& scale = world.body.scale) {
     words = fmt::format(", scale +- {:.0f} %{}", HalfIntervalPercent(*scale),
                         InBrackets(ContradictionsInWords(*scale)));
   }
-  const std::string doubt = DoubtOfUp(world);
+  const std::string doubt = DoubtOfUp(world.findings);
   return doubt.empty() ? words : words + ", up" + InBrackets(doubt);
 }
 
 // One line on a map.json, such as "9 objects, scale +- 18 %, 2 objects uncertain": how many objects
 // it has, and how well its scale is known by the world.json beside it, with the reason where
 // something contradicts that. Throws InputError.
-std::string HeadlineOfMap(const fs::path& map, const Sequence& sequence) {
-  const MapEstimate estimate = ReadMap(map, sequence);
-  const std::vector<std::string> doubts = DoubtsOfMap(map.parent_path(), estimate, sequence);
-  size_t placed = 0, uncertain = 0;
-  for (size_t i = 0; i < estimate.objects.size(); ++i) {
-    if (!estimate.objects[i].landmark_in_world) continue;
-    ++placed;
-    if (!doubts[i].empty()) ++uncertain;
-  }
-  std::string line =
-      Counted(placed, "object") + WorldInHeadline(map.parent_path() / "world.json", sequence);
-  if (uncertain > 0) line += fmt::format(", {} uncertain", Counted(uncertain, "object"));
-  return line;
-}
-
 std::string Headline(const InspectRequest& request) {
   const std::string kind = ReadArtefactHeader(request.file).at("kind");
   if (kind != "map") {
     throw SettingsError(fmt::format("{}: there is no headline of kind '{}'; expected a map",
                                     request.file.string(), kind));
   }
-  const fs::path sequence = request.sequence.value_or(request.file.parent_path() / "sequence.json");
-  CheckWasMadeOf(request.file, "map", sequence);
-  return HeadlineOfMap(request.file, ReadSequence(sequence, PlaneNeed::kNotNeeded)) + "\n";
+  const fs::path file = request.sequence.value_or(request.file.parent_path() / "sequence.json");
+  CheckWasMadeOf(request.file, "map", file);
+  const Sequence sequence = ReadSequence(file, PlaneNeed::kNotNeeded);
+  const fs::path folder = request.file.parent_path();
+  const MapEstimate estimate = ReadMap(request.file, sequence);
+  const std::vector<std::string> doubts = DoubtsOfMap(folder, estimate, sequence);
+  size_t placed = 0, uncertain = 0;
+  for (size_t i = 0; i < estimate.objects.size(); ++i) {
+    if (!estimate.objects[i].landmark_in_world) continue;
+    ++placed;
+    if (!doubts[i].empty()) ++uncertain;
+  }
+  std::string line = Counted(placed, "object") + WorldInHeadline(folder / "world.json", sequence);
+  if (uncertain > 0) line += fmt::format(", {} uncertain", Counted(uncertain, "object"));
+  return line + "\n";
 }
 
 }  // namespace
 
 std::string RunInspect(const InspectRequest& request, bool is_coloured) {
   if (request.headline) return Headline(request);
-  if (request.sequence) CheckSequence(request);
+  if (request.sequence) {
+    const std::string kind = ReadArtefactHeader(request.file).at("kind");
+    if (kind == "landmarks" || kind == "map" || kind == "symmetry" || kind == "metrics") {
+      CheckWasMadeOf(request.file, kind, *request.sequence);
+    }
+  }
   if (request.image) WritePng(*request.image, PictureOf(request));
   if (request.image && !request.csv) return "";
   std::optional<Sequence> sequence;

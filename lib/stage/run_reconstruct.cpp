@@ -31,10 +31,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Mark of files that this stage wrote, and may replace: "source" of camera.json, and the beginning
-// of odometry.txt.
-constexpr const char* kSource = "soslam-reconstruct";
-const std::string kOdometryMark = fmt::format("# {}:", kSource);
+// The beginning of an odometry.txt that this stage wrote, and may replace.
+const std::string kOdometryMark = fmt::format("# {}:", kReconstructed);
 
 // What is known before COLMAP runs.
 struct Given {
@@ -43,12 +41,6 @@ struct Given {
   bool camera_is_fixed = false;
   std::vector<std::optional<Rigid3d>> poses;  // one per image; empty: they are estimated
 };
-
-CalibrationChoice ChooseCalibration(CalibrationChoice choice, const fs::path& camera) {
-  if (choice != CalibrationChoice::kAuto) return choice;
-  const bool is_given = Exists(camera) && SourceOfCamera(camera) != kSource;
-  return is_given ? CalibrationChoice::kGiven : CalibrationChoice::kEstimated;
-}
 
 std::vector<std::optional<Rigid3d>> GivenPoses(const fs::path& path, double max_difference_s,
                                                const std::vector<ListedImage>& images) {
@@ -72,7 +64,11 @@ Given ReadGiven(const fs::path& dataset, const ReconstructOptions& options) {
     throw InputError(list.string() + ": has a single image; expected several, from places apart");
   }
   for (ListedImage& image : given.images) image.image = NameInDataset(dataset, image.image);
-  const CalibrationChoice calibration = ChooseCalibration(options.calibration, camera);
+  CalibrationChoice calibration = options.calibration;
+  if (calibration == CalibrationChoice::kAuto) {
+    const bool is_given = Exists(camera) && SourceOfCamera(camera) != kReconstructed;
+    calibration = is_given ? CalibrationChoice::kGiven : CalibrationChoice::kEstimated;
+  }
   if (calibration != CalibrationChoice::kEstimated) given.camera = ReadCamera(camera);
   given.camera_is_fixed = calibration == CalibrationChoice::kGiven;
   if (options.poses == PoseChoice::kEstimated) return given;
@@ -98,15 +94,17 @@ void CheckReplaceable(const fs::path& odometry, const ReconstructOptions& option
 
 // Throws SettingsError if the output would replace a calibration of another source.
 void CheckReplaceable(const fs::path& camera, bool camera_is_fixed) {
-  if (camera_is_fixed || !IsFile(camera) || SourceOfCamera(camera) == kSource) return;
+  if (camera_is_fixed || !IsFile(camera) || SourceOfCamera(camera) == kReconstructed) return;
   throw SettingsError(fmt::format(
       "{}: has a calibration that is not of soslam-reconstruct, which would be replaced; expected "
       "calibration given, to keep it, or another --output",
       camera.string()));
 }
 
-// Throws InputError unless COLMAP can take the images for those of one camera, that of soslam.
-void CheckImages(const fs::path& dataset, const Given& given, ImageOrientation read_as) {
+// Throws InputError unless the images, read so, have one size, that of a given camera, and unless
+// COLMAP, if it is to run, reads them so.
+void CheckImages(const fs::path& dataset, const Given& given, ImageOrientation read_as,
+                 bool has_model) {
   const std::string list = (dataset / "rgb.txt").string();
   std::optional<ImageSize> first;
   if (given.camera) first = {given.camera->camera.width, given.camera->camera.height};
@@ -117,19 +115,19 @@ void CheckImages(const fs::path& dataset, const Given& given, ImageOrientation r
       ReadImage(path, cv::IMREAD_GRAYSCALE);  // its error has the reason
       throw InputError(path.string() + ": cannot be read; expected a JPEG, PNG, WebP, BMP or TIFF");
     }
-    if (header->orientation != 1 && read_as == ImageOrientation::kUpright) {
+    if (header->orientation != 1 && read_as == ImageOrientation::kUpright && !has_model) {
       throw InputError(fmt::format(
           "{}: EXIF turns this image, and COLMAP reads images as they are stored; expected upright "
-          "files: turn them (exiftran -ai), or set image_orientation stored here, in import and "
-          "for soslam-detect",
+          "files: turn them (exiftran -ai), or let soslam-frames write upright ones",
           path.string()));
     }
-    const ImageSize& size = header->stored;
+    const ImageSize size = header->Size(read_as);
     if (!first) first = size;
     if (size.width == first->width && size.height == first->height) continue;
-    throw InputError(fmt::format("{}: is {} x {} pixels; expected {} x {}, as {}", path.string(),
-                                 size.width, size.height, first->width, first->height,
-                                 given.camera ? "camera.json has" : "the first image is"));
+    throw InputError(
+        fmt::format("{}: is {} x {} pixels{}; expected {} x {}, as {}", path.string(), size.width,
+                    size.height, size != header->stored ? " as viewers show it" : "", first->width,
+                    first->height, given.camera ? "camera.json has" : "the first image is"));
   }
 }
 
@@ -177,18 +175,25 @@ ColmapModel LargestModel(const std::vector<fs::path>& folders,
   return largest;
 }
 
-// Throws InputError unless the model has the camera that was given.
+// Throws InputError if the model has another camera than the one that was given.
 void CheckCamera(const ColmapModel& model, const Given& given, const fs::path& dataset) {
-  constexpr double kTolerancePx = 0.01;
+  constexpr double kRoundingPx = 0.01;
   if (!given.camera_is_fixed) return;
   const double displacement_px = DisplacementPx(model.camera, *given.camera);
-  if (displacement_px < kTolerancePx) return;
-  throw InputError(fmt::format(
-      "{}: is another camera than the model's, which displaces image points by {:.2g} px (fx "
-      "{:.2f}, not {:.2f}); expected a model of this camera, or calibration estimated, which "
-      "replaces the file by the model's camera",
+  if (displacement_px < kRoundingPx) return;
+  const double limit_px = UnseenDisplacementPx(given.camera->camera);
+  const std::string found = fmt::format(
+      "{}: image points are {:.2g} px (root mean square) from those of the model's camera (fx "
+      "{:.2f}, not {:.2f})",
       (dataset / "camera.json").string(), displacement_px, model.camera.camera.fx,
-      given.camera->camera.fx));
+      given.camera->camera.fx);
+  if (displacement_px >= limit_px) {
+    throw InputError(fmt::format(
+        "{}; expected a model of this camera, to {:.2g} px; with calibration estimated, the "
+        "output gets the model's camera, and this file stays as it is",
+        found, limit_px));
+  }
+  fmt::print("{}; this file is used, as boxes do not show less than {:.2g} px\n", found, limit_px);
 }
 
 // Throws InputError unless the model's poses are those that were given.
@@ -210,26 +215,20 @@ void CheckPoses(const Reconstruction& reconstruction, const Given& given) {
   }
 }
 
-// The images that have a pose, as a sequence.
-Sequence SequenceOf(const ColmapModel& model, const Reconstruction& reconstruction,
-                    const std::vector<ListedImage>& images, ImageOrientation image_orientation) {
-  Sequence sequence;
-  sequence.camera = model.camera.camera;
-  sequence.image_distortion = model.camera.distortion;
-  sequence.image_orientation = image_orientation;
-  for (size_t i = 0; i < images.size(); ++i) {
-    const auto& pose = reconstruction.world_from_camera[i];
-    if (!pose) continue;
-    sequence.frames.push_back(
-        {static_cast<int>(i), images[i].timestamp, images[i].image, *pose, std::nullopt});
-  }
-  return sequence;
-}
-
 // Gives a finished model points, if its own ones are seen in no image, as those of networks.
 void AddTrackedPoints(const ColmapModel& model, const fs::path& folder, const fs::path& dataset,
-                      const Sequence& sequence, int threads, Reconstruction* reconstruction,
-                      ArtefactInfo* info) {
+                      const std::vector<ListedImage>& listed, ImageOrientation orientation,
+                      int threads, Reconstruction* reconstruction, ArtefactInfo* info) {
+  Sequence sequence;  // the images that have a pose
+  sequence.camera = model.camera.camera;
+  sequence.image_distortion = model.camera.distortion;
+  sequence.image_orientation = orientation;
+  for (size_t i = 0; i < listed.size(); ++i) {
+    const auto& pose = reconstruction->world_from_camera[i];
+    if (!pose) continue;
+    sequence.frames.push_back(
+        {static_cast<int>(i), listed[i].timestamp, listed[i].image, *pose, std::nullopt});
+  }
   const std::vector<FrameImage> images = FrameImages(sequence, dataset, dataset / "rgb.txt");
   for (const FrameImage& image : images) info->inputs.push_back(image.path);
   TrackedPoints tracked = TrackPoints(sequence, images, {}, threads);
@@ -258,7 +257,7 @@ void WriteAll(const fs::path& dataset, const fs::path& output, const Given& give
               const ColmapModel& model, const Reconstruction& reconstruction,
               const ReconstructionSummary& summary, const ArtefactInfo& info) {
   WritePoints(output / "points.h5", reconstruction.points, info);
-  if (summary.poses_are_given) {
+  if (summary.poses == DataSource::kGiven) {
     CopyInto(output, dataset / "odometry.txt");
   } else {
     std::string text = kOdometryMark +
@@ -269,10 +268,10 @@ void WriteAll(const fs::path& dataset, const fs::path& output, const Given& give
     }
     WriteTextFile(output / "odometry.txt", text);
   }
-  if (summary.camera_is_given) {
+  if (summary.camera == DataSource::kGiven) {
     CopyInto(output, dataset / "camera.json");
   } else {
-    WriteTextFile(output / "camera.json", CameraText(model.camera, kSource));
+    WriteTextFile(output / "camera.json", CameraText(model.camera, kReconstructed));
   }
   WriteReconstruction(output / "reconstruction.json", summary, info);
 }
@@ -311,28 +310,26 @@ void RunReconstruct(const ReconstructOptions& options, const StageFiles& files, 
   const Given given = ReadGiven(dataset, options);
   CheckReplaceable(output / "odometry.txt", options);
   CheckReplaceable(output / "camera.json", given.camera_is_fixed);
-  CheckImages(dataset, given, options.image_orientation);
+  CheckImages(dataset, given, options.image_orientation, files.contains("model"));
   std::error_code ignored;  // the first file that is written reports it
   fs::create_directories(output, ignored);
 
   ReconstructionSummary summary;
-  const ColmapModel model =
+  ColmapModel model =
       LargestModel(files.contains("model")
                        ? GivenModels(files.at("model"))
                        : MakeModels(options, given, dataset, output, threads, &summary.colmap),
                    &summary.components);
+  if (files.contains("model")) {
+    TurnModel(given.images, dataset, options.image_orientation, &model);
+  }
   Reconstruction reconstruction = ReconstructionOf(model, given.images);
   CheckCamera(model, given, dataset);
   CheckPoses(reconstruction, given);
   ArtefactInfo info{OptionsToJson(options), model.files, model.findings};
-  if (files.contains("model")) {
-    std::ranges::move(CheckModelOrientation(model, given.images, dataset),
-                      std::back_inserter(info.findings));
-  }
   info.inputs.push_back(dataset / "rgb.txt");
   if (reconstruction.points.empty() && files.contains("model")) {
-    AddTrackedPoints(model, files.at("model"), dataset,
-                     SequenceOf(model, reconstruction, given.images, options.image_orientation),
+    AddTrackedPoints(model, files.at("model"), dataset, given.images, options.image_orientation,
                      threads, &reconstruction, &info);
   }
   if (reconstruction.points.empty()) {
@@ -340,8 +337,8 @@ void RunReconstruct(const ReconstructOptions& options, const StageFiles& files, 
         fmt::format("{}: the model has no points; expected some: do the poses fit the images?",
                     dataset.string()));
   }
-  summary.poses_are_given = !given.poses.empty();
-  summary.camera_is_given = given.camera_is_fixed;
+  if (!given.poses.empty()) summary.poses = DataSource::kGiven;
+  if (given.camera_is_fixed) summary.camera = DataSource::kGiven;
   Summarise(reconstruction, given.images, &summary);
   std::ranges::move(CheckReconstruction(summary, reconstruction.unlisted),
                     std::back_inserter(info.findings));

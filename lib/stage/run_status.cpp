@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "artefact/json_file.h"
-#include "artefact/model_json.h"
 #include "artefact/run_file.h"
 #include "base/error.h"
 #include "base/paths.h"
@@ -180,14 +179,6 @@ struct Diagnosis {
   std::set<std::string> variants;
 };
 
-std::vector<Finding> FindingsInFile(const fs::path& path) {
-  try {
-    return FindingsFromJson(ParseJsonFile(path));
-  } catch (const nlohmann::json::exception& error) {
-    throw InputError(fmt::format("{}: findings: {}", path.string(), error.what()));
-  }
-}
-
 // Findings in the artefacts of a run, or its failure; none where it has not run.
 std::vector<Finding> FindingsOfRun(const StageInstance& instance, const fs::path& results) {
   const fs::path record = results / InstancePath(instance.Id(), "run.json");
@@ -199,7 +190,12 @@ std::vector<Finding> FindingsOfRun(const StageInstance& instance, const fs::path
   for (const StageOutput& output : OutputsOfStage(instance.stage)) {
     const fs::path artefact = results / InstancePath(instance.Id(), output.file);
     if (artefact.extension() != ".json" || !Exists(artefact)) continue;
-    std::ranges::move(FindingsInFile(artefact), std::back_inserter(findings));
+    const nlohmann::json document = ParseJsonFile(artefact);
+    try {
+      std::ranges::move(FindingsOf(document), std::back_inserter(findings));
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: findings: {}", artefact.string(), error.what()));
+    }
   }
   return WorstFirst(std::move(findings));
 }
@@ -222,17 +218,6 @@ std::vector<Diagnosis> DiagnosesOf(const Plan& plan, const fs::path& results) {
   return diagnoses;
 }
 
-void Print(const Diagnosis& diagnosis) {
-  const Finding& finding = diagnosis.finding;
-  const std::string variants = fmt::format("{}", fmt::join(diagnosis.variants, " "));
-  fmt::print("{}: {}{}: {}\n", kSeverityNames[static_cast<size_t>(finding.severity)],
-             diagnosis.stage, variants.empty() ? "" : " (" + variants + ")",
-             OneLine(finding.found));
-  if (finding.expected.empty()) return;
-  fmt::print("  expected      {}\n  likely cause  {}\n  remedy        {}\n",
-             OneLine(finding.expected), OneLine(finding.cause), OneLine(finding.remedy));
-}
-
 }  // namespace
 
 int RunDoctor(const DoctorOptions& options, const StageFiles& files, int /*threads*/) {
@@ -246,7 +231,16 @@ int RunDoctor(const DoctorOptions& options, const StageFiles& files, int /*threa
   const fs::path pipelines = ReadPlanFolders(results / "plan.mk").pipelines;
   const Plan plan = MakePlan(pipelines, options.name, PlannedVariants(pipelines, results));
   const std::vector<Diagnosis> diagnoses = DiagnosesOf(plan, results);
-  for (const Diagnosis& diagnosis : diagnoses) Print(diagnosis);
+  for (const Diagnosis& diagnosis : diagnoses) {
+    const Finding& finding = diagnosis.finding;
+    const std::string variants = fmt::format("{}", fmt::join(diagnosis.variants, " "));
+    fmt::print("{}: {}{}: {}\n", kSeverityNames[static_cast<size_t>(finding.severity)],
+               diagnosis.stage, variants.empty() ? "" : " (" + variants + ")",
+               OneLine(finding.found));
+    if (finding.expected.empty()) continue;
+    fmt::print("  expected      {}\n  likely cause  {}\n  remedy        {}\n",
+               OneLine(finding.expected), OneLine(finding.cause), OneLine(finding.remedy));
+  }
   const auto has_run = [&](const StageInstance& instance) {
     return Exists(results / InstancePath(instance.Id(), "run.json"));
   };

@@ -10,9 +10,16 @@
 #include "stage/track_points.h"
 
 namespace soslam {
-namespace {
-
-void PrintTrackSummary(const Sequence& sequence, const TrackedPoints& tracked) {
+void RunTrack(const TrackOptions& options, const StageFiles& files, int threads) {
+  const std::filesystem::path& sequence_file = files.at("sequence");
+  const Sequence sequence = ReadSequence(sequence_file, PlaneNeed::kNotNeeded);
+  const std::vector<FrameImage> images = FrameImages(sequence, files.at("dataset"), sequence_file);
+  ArtefactInfo info = {OptionsToJson(options), {sequence_file}};
+  for (const FrameImage& image : images) info.inputs.push_back(image.path);
+  const TrackedPoints tracked = TrackPoints(sequence, images, options, threads);
+  info.findings = tracked.findings;
+  ReportFindings("track", info.findings);
+  WritePoints(files.at("output"), tracked.points, info);
   const std::vector<MapPoint>& points = tracked.points;
   if (points.empty()) {
     fmt::print("{}: no point from {} tracks\n", sequence.name, tracked.tracks);
@@ -27,21 +34,6 @@ void PrintTrackSummary(const Sequence& sequence, const TrackedPoints& tracked) {
       sequence.name, points.size(), tracked.tracks,
       *MedianOf(ValuesOf(points, &MapPoint::reprojection_error_px)),
       *MedianOf(ValuesOf(points, views)));
-}
-
-}  // namespace
-
-void RunTrack(const TrackOptions& options, const StageFiles& files, int threads) {
-  const std::filesystem::path& sequence_file = files.at("sequence");
-  const Sequence sequence = ReadSequence(sequence_file, PlaneNeed::kNotNeeded);
-  const std::vector<FrameImage> images = FrameImages(sequence, files.at("dataset"), sequence_file);
-  ArtefactInfo info = {OptionsToJson(options), {sequence_file}};
-  for (const FrameImage& image : images) info.inputs.push_back(image.path);
-  const TrackedPoints tracked = TrackPoints(sequence, images, options, threads);
-  info.findings = tracked.findings;
-  ReportFindings("track", info.findings);
-  WritePoints(files.at("output"), tracked.points, info);
-  PrintTrackSummary(sequence, tracked);
 }
 
 }  // namespace soslam

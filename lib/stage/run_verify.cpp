@@ -14,30 +14,6 @@
 namespace soslam {
 namespace {
 
-void Print(const DatasetRuns& dataset, const Verification& verification) {
-  for (const Discrepancy& discrepancy : verification.discrepancies) {
-    fmt::print("{} ({})\n", discrepancy.text, fmt::join(discrepancy.variants, ", "));
-  }
-  for (const std::string& run : dataset.unused) {
-    fmt::print("{}: no variant uses it any more; not compared\n", (dataset.results / run).string());
-  }
-}
-
-std::vector<Cell> Row(const DatasetRuns& dataset, const Verification& verification) {
-  std::set<std::string> affected;
-  for (const Discrepancy& discrepancy : verification.discrepancies) {
-    affected.insert(discrepancy.variants.begin(), discrepancy.variants.end());
-  }
-  const std::string names =
-      affected.empty() ? kNoValue : fmt::format("{}", fmt::join(affected, " "));
-  return {dataset.name,
-          names,
-          fmt::format("{}", dataset.runs.size() + dataset.exports.size()),
-          fmt::format("{}", dataset.unused.size()),
-          fmt::format("{}", verification.files),
-          fmt::format("{}", verification.discrepancies.size())};
-}
-
 // The runs in folder "results", of datasets in folder "data_root".
 std::vector<DatasetRuns> FindRunsOf(const StageFiles& files) {
   const auto data_root = files.find("data_root");
@@ -55,8 +31,20 @@ int RunVerify(const NoOptions& /*options*/, const StageFiles& files, int /*threa
   bool has_findings = false;
   for (const DatasetRuns& dataset : FindRunsOf(files)) {
     const Verification verification = Verify(dataset);
-    Print(dataset, verification);
-    table.rows.push_back(Row(dataset, verification));
+    std::set<std::string> affected;
+    for (const Discrepancy& discrepancy : verification.discrepancies) {
+      fmt::print("{} ({})\n", discrepancy.text, fmt::join(discrepancy.variants, ", "));
+      affected.insert(discrepancy.variants.begin(), discrepancy.variants.end());
+    }
+    for (const std::string& run : dataset.unused) {
+      fmt::print("{}: no variant uses it any more; not compared\n",
+                 (dataset.results / run).string());
+    }
+    table.rows.push_back({dataset.name,
+                          affected.empty() ? kNoValue : fmt::format("{}", fmt::join(affected, " ")),
+                          std::to_string(dataset.runs.size() + dataset.exports.size()),
+                          std::to_string(dataset.unused.size()), std::to_string(verification.files),
+                          std::to_string(verification.discrepancies.size())});
     has_findings = has_findings || !verification.discrepancies.empty();
   }
   fmt::print("{}", ToMarkdown(table));

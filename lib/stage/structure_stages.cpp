@@ -65,7 +65,7 @@ void RunAssociate(const AssociateOptions& options, const StageFiles& files, int 
   }
   const Sequence associated = AssociatedSequence(sequence, association, agreement);
   ReportFindings("associate", info.findings);
-  WriteAssociations(files.at("associations"), sequence, association, agreement, info);
+  WriteAssociations(files.at("associations"), ReportOf(sequence, association, agreement), info);
   WriteSequence(files.at("output"), associated, info);
   fmt::print("{} objects with {} of {} detections; tracks: {}\n", association.objects.size(),
              associated.detections.size(), sequence.detections.size(), DescribeTracks(association));
@@ -107,35 +107,28 @@ MapEstimate Adjusted(const Sequence& sequence, std::vector<std::optional<ShapePr
   return OptimiseMap(input, optimise, threads);
 }
 
-// Replaces a plane by an optimised one; `covariance` is over (normal, offset).
-void Replace(const Plane& plane_in_world, const std::optional<Eigen::Matrix4d>& covariance,
-             EstimatedPlane* plane) {
-  const Eigen::Vector3d& normal = plane_in_world.normal;
-  plane->plane_in_world = plane_in_world;
-  plane->point_in_world -= plane_in_world.SignedDistance(plane->point_in_world) * normal;
-  const Eigen::Vector3d x =
-      (plane->x_axis_in_world - normal.dot(plane->x_axis_in_world) * normal).normalized();
-  plane->x_axis_in_world = x;
-  plane->covariance.reset();
-  if (!covariance) return;
-  // Rotations about x and y move the normal by -y and x; the translation is at the point.
-  Eigen::Matrix<double, 3, 4> motion;
-  motion << -normal.cross(x).transpose(), 0.0, x.transpose(), 0.0,
-      -plane->point_in_world.transpose(), -1.0;
-  plane->covariance = motion * *covariance * motion.transpose();
-}
-
 // Optimises poses, planes and bodies jointly; the poses of `level` are replaced.
 void RefineWithPoses(const std::vector<std::optional<ShapePrior>>& priors,
                      const PlanesOptions& options, int threads, PlanesEstimate* estimate,
                      Sequence* level) {
   const MapEstimate map = Adjusted(WithPlanes(*level, *estimate), priors, options, threads);
   for (size_t i = 0; i < map.planes_in_world.size(); ++i) {
+    EstimatedPlane& plane = estimate->planes[i];
+    plane.plane_in_world = map.planes_in_world[i];
+    const Eigen::Vector3d& normal = plane.plane_in_world.normal;
+    plane.point_in_world -= plane.plane_in_world.SignedDistance(plane.point_in_world) * normal;
+    const Eigen::Vector3d x =
+        (plane.x_axis_in_world - normal.dot(plane.x_axis_in_world) * normal).normalized();
+    plane.x_axis_in_world = x;
+    plane.covariance.reset();
     const auto covariance = map.plane_covariances.find(static_cast<int>(i));
-    Replace(map.planes_in_world[i],
-            covariance == map.plane_covariances.end() ? std::nullopt
-                                                      : std::optional(covariance->second),
-            &estimate->planes[i]);
+    if (covariance == map.plane_covariances.end()) continue;
+    // From (normal, offset): rotations about x and y move the normal by -y and x; the translation
+    // is at the point.
+    Eigen::Matrix<double, 3, 4> motion;
+    motion << -normal.cross(x).transpose(), 0.0, x.transpose(), 0.0,
+        -plane.point_in_world.transpose(), -1.0;
+    plane.covariance = motion * covariance->second * motion.transpose();
   }
   for (size_t i = 0; i < level->frames.size(); ++i) {
     level->frames[i].world_from_camera = map.world_from_camera[i];
@@ -257,24 +250,12 @@ void RunPlanes(const PlanesOptions& options, const StageFiles& files, int thread
   }
   ReportFindings("planes", info.findings);
   // Planes are not compared with themselves.
-  WritePlanes(files.at("report"), result.estimate, has_planes ? WithoutPlanes(sequence) : sequence,
-              info);
+  WritePlanes(files.at("report"),
+              ReportOf(result.estimate, has_planes ? WithoutPlanes(sequence) : sequence), info);
   WriteSequence(files.at("output"), result.sequence, info);
   fmt::print("{}: {} planes of {} objects\n", sequence.name, result.estimate.planes.size(),
              sequence.objects.size());
 }
-
-namespace {
-
-std::string ScaleInWords(const std::optional<WorldScale>& scale) {
-  if (!scale) return "unknown scale";
-  const std::string contradictions = ContradictionsInWords(*scale);
-  return fmt::format("scale +- {:.0f} % (95 %) from {}{}{}", HalfIntervalPercent(*scale),
-                     SourcesInWords(*scale),
-                     contradictions.empty() ? "" : ", uncertain: ", contradictions);
-}
-
-}  // namespace
 
 void RunGround(const GroundOptions& options, const StageFiles& files, int threads) {
   if (options.ground == GroundSource::kGiven) {
@@ -296,15 +277,22 @@ void RunGround(const GroundOptions& options, const StageFiles& files, int thread
                       std::back_inserter(info.findings));
   }
   ReportFindings("ground", info.findings);
-  WriteWorld(files.at("world"), estimate, sequence, info);
+  WriteWorld(files.at("world"), ReportOf(estimate, sequence, info.findings), info);
   Sequence grounded = WithGround(sequence, estimate);
   for (size_t i = 0; i < views.size(); ++i) {
     views[i].world_from_camera = grounded.frames[i].world_from_camera;
   }
   SetSceneAxes(views, options.upright.ViewCorrelation(), &grounded);
   WriteSequence(files.at("output"), grounded, info);
+  std::string scale_in_words = "unknown scale";
+  if (const auto scale = WorldScaleOf(estimate, info.findings)) {
+    const std::string contradictions = ContradictionsInWords(*scale);
+    scale_in_words = fmt::format("scale +- {:.0f} % (95 %) from {}{}{}",
+                                 HalfIntervalPercent(*scale), SourcesInWords(*scale),
+                                 contradictions.empty() ? "" : ", uncertain: ", contradictions);
+  }
   fmt::print("{}: up +- {:.1f} degrees (one standard deviation), {}, {}\n", sequence.name,
-             kDegPerRad * estimate.tilt_sigma, ScaleInWords(WorldScaleOf(estimate, info.findings)),
+             kDegPerRad * estimate.tilt_sigma, scale_in_words,
              Counted(estimate.planes.size(), "support plane"));
 }
 

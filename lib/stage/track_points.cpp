@@ -17,21 +17,6 @@
 namespace soslam {
 namespace {
 
-// Homography between two images of a camera that only turns: where points at infinity move.
-Eigen::Matrix3d TurnOf(const Sequence& sequence, const Frame& from, const Frame& to) {
-  const Eigen::Quaterniond to_from_from =
-      to.world_from_camera.rotation.conjugate() * from.world_from_camera.rotation;
-  return sequence.CameraOf(to).Intrinsics() * to_from_from.toRotationMatrix() *
-         sequence.CameraOf(from).Intrinsics().inverse();
-}
-
-bool MayShareFeatures(const Sequence& sequence, const Frame& one, const Frame& other) {
-  const Camera& camera = sequence.CameraOf(one);
-  const Camera& other_camera = sequence.CameraOf(other);
-  return one.segment == other.segment && camera.width == other_camera.width &&
-         camera.height == other_camera.height;
-}
-
 std::vector<FeatureTrack> TracksOf(const Sequence& sequence, const std::vector<FrameImage>& images,
                                    const FeatureTrackOptions& options, int threads) {
   const FrameImageReader reader(sequence);
@@ -46,34 +31,30 @@ std::vector<FeatureTrack> TracksOf(const Sequence& sequence, const std::vector<F
       const size_t index = begin + i;
       const Frame& frame = *images[index].frame;
       const Frame& last = index > 0 ? *images[index - 1].frame : frame;
-      if (!MayShareFeatures(sequence, last, frame)) tracker.Cut();
-      tracker.Add(grey[i], TurnOf(sequence, last, frame));
+      const Camera &camera = sequence.CameraOf(frame), &before = sequence.CameraOf(last);
+      const bool may_share_features = last.segment == frame.segment &&
+                                      before.width == camera.width &&
+                                      before.height == camera.height;
+      if (!may_share_features) tracker.Cut();
+      // Homography between two images of a camera that only turns: where points at infinity move.
+      const Eigen::Quaterniond frame_from_last =
+          frame.world_from_camera.rotation.conjugate() * last.world_from_camera.rotation;
+      tracker.Add(grey[i], camera.Intrinsics() * frame_from_last.toRotationMatrix() *
+                               before.Intrinsics().inverse());
       progress.Step();
     }
   }
   return tracker.Tracks();
 }
 
-// The image points of a track, in the order of its places.
-std::vector<PointView> ViewsOf(const Sequence& sequence, const std::vector<FrameImage>& images,
-                               const FeatureTrack& track) {
-  std::vector<PointView> views;
-  for (const FeatureTrack::Place& place : track.places) {
-    const Frame& frame = *images[place.image].frame;
-    views.push_back({sequence.CameraOf(frame), frame.world_from_camera.Inverse(), place.pixel});
-  }
-  return views;
-}
-
-Eigen::Vector2d StoredPixel(const Sequence& sequence, const PointView& view) {
-  if (!sequence.image_distortion) return view.pixel;
-  return DistortPixels(view.camera, *sequence.image_distortion, {view.pixel}).front();
-}
-
 // None if a track's image points are not those of one static point, or it is too far away.
 std::optional<MapPoint> PointOf(const Sequence& sequence, const std::vector<FrameImage>& images,
                                 const FeatureTrack& track, const TrackOptions& options) {
-  const std::vector<PointView> all = ViewsOf(sequence, images, track);
+  std::vector<PointView> all;
+  for (const FeatureTrack::Place& place : track.places) {
+    const Frame& frame = *images[place.image].frame;
+    all.push_back({sequence.CameraOf(frame), frame.world_from_camera.Inverse(), place.pixel});
+  }
   const double max_error_px = options.max_reprojection_error_px;
   const auto min_views = static_cast<size_t>(options.min_views);
   if (all.size() < min_views) return std::nullopt;
@@ -101,32 +82,12 @@ std::optional<MapPoint> PointOf(const Sequence& sequence, const std::vector<Fram
   for (size_t i = 0; i < all.size(); ++i) {
     if (is_far_from(*first)(all[i])) continue;
     const Frame& frame = *images[track.places[i].image].frame;
-    result.observations.push_back({frame.id, StoredPixel(sequence, all[i])});
+    const auto& distortion = sequence.image_distortion;
+    result.observations.push_back(
+        {frame.id, distortion ? DistortPixels(all[i].camera, *distortion, {all[i].pixel}).front()
+                              : all[i].pixel});
   }
   return result;
-}
-
-std::vector<MapPoint> PointsOf(const Sequence& sequence, const std::vector<FrameImage>& images,
-                               const std::vector<FeatureTrack>& tracks, const TrackOptions& options,
-                               int threads) {
-  std::vector<std::optional<MapPoint>> found(tracks.size());
-  ParallelFor(tracks.size(), threads,
-              [&](size_t i) { found[i] = PointOf(sequence, images, tracks[i], options); });
-  std::vector<MapPoint> points;
-  for (auto& point : found) {
-    if (point) points.push_back(std::move(*point));
-  }
-  return points;
-}
-
-// Whether all cameras are in one place, up to rounding.
-bool IsAtRest(const std::vector<FrameImage>& images) {
-  constexpr double kRounding = 1e-9;
-  return std::ranges::all_of(images, [&](const FrameImage& image) {
-    const Eigen::Vector3d& first = images.front().frame->world_from_camera.translation;
-    const Eigen::Vector3d& place = image.frame->world_from_camera.translation;
-    return (place - first).norm() <= kRounding * (1.0 + first.norm());
-  });
 }
 
 // Why no track gives a point.
@@ -138,6 +99,12 @@ std::vector<Finding> CheckPoints(const std::vector<MapPoint>& points,
   const auto is_long = [&](const FeatureTrack& track) {
     return track.places.size() >= static_cast<size_t>(options.min_views);
   };
+  const bool is_at_rest = std::ranges::all_of(images, [&](const FrameImage& image) {
+    constexpr double kRounding = 1e-9;
+    const Eigen::Vector3d& first = images.front().frame->world_from_camera.translation;
+    const Eigen::Vector3d& place = image.frame->world_from_camera.translation;
+    return (place - first).norm() <= kRounding * (1.0 + first.norm());
+  });
   struct Reason {
     bool applies;
     std::string cause;
@@ -151,7 +118,7 @@ std::vector<Finding> CheckPoints(const std::vector<MapPoint>& points,
        fmt::format("no track over {} images: they show little texture, or have little in common",
                    options.min_views),
        "images closer together"},
-      {IsAtRest(images), "the camera does not move: all poses have one place",
+      {is_at_rest, "the camera does not move: all poses have one place",
        "images from several places"},
       {true, "the poses do not fit the images, or the camera hardly moves",
        "check that poses and images have the same order and time stamps"}};
@@ -167,7 +134,13 @@ std::vector<Finding> CheckPoints(const std::vector<MapPoint>& points,
 TrackedPoints TrackPoints(const Sequence& sequence, const std::vector<FrameImage>& images,
                           const TrackOptions& options, int threads) {
   const std::vector<FeatureTrack> tracks = TracksOf(sequence, images, options.features, threads);
-  TrackedPoints tracked{PointsOf(sequence, images, tracks, options, threads), tracks.size(), {}};
+  std::vector<std::optional<MapPoint>> found(tracks.size());
+  ParallelFor(tracks.size(), threads,
+              [&](size_t i) { found[i] = PointOf(sequence, images, tracks[i], options); });
+  TrackedPoints tracked{{}, tracks.size(), {}};
+  for (auto& point : found) {
+    if (point) tracked.points.push_back(std::move(*point));
+  }
   tracked.findings = CheckPoints(tracked.points, images, tracks, options);
   return tracked;
 }

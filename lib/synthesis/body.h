@@ -13,6 +13,7 @@ namespace soslam {
 
 enum class Shape { kBox, kEllipsoid, kCylinder };
 inline constexpr std::array kShapeNames = {"box", "ellipsoid", "cylinder"};  // in files
+inline constexpr const auto& NamesOf(Shape) { return kShapeNames; }
 
 // Exponents of the landmark that has this shape: an ellipsoid, the box around it, or the upright
 // (elliptic) cylinder between them, with its axis along z.

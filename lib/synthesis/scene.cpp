@@ -8,16 +8,10 @@
 #include <map>
 
 #include "artefact/json_file.h"
-#include "artefact/model_json.h"
 #include "base/error.h"
 #include "geometry/angles.h"
 
 namespace soslam {
-
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE_WITH_DEFAULT(SceneNoise, box_edge_sigma, box_sigma_px,
-                                                miss_probability, odometry_translation_sigma,
-                                                odometry_scale_sigma, odometry_rotation_sigma_deg,
-                                                image_sigma)
 
 namespace {
 
@@ -156,97 +150,17 @@ std::vector<Rigid3d> TruePoses(const Scene& scene) {
 
 namespace {
 
-using nlohmann::json;
-
-Plane ParsePlane(const json& document, const std::string& where) {
-  constexpr double kTolerance = 1e-6;  // rounding of a unit vector
-  const auto normal = document.at("normal").get<Eigen::Vector3d>();
-  if (!(std::abs(normal.norm() - 1.0) <= kTolerance)) {
-    throw InputError(
-        fmt::format("{}/normal: has length {}, expected a unit vector", where, normal.norm()));
-  }
-  return {normal.normalized(), document.at("d").get<double>()};
-}
-
-TableTop ParseTable(const json& document) {
-  TableTop table;
-  table.position_on_plane = document.at("position").get<Eigen::Vector2d>();
-  table.half_size = document.at("half_size").get<Eigen::Vector2d>();
-  table.yaw = document.value("yaw_deg", 0.0) * kRadPerDeg;
-  table.thickness = document.value("thickness", table.thickness);
-  table.leg_length = document.value("leg_length", table.leg_length);
-  return table;
-}
-
-// Throws when two of the array's entries have the same id.
-void CheckUniqueIds(const json& entries, const std::string& where) {
+// Throws when two of the list's entries have the same id.
+template <typename Entries>
+void CheckUniqueIds(const Entries& entries, const std::string& where) {
   std::map<int, size_t> first;
   for (size_t i = 0; i < entries.size(); ++i) {
-    const int id = entries[i].at("id").get<int>();
-    const auto [found, is_new] = first.emplace(id, i);
+    const auto [found, is_new] = first.emplace(entries[i].id, i);
     if (!is_new) {
-      throw InputError(
-          fmt::format("{}/{}/id: {} is already the id of entry {}", where, i, id, found->second));
+      throw InputError(fmt::format("{}/{}/id: {} is already the id of entry {}", where, i,
+                                   entries[i].id, found->second));
     }
   }
-}
-
-std::vector<ScenePlane> ParsePlanes(const json& entries, const std::string& where) {
-  CheckUniqueIds(entries, where);
-  std::vector<ScenePlane> planes;
-  for (size_t i = 0; i < entries.size(); ++i) {
-    const json& entry = entries[i];
-    ScenePlane plane;
-    plane.id = entry.at("id").get<int>();
-    plane.label = entry.at("label").get<std::string>();
-    plane.plane_in_world = ParsePlane(entry, fmt::format("{}/{}", where, i));
-    if (entry.contains("table")) plane.table = ParseTable(entry.at("table"));
-    planes.push_back(plane);
-  }
-  std::ranges::sort(planes, {}, &ScenePlane::id);
-  return planes;
-}
-
-std::vector<SceneObject> ParseObjects(const json& entries, const std::vector<ScenePlane>& planes,
-                                      const std::string& where) {
-  CheckUniqueIds(entries, where);
-  std::vector<SceneObject> objects;
-  for (size_t i = 0; i < entries.size(); ++i) {
-    const json& entry = entries[i];
-    SceneObject object;
-    object.id = entry.at("id").get<int>();
-    object.label = entry.at("label").get<std::string>();
-    object.shape = EnumFromName<Shape>(kShapeNames, entry.at("shape").get<std::string>());
-    entry.at("half_axes").get_to(object.half_axes);
-    object.position_on_plane = entry.at("position").get<Eigen::Vector2d>();
-    object.yaw = entry.value("yaw_deg", 0.0) * kRadPerDeg;
-    object.rests_on = EnumFromName<RestingFace>(kRestingFaceNames,
-                                                entry.value("rests_on", kRestingFaceNames.front()));
-    if (entry.contains("tilt_deg"))
-      object.tilt = entry.at("tilt_deg").get<Eigen::Vector2d>() * kRadPerDeg;
-    object.texture_seed = entry.value("texture_seed", object.id);
-    const int plane_id = entry.at("plane").get<int>();
-    const auto plane = std::ranges::find(planes, plane_id, &ScenePlane::id);
-    if (plane == planes.end()) {
-      throw InputError(
-          fmt::format("{}/{}/plane: there is no plane with id {}", where, i, plane_id));
-    }
-    object.plane_index = static_cast<int>(plane - planes.begin());
-    objects.push_back(object);
-  }
-  std::ranges::sort(objects, {}, &SceneObject::id);
-  return objects;
-}
-
-Trajectory ParseTrajectory(const json& document) {
-  Trajectory trajectory;
-  trajectory.frames = document.at("frames").get<int>();
-  trajectory.frame_interval = document.at("frame_interval").get<double>();
-  for (const json& waypoint : document.at("waypoints")) {
-    trajectory.waypoints.push_back({waypoint.at("position").get<Eigen::Vector3d>(),
-                                    waypoint.at("look_at").get<Eigen::Vector3d>()});
-  }
-  return trajectory;
 }
 
 // Throws unless the camera at one pose has a free view.
@@ -282,20 +196,26 @@ void CheckTrajectory(const Scene& scene, const std::string& where) {
 
 }  // namespace
 
-Scene ParseScene(const json& document, const std::string& where) {
-  ValidateAgainstSchema(document, "scene", where);
-  Scene scene;
-  scene.name = document.at("name").get<std::string>();
-  scene.camera = document.at("camera").get<Camera>();
-  scene.planes = ParsePlanes(document.at("planes"), where + ": planes");
-  const json walls = document.value("walls", json::array());
-  for (size_t i = 0; i < walls.size(); ++i) {
-    scene.walls_in_world.push_back(ParsePlane(walls[i], fmt::format("{}: walls/{}", where, i)));
+Scene ParseScene(const nlohmann::json& document, const std::string& where) {
+  constexpr int kMaxImagePx = 10'000;
+  auto scene = ReadDocument<Scene>(document, where);
+  if (std::max(scene.camera.width, scene.camera.height) > kMaxImagePx) {
+    throw InputError(fmt::format("{}: /camera is of {} x {} pixels; expected at most {} each",
+                                 where, scene.camera.width, scene.camera.height, kMaxImagePx));
   }
-  scene.objects = ParseObjects(document.at("objects"), scene.planes, where + ": objects");
-  scene.trajectory = ParseTrajectory(document.at("trajectory"));
-  scene.noise = document.value("noise", scene.noise);
-  scene.seed = document.value("seed", 0);
+  CheckUniqueIds(scene.planes, where + ": planes");
+  CheckUniqueIds(scene.objects, where + ": objects");
+  std::ranges::sort(scene.planes, {}, &ScenePlane::id);
+  for (size_t i = 0; i < scene.objects.size(); ++i) {
+    int& plane_index = scene.objects[i].plane_index;  // its id until here
+    const auto plane = std::ranges::find(scene.planes, plane_index, &ScenePlane::id);
+    if (plane == scene.planes.end()) {
+      throw InputError(
+          fmt::format("{}: objects/{}/plane: there is no plane with id {}", where, i, plane_index));
+    }
+    plane_index = static_cast<int>(plane - scene.planes.begin());
+  }
+  std::ranges::sort(scene.objects, {}, &SceneObject::id);
   CheckTrajectory(scene, where);
   return scene;
 }

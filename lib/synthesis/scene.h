@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/angles.h"
 #include "geometry/camera.h"
 #include "geometry/plane.h"
 #include "geometry/rigid3.h"
@@ -87,6 +88,115 @@ struct Scene {
   int seed = 0;  // of all noise
 };
 
+// Descriptions of scene files, see base/description.h. Angles are in degrees there.
+
+// Fields with these names: a plane normal . x + d = 0.
+template <typename Visitor>
+void DescribePlane(Visitor& visit, Plane& plane) {
+  visit.Unit("normal", &plane.normal, "unit normal");
+  visit.Field("d", &plane.offset, "normal . x + d = 0, metres");
+  visit.AfterReading([&] { plane.normal.normalize(); });
+}
+
+// An angle (rad) as a field in degrees, zero if absent.
+template <typename Visitor>
+void DescribeAngle(Visitor& visit, const char* name, double* angle, const char* doc) {
+  double deg = kDegPerRad * *angle;
+  visit.OrDefault(name, &deg, 0.0, doc);
+  visit.AfterReading([&] { *angle = kRadPerDeg * deg; });
+}
+
+template <typename Visitor>
+void Describe(Visitor& visit, TableTop& table) {
+  visit.Field("position", &table.position_on_plane, "of the middle, metres in the plane's frame");
+  visit.Field("half_size", &table.half_size, "metres", kPositive);
+  DescribeAngle(visit, "yaw_deg", &table.yaw, "about the plane's normal");
+  visit.OrDefault("thickness", &table.thickness, TableTop().thickness, "metres", kPositive);
+  visit.OrDefault("leg_length", &table.leg_length, 0.0, "metres, 0: no legs", kNotNegative);
+}
+
+template <typename Visitor>
+void Describe(Visitor& visit, ScenePlane& plane) {
+  visit.Field("id", &plane.id, "id", kNotNegative);
+  visit.Field("label", &plane.label, "category", kNotEmpty);
+  DescribePlane(visit, plane.plane_in_world);
+  visit.OrAbsent("table", &plane.table, "slab under the plane; absent: a floor without end");
+}
+
+template <typename Visitor>
+void Describe(Visitor& visit, SceneObject& object) {
+  visit.Field("id", &object.id, "id", kNotNegative);
+  visit.Field("label", &object.label, "category", kNotEmpty);
+  visit.Check([&] {
+    return object.label.find_first_of(",\"\n\r") == std::string::npos
+               ? std::string()
+               : "label has a comma, quote or line break; expected none";
+  });
+  visit.Field("shape", &object.shape, "box, ellipsoid or upright cylinder");
+  visit.Field("half_axes", &object.half_axes,
+              "along its own x (front), y and z (up as it stands), metres", kPositive);
+  visit.Field("plane", &object.plane_index, "id of the plane that it stands on", kNotNegative);
+  visit.Field("position", &object.position_on_plane, "metres in the plane's frame");
+  DescribeAngle(visit, "yaw_deg", &object.yaw, "about the plane's normal");
+  visit.OrAbsent("rests_on", &object.rests_on,
+                 "face on the plane: on its back, its own front points up; on its side, its own "
+                 "left");
+  Eigen::Vector2d tilt_deg = kDegPerRad * object.tilt;
+  visit.OrDefault(
+      "tilt_deg", &tilt_deg, Eigen::Vector2d(0.0, 0.0),
+      "how it leans: rotation vector about x and y of the frame that yaw turns, whose z "
+      "is the plane's normal; its lowest point is on the plane");
+  visit.AfterReading([&] { object.tilt = tilt_deg * kRadPerDeg; });
+  visit.OrDefault("texture_seed", &object.texture_seed, object.id, "the id if absent",
+                  kNotNegative);
+}
+
+template <typename Visitor>
+void Describe(Visitor& visit, Waypoint& waypoint) {
+  visit.Field("position", &waypoint.position_in_world, "metres");
+  visit.Field("look_at", &waypoint.look_at_in_world, "metres");
+}
+
+template <typename Visitor>
+void Describe(Visitor& visit, Trajectory& trajectory) {
+  visit.Field("frames", &trajectory.frames, "number", {1.0, 1e5});
+  visit.Field("frame_interval", &trajectory.frame_interval, "seconds", kPositive);
+  visit.Field("waypoints", &trajectory.waypoints, "on the path", {.least_items = 1});
+}
+
+template <typename Visitor>
+void Describe(Visitor& visit, SceneNoise& noise) {
+  visit.OrDefault("box_edge_sigma", &noise.box_edge_sigma, 0.0,
+                  "of each box edge, as a fraction of the box's width or height", {0.0, 0.5});
+  visit.OrDefault("box_sigma_px", &noise.box_sigma_px, 0.0, "of each box edge, in addition",
+                  kNotNegative);
+  visit.OrDefault("miss_probability", &noise.miss_probability, 0.0, "of a detection", kShare);
+  visit.OrDefault("odometry_translation_sigma", &noise.odometry_translation_sigma, 0.0,
+                  "random walk on each axis, metres per square root of a metre", kNotNegative);
+  visit.OrDefault("odometry_scale_sigma", &noise.odometry_scale_sigma, 0.0,
+                  "of one scale error for the whole trajectory", {0.0, 0.3});
+  visit.OrDefault("odometry_rotation_sigma_deg", &noise.odometry_rotation_sigma_deg, 0.0,
+                  "random walk, degrees per square root of (metres + turn / 30 degrees)",
+                  kNotNegative);
+  visit.OrDefault("image_sigma", &noise.image_sigma, 0.0, "grey levels", {0.0, 255.0});
+}
+
+template <typename Visitor>
+void Describe(Visitor& visit, Scene& scene) {
+  visit.Field("name", &scene.name, "name of the dataset", kNotEmpty);
+  visit.Field("camera", &scene.camera, "pinhole camera; x right, y down, z forward");
+  visit.Field("planes", &scene.planes,
+              "support planes; the normal of the one with the lowest id is up for the camera",
+              {.least_items = 1});
+  visit.OrAbsent("walls", &scene.walls_in_world,
+                 "planes that are drawn only; the normal points into the room", {},
+                 [](auto& visit, Plane& plane) { DescribePlane(visit, plane); });
+  visit.Field("objects", &scene.objects, "textured solids", {.least_items = 1});
+  visit.Field("trajectory", &scene.trajectory, "of the camera");
+  visit.OrDefault("noise", &scene.noise, SceneNoise(), "of measurements");
+  visit.OrDefault("seed", &scene.seed, 0, "of all noise", kNotNegative);
+}
+
 // Transformation from a plane's own frame to the world, see ScenePlane.
 Rigid3d WorldFromPlane(const Plane& plane_in_world);
 
@@ -104,7 +214,7 @@ std::vector<Landmark> AllBodies(const Scene& scene);
 // its own position, which leaves its roll undefined.
 std::vector<Rigid3d> TruePoses(const Scene& scene);
 
-// The scene in a JSON document, see schemas/scene.schema.json. Throws InputError, naming `where`
+// The scene in a JSON document. Throws InputError, naming `where`
 // and the field, when it is not valid or not possible: a duplicate id, an unknown plane, a normal
 // that is not of unit length, the camera inside an object, behind a plane or looking straight up or
 // down.

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/paths.h"
 #include "cli/command_line.h"
+#include "report/results_tree.h"
 #include "workflow/pipeline_stages.h"
 #include "workflow/unused_settings.h"
 
@@ -80,8 +81,10 @@ void CheckLayer(const json& layer, const std::string& file) {
             fmt::format("{}: '{}' is {}; expected a string", file, key, value.dump()));
       }
     } else if (key == "about") {
-      if (const auto violation = SchemaViolation(value, "about")) {
-        throw SettingsError(fmt::format("{}: about: {}", file, *violation));
+      try {
+        ReadDocument<DatasetFacts>(value, file + ": about");
+      } catch (const InputError& error) {
+        throw SettingsError(error.what());
       }
     } else {
       RefuseOfOtherStages(key, nullptr, file);

@@ -48,15 +48,6 @@ std::map<std::string, ArtefactSource> InputsOf(const std::string& stage, const j
   return inputs;
 }
 
-std::string KeyOf(const StageInstance& instance) {
-  json inputs = json::object();
-  for (const auto& [argument, source] : instance.inputs) inputs[argument] = source.instance;
-  if (!instance.semantic_table.empty()) inputs["table"] = instance.semantic_table;
-  const json identity = {
-      {"stage", instance.stage}, {"settings", instance.settings}, {"inputs", inputs}};
-  return Sha256OfText(identity.dump()).substr(0, kKeyDigits);
-}
-
 StageInstance InstanceOf(const std::string& stage, const VariantSettings& settings,
                          const InstanceIds& before) {
   StageInstance instance;
@@ -64,7 +55,11 @@ StageInstance InstanceOf(const std::string& stage, const VariantSettings& settin
   instance.settings = settings.options.at(stage);
   instance.inputs = InputsOf(stage, instance.settings, before);
   if (StageReads(stage, "table")) instance.semantic_table = settings.semantic_table;
-  instance.key = KeyOf(instance);
+  json inputs = json::object();
+  for (const auto& [argument, source] : instance.inputs) inputs[argument] = source.instance;
+  if (!instance.semantic_table.empty()) inputs["table"] = instance.semantic_table;
+  const json identity = {{"stage", stage}, {"settings", instance.settings}, {"inputs", inputs}};
+  instance.key = Sha256OfText(identity.dump()).substr(0, kKeyDigits);
   return instance;
 }
 

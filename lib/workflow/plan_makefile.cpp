@@ -136,40 +136,27 @@ std::string VariantRules(const Plan& plan, const VariantChain& variant) {
       fmt::arg("links", fmt::join(links, " ")), fmt::arg("targets", fmt::join(targets, " ")));
 }
 
-std::vector<std::string> Prerequisites(const StageInstance& instance) {
-  std::vector<std::string> files;
+std::string InstanceRules(const StageInstance& instance) {
+  std::vector<std::string> prerequisites, outputs;
   const PlanFolders folders = {"$(dataset)", "$(pipelines)", "$(results)", "$(BIN)"};
   for (const auto& file : PrerequisitesOf(instance, folders)) {
-    files.push_back(file.string());
+    prerequisites.push_back(file.string());
   }
-  std::set<std::string> stamps;
-  for (const auto& [argument, source] : instance.inputs) {
-    stamps.insert(Shared(source.instance, "done"));
-  }
-  files.insert(files.end(), stamps.begin(), stamps.end());
-  return files;
-}
-
-std::string Command(const StageInstance& instance) {
   std::string command = "soslam-" + instance.stage;
   if (StageReads(instance.stage, "dataset")) command += " --dataset $(dataset)";
   if (instance.stage == "ground") command += " --points $(dataset)/points.h5";
+  std::set<std::string> stamps;
   for (const auto& [argument, source] : instance.inputs) {
+    stamps.insert(Shared(source.instance, "done"));
     command += fmt::format(" --{} {}", argument, Shared(source.instance, source.file));
   }
+  prerequisites.insert(prerequisites.end(), stamps.begin(), stamps.end());
   if (!instance.semantic_table.empty()) {
     command += " --table $(pipelines)/" + instance.semantic_table;
   }
   for (const StageOutput& output : OutputsOfStage(instance.stage)) {
-    command += fmt::format(" --{} {}", output.argument, Shared(instance.Id(), output.file));
-  }
-  return command;
-}
-
-std::string InstanceRules(const StageInstance& instance) {
-  std::vector<std::string> outputs;
-  for (const StageOutput& output : OutputsOfStage(instance.stage)) {
     outputs.push_back(Shared(instance.Id(), output.file));
+    command += fmt::format(" --{} {}", output.argument, outputs.back());
   }
   const std::string done = Shared(instance.Id(), "done");
   return fmt::format(
@@ -177,10 +164,8 @@ std::string InstanceRules(const StageInstance& instance) {
       "\t$(call stage,{id} ({variants}),{command})\n"
       "{outputs}: {done} ; +\n",
       fmt::arg("done", done), fmt::arg("outputs", fmt::join(outputs, " ")),
-      fmt::arg("id", instance.Id()),
-      fmt::arg("prerequisites", fmt::join(Prerequisites(instance), " ")),
-      fmt::arg("variants", fmt::join(instance.variants, " ")),
-      fmt::arg("command", Command(instance)));
+      fmt::arg("id", instance.Id()), fmt::arg("prerequisites", fmt::join(prerequisites, " ")),
+      fmt::arg("variants", fmt::join(instance.variants, " ")), fmt::arg("command", command));
 }
 
 // Goals for the jobs of a cluster, for what each needs from the trunk, and lists of their

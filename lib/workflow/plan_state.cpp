@@ -34,95 +34,22 @@ std::vector<std::string> LinesOf(const fs::path& file) {
   return lines;
 }
 
-class StateFinder {
- public:
-  StateFinder(const Plan& plan, const PlanFolders& folders, const StagesUnderWay& under_way)
-      : plan_(plan), folders_(folders), under_way_(under_way) {}
-
-  std::map<std::string, InstanceState> Find() {
-    for (const StageInstance& instance : plan_.instances) states_[instance.Id()] = Find(instance);
-    return std::move(states_);
+// Files of a listing newer than `done`. A listing has the dataset's folder in its first line, then
+// lines "<name> <size> <time>" of the files whose content is read, and names of files whose
+// existence alone matters.
+std::string NewerFilesListedIn(const fs::path& listing, const fs::path& dataset,
+                               fs::file_time_type done) {
+  std::vector<std::string> newer;
+  for (const std::string& line : LinesOf(listing)) {
+    const size_t end = line.rfind(' ', line.rfind(' ') - 1);
+    if (end == std::string::npos) continue;
+    const std::string name = line.substr(0, end);
+    const auto time = TimeOf(dataset / name);
+    if (time && *time > done) newer.push_back(name);
   }
-
- private:
-  fs::path Result(const StageInstance& instance, const std::string& file) const {
-    return folders_.results / InstancePath(instance.Id(), file);
-  }
-
-  InstanceState Find(const StageInstance& instance) const {
-    const auto done = TimeOf(Result(instance, "done"));
-    const std::string failure = FailureIn(Result(instance, ""));
-    InstanceState found;
-    if (!failure.empty()) {
-      found.state = StageState::kFailed;
-      found.reasons.push_back("its last run failed: " + failure);
-    } else if (!done) {
-      found.state = StageState::kMissing;
-      found.reasons.emplace_back("it has not run with these settings and inputs");
-    }
-    if (done) AddMissingOutputs(instance, &found.reasons);
-    if (done) AddNewerFiles(instance, *done, &found.reasons);
-    AddInputsToCome(instance, &found.reasons);
-    if (found.state == StageState::kDone && !found.reasons.empty()) {
-      found.state = StageState::kStale;
-    }
-    const auto job = under_way_.find(instance.Id());
-    if (found.state != StageState::kDone && job != under_way_.end()) found.state = job->second;
-    return found;
-  }
-
-  void AddMissingOutputs(const StageInstance& instance, std::vector<std::string>* reasons) const {
-    for (const StageOutput& output : OutputsOfStage(instance.stage)) {
-      if (!Exists(Result(instance, output.file))) {
-        reasons->push_back(output.file + ", which it writes, is gone");
-      }
-    }
-  }
-
-  void AddNewerFiles(const StageInstance& instance, fs::file_time_type done,
-                     std::vector<std::string>* reasons) const {
-    for (const fs::path& path : PrerequisitesOf(instance, folders_)) {
-      const auto time = TimeOf(path);
-      if (!time) reasons->push_back(path.string() + " does not exist");
-      if (!time || *time <= done) continue;
-      const bool is_listing =
-          path == folders_.results / kDatasetListing || path == folders_.results / kImagesListing;
-      reasons->push_back(is_listing ? NewerFilesListedIn(path, done)
-                                    : path.string() + " has changed since");
-    }
-  }
-
-  // Files of a listing newer than `done`. A listing has the dataset's folder in its first line,
-  // then lines "<name> <size> <time>" of the files whose content is read, and names of files whose
-  // existence alone matters.
-  std::string NewerFilesListedIn(const fs::path& listing, fs::file_time_type done) const {
-    std::vector<std::string> newer;
-    for (const std::string& line : LinesOf(listing)) {
-      const size_t end = line.rfind(' ', line.rfind(' ') - 1);
-      if (end == std::string::npos) continue;
-      const std::string name = line.substr(0, end);
-      const auto time = TimeOf(folders_.dataset / name);
-      if (time && *time > done) newer.push_back(name);
-    }
-    if (newer.empty()) return "files of the dataset came, went or were replaced since";
-    return "files of the dataset have changed since: " + NamesInWords(newer, 5);
-  }
-
-  void AddInputsToCome(const StageInstance& instance, std::vector<std::string>* reasons) const {
-    for (const auto& [argument, source] : instance.inputs) {
-      const StageState state = states_.at(source.instance).state;
-      if (state != StageState::kDone) {
-        reasons->push_back(fmt::format("{} comes from {}, which is {}", source.file,
-                                       source.instance, NameOf(state)));
-      }
-    }
-  }
-
-  const Plan& plan_;
-  const PlanFolders& folders_;
-  const StagesUnderWay& under_way_;
-  std::map<std::string, InstanceState> states_;
-};
+  if (newer.empty()) return "files of the dataset came, went or were replaced since";
+  return "files of the dataset have changed since: " + NamesInWords(newer, 5);
+}
 
 }  // namespace
 
@@ -146,7 +73,50 @@ std::map<std::string, StagesUnderWay> ReadStagesUnderWay(const fs::path& file) {
 
 std::map<std::string, InstanceState> StatesOf(const Plan& plan, const PlanFolders& folders,
                                               const StagesUnderWay& under_way) {
-  return StateFinder(plan, folders, under_way).Find();
+  std::map<std::string, InstanceState> states;
+  for (const StageInstance& instance : plan.instances) {
+    const auto result = [&](const std::string& file) {
+      return folders.results / InstancePath(instance.Id(), file);
+    };
+    const auto done = TimeOf(result("done"));
+    const std::string failure = FailureIn(result(""));
+    InstanceState found;
+    if (!failure.empty()) {
+      found.state = StageState::kFailed;
+      found.reasons.push_back("its last run failed: " + failure);
+    } else if (!done) {
+      found.state = StageState::kMissing;
+      found.reasons.emplace_back("it has not run with these settings and inputs");
+    }
+    if (done) {
+      for (const StageOutput& output : OutputsOfStage(instance.stage)) {
+        if (Exists(result(output.file))) continue;
+        found.reasons.push_back(output.file + ", which it writes, is gone");
+      }
+      for (const fs::path& path : PrerequisitesOf(instance, folders)) {
+        const auto time = TimeOf(path);
+        if (!time) found.reasons.push_back(path.string() + " does not exist");
+        if (!time || *time <= *done) continue;
+        const bool is_listing =
+            path == folders.results / kDatasetListing || path == folders.results / kImagesListing;
+        found.reasons.push_back(is_listing ? NewerFilesListedIn(path, folders.dataset, *done)
+                                           : path.string() + " has changed since");
+      }
+    }
+    for (const auto& [argument, source] : instance.inputs) {
+      const StageState state = states.at(source.instance).state;
+      if (state == StageState::kDone) continue;
+      found.reasons.push_back(fmt::format("{} comes from {}, which is {}", source.file,
+                                          source.instance, NameOf(state)));
+    }
+    if (found.state == StageState::kDone && !found.reasons.empty()) {
+      found.state = StageState::kStale;
+    }
+    const auto job = under_way.find(instance.Id());
+    if (found.state != StageState::kDone && job != under_way.end()) found.state = job->second;
+    states[instance.Id()] = std::move(found);
+  }
+  return states;
 }
 
 std::vector<std::string> ChangesSinceLastRun(const Plan& plan, const VariantChain& variant,

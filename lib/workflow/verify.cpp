@@ -23,31 +23,6 @@ RecordedRun* Find(const std::string& name, std::vector<RecordedRun>* runs) {
   return found == runs->end() ? nullptr : &*found;
 }
 
-// Appends the runs of all variants. Each variant lists its runs in order, so each run comes after
-// the runs that it reads from.
-void AppendSharedRuns(DatasetRuns* dataset) {
-  for (const VariantRuns& variant : dataset->variants) {
-    for (const std::string& id : variant.runs) {
-      const std::string name = std::string(kShared) + "/" + id;
-      RecordedRun* known = Find(name, &dataset->runs);
-      if (known == nullptr) {
-        known = &dataset->runs.emplace_back(RecordedRun{name, dataset->results / name, {}});
-      }
-      known->variants.push_back(variant.name);
-    }
-  }
-}
-
-void AppendExports(DatasetRuns* dataset) {
-  for (const VariantRuns& variant : dataset->variants) {
-    for (const std::string& folder : SubfoldersOf(dataset->results / variant.name)) {
-      const std::string name = variant.name + "/" + folder;
-      if (!Exists(dataset->results / name / "run.json")) continue;
-      dataset->exports.push_back({name, dataset->results / name, {variant.name}});
-    }
-  }
-}
-
 // Resolves a relative path of a call in the folder of that call, if it still exists.
 fs::path AsCalled(const fs::path& path, const RunRecord& record) {
   return IsFolder(record.called_in) ? record.called_in / path : path;
@@ -83,13 +58,29 @@ DatasetRuns RunsOfDataset(const std::string& name, const fs::path& results,
     if (variant.runs.empty() && variant.problem.empty()) continue;
     dataset.variants.push_back(std::move(variant));
   }
-  AppendSharedRuns(&dataset);
+  // Each variant lists its runs in order, so each run comes after the runs that it reads from.
+  for (const VariantRuns& variant : dataset.variants) {
+    for (const std::string& id : variant.runs) {
+      const std::string shared = std::string(kShared) + "/" + id;
+      RecordedRun* known = Find(shared, &dataset.runs);
+      if (known == nullptr) {
+        known = &dataset.runs.emplace_back(RecordedRun{shared, dataset.results / shared, {}});
+      }
+      known->variants.push_back(variant.name);
+    }
+  }
   if (data_root.empty()) dataset.dataset = FolderOfDataset(dataset);
   for (const std::string& folder : SubfoldersOf(dataset.results / kShared)) {
     const std::string shared = std::string(kShared) + "/" + folder;
     if (Find(shared, &dataset.runs) == nullptr) dataset.unused.push_back(shared);
   }
-  AppendExports(&dataset);
+  for (const VariantRuns& variant : dataset.variants) {
+    for (const std::string& folder : SubfoldersOf(dataset.results / variant.name)) {
+      const std::string run = variant.name + "/" + folder;
+      if (!Exists(dataset.results / run / "run.json")) continue;
+      dataset.exports.push_back({run, dataset.results / run, {variant.name}});
+    }
+  }
   return dataset;
 }
 
@@ -127,134 +118,122 @@ fs::path PathOf(const RunFile& file, const RunRecord& record, const RecordedRun&
 
 namespace {
 
-// SHA-256 of a file; empty when it cannot be read.
-std::string DigestOf(const fs::path& path) {
+bool IsDatasetGone(const DatasetRuns& dataset) {
+  return !dataset.dataset.empty() && !IsFolder(dataset.dataset);
+}
+
+Discrepancy DiscrepancyOf(const fs::path& file, const std::string& problem,
+                          const std::vector<std::string>& variants) {
+  return {fmt::format("{}: {}", file.string(), problem), variants};
+}
+
+// Compares a run with its record, which is left empty where it has none.
+void CheckRun(const DatasetRuns& dataset, const RecordedRun& run, FileDigests* digests,
+              RunRecord* record, std::vector<Discrepancy>* found) {
+  const auto add = [&](const fs::path& file, const std::string& problem) {
+    found->push_back(DiscrepancyOf(file, problem, run.variants));
+  };
+  const std::string failure = FailureIn(run.folder);
+  if (!failure.empty()) add(run.folder, "its last run failed: " + failure);
+  const fs::path file = run.folder / "run.json";
+  if (!Exists(file)) {
+    return add(file, "is missing: the stage has not run, or its record was removed");
+  }
+  const auto check = [&](const RunFile& of_run, const char* what_it_did) {
+    if (of_run.relative_to == "dataset" && IsDatasetGone(dataset)) return;
+    const fs::path path = PathOf(of_run, *record, run, dataset);
+    if (const auto change = digests->ChangeOf(path, of_run.sha256)) {
+      add(path, fmt::format("{} since {} {} it", *change, run.name, what_it_did));
+    }
+  };
   try {
-    return IsFile(path) ? Sha256OfFile(path) : "";
-  } catch (const InputError&) {
-    return "";
+    *record = ReadRun(file);
+    if (record->exit_code == 0 && record->outputs.empty()) {
+      add(file, "has no outputs; expected those of a run that did not fail");
+    } else if (record->exit_code == 0) {
+      for (const RunFile& output : record->outputs) check(output, "wrote");
+      for (const RunFile& input : record->inputs) check(input, "read");
+    } else if (failure.empty()) {
+      add(run.folder, "its last run failed: " + record->error);
+    }
+  } catch (const InputError& error) {
+    found->push_back({error.what(), run.variants});
   }
 }
 
-class Verifier {
- public:
-  explicit Verifier(const DatasetRuns& dataset)
-      : dataset_(dataset),
-        is_dataset_gone_(!dataset.dataset.empty() && !IsFolder(dataset.dataset)) {}
-
-  Verification Verify() {
-    if (is_dataset_gone_) AddDataset();
-    for (const RecordedRun& run : dataset_.runs) CheckRun(run);
-    for (const RecordedRun& run : dataset_.exports) CheckRun(run);
-    for (const VariantRuns& variant : dataset_.variants) CheckVariant(variant);
-    result_.files = digests_.files();
-    return std::move(result_);
+// Checks that the folder of a variant links the artefacts of its runs, the last one of each name,
+// and has no other files. `records`: by name of the run.
+void CheckVariant(const DatasetRuns& dataset, const VariantRuns& variant,
+                  const std::map<std::string, RunRecord>& records,
+                  std::vector<Discrepancy>* found) {
+  if (!variant.problem.empty()) return found->push_back({variant.problem, {variant.name}});
+  std::map<fs::path, std::string> makers;  // file name -> run
+  bool are_known = true;                   // the outputs of all its runs are known
+  for (const std::string& id : variant.runs) {
+    const std::string run = "shared/" + id;
+    const std::vector<RunFile>& outputs = records.at(run).outputs;
+    for (const RunFile& output : outputs) makers[output.path] = run;
+    are_known = are_known && !outputs.empty();
   }
-
- private:
-  void Add(const fs::path& file, const std::string& problem,
-           const std::vector<std::string>& variants) {
-    result_.discrepancies.push_back({fmt::format("{}: {}", file.string(), problem), variants});
+  const fs::path folder = dataset.results / variant.name;
+  std::error_code not_there;
+  for (const auto& [file, run] : makers) {
+    if (fs::equivalent(folder / file, dataset.results / run / file, not_there)) continue;
+    const bool is_there = Exists(folder / file);
+    found->push_back(DiscrepancyOf(
+        folder / file, is_there ? "is not the one of " + run : "is gone; expected that of " + run,
+        {variant.name}));
   }
-
-  // Adds one discrepancy for a missing dataset instead of one for each of its files.
-  void AddDataset() {
-    std::vector<std::string> all;
-    for (const VariantRuns& variant : dataset_.variants) all.push_back(variant.name);
-    Add(dataset_.dataset, "the dataset is not there; its files are not compared", all);
+  if (!are_known) return;
+  std::set<fs::path> strangers;
+  for (const auto& entry : fs::directory_iterator(folder, not_there)) {
+    const fs::path name = entry.path().filename();
+    const bool is_of_make = name == "stages.txt" || name.string().starts_with('.');
+    if (IsFolder(entry.path()) || is_of_make || makers.contains(name)) continue;
+    strangers.insert(entry.path());
   }
-
-  void CheckRun(const RecordedRun& run) {
-    const std::string failure = FailureIn(run.folder);
-    if (!failure.empty()) Add(run.folder, "its last run failed: " + failure, run.variants);
-    const fs::path file = run.folder / "run.json";
-    if (!Exists(file)) {
-      Add(file, "is missing: the stage has not run, or its record was removed", run.variants);
-      return;
-    }
-    try {
-      const RunRecord& record = records_[run.name] = ReadRun(file);
-      if (record.exit_code == 0 && record.outputs.empty()) {
-        Add(file, "has no outputs; expected those of a run that did not fail", run.variants);
-      } else if (record.exit_code == 0) {
-        CheckFiles(run, record);
-      } else if (failure.empty()) {
-        Add(run.folder, "its last run failed: " + record.error, run.variants);
-      }
-    } catch (const InputError& error) {
-      result_.discrepancies.push_back({error.what(), run.variants});
-    }
+  for (const fs::path& file : strangers) {
+    found->push_back(DiscrepancyOf(file, "no run of the variant wrote it", {variant.name}));
   }
-
-  void CheckFiles(const RecordedRun& run, const RunRecord& record) {
-    const auto check = [&](const RunFile& file, const char* what_it_did) {
-      if (file.relative_to == "dataset" && is_dataset_gone_) return;
-      const fs::path path = PathOf(file, record, run, dataset_);
-      if (const auto change = digests_.ChangeOf(path, file.sha256)) {
-        Add(path, fmt::format("{} since {} {} it", *change, run.name, what_it_did), run.variants);
-      }
-    };
-    for (const RunFile& output : record.outputs) check(output, "wrote");
-    for (const RunFile& input : record.inputs) check(input, "read");
-  }
-
-  // Checks that the folder of a variant links the artefacts of its runs, the last one of each name.
-  void CheckVariant(const VariantRuns& variant) {
-    if (!variant.problem.empty()) {
-      result_.discrepancies.push_back({variant.problem, {variant.name}});
-      return;
-    }
-    std::map<fs::path, std::string> makers;  // file name -> run
-    bool are_known = true;                   // the outputs of all its runs are known
-    for (const std::string& id : variant.runs) {
-      const std::string run = "shared/" + id;
-      const std::vector<RunFile>& outputs = records_[run].outputs;
-      for (const RunFile& output : outputs) makers[output.path] = run;
-      are_known = are_known && !outputs.empty();
-    }
-    for (const auto& [file, run] : makers) {
-      const fs::path link = dataset_.results / variant.name / file;
-      std::error_code not_there;
-      if (fs::equivalent(link, dataset_.results / run / file, not_there)) continue;
-      Add(link, Exists(link) ? "is not the one of " + run : "is gone; expected that of " + run,
-          {variant.name});
-    }
-    if (are_known) CheckStrangers(variant, makers);
-  }
-
-  void CheckStrangers(const VariantRuns& variant, const std::map<fs::path, std::string>& makers) {
-    std::set<fs::path> strangers;
-    std::error_code not_there;
-    for (const auto& entry : fs::directory_iterator(dataset_.results / variant.name, not_there)) {
-      const fs::path name = entry.path().filename();
-      const bool is_of_make = name == "stages.txt" || name.string().starts_with('.');
-      if (IsFolder(entry.path()) || is_of_make || makers.contains(name)) continue;
-      strangers.insert(entry.path());
-    }
-    for (const fs::path& file : strangers) {
-      Add(file, "no run of the variant wrote it", {variant.name});
-    }
-  }
-
-  const DatasetRuns& dataset_;
-  bool is_dataset_gone_;
-  FileDigests digests_;
-  std::map<std::string, RunRecord> records_;  // keyed by name of the run; empty where it has none
-  Verification result_;
-};
+}
 
 }  // namespace
 
 std::optional<std::string> FileDigests::ChangeOf(const fs::path& path, const std::string& sha256) {
   auto digest = digests_.find(path);
   if (digest == digests_.end()) {
-    digest = digests_.emplace(path, DigestOf(path)).first;
+    digest = digests_.emplace(path, "").first;  // empty where it cannot be read
+    try {
+      if (IsFile(path)) digest->second = Sha256OfFile(path);
+    } catch (const InputError&) {
+    }
   }
   if (digest->second == sha256) return std::nullopt;
   if (!digest->second.empty()) return "has changed";
   return IsFile(path) ? "cannot be read" : "is gone";
 }
 
-Verification Verify(const DatasetRuns& dataset) { return Verifier(dataset).Verify(); }
+Verification Verify(const DatasetRuns& dataset) {
+  Verification result;
+  std::vector<Discrepancy>* found = &result.discrepancies;
+  if (IsDatasetGone(dataset)) {  // one discrepancy instead of one for each of its files
+    std::vector<std::string> all;
+    for (const VariantRuns& variant : dataset.variants) all.push_back(variant.name);
+    found->push_back(DiscrepancyOf(dataset.dataset,
+                                   "the dataset is not there; its files are not compared", all));
+  }
+  FileDigests digests;
+  std::map<std::string, RunRecord> records;
+  for (const auto* runs : {&dataset.runs, &dataset.exports}) {
+    for (const RecordedRun& run : *runs) {
+      CheckRun(dataset, run, &digests, &records[run.name], found);
+    }
+  }
+  for (const VariantRuns& variant : dataset.variants) {
+    CheckVariant(dataset, variant, records, found);
+  }
+  result.files = digests.files();
+  return result;
+}
 
 }  // namespace soslam

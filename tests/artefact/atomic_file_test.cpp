@@ -133,10 +133,10 @@ TEST_F(RunFileTest, RefusesDamagedRecordsByName) {
   WriteRun(file_, SmallRecord());
   ExpectEditsRefused(file_,
                      {{"/inputs", nullptr, "inputs"},
-                      {"/inputs/0/sha256", "\"ABC\"", "/inputs/0/sha256"},
+                      {"/inputs/0/sha256", "\"ABC\"", "/inputs/0: sha256 is"},
                       {"/inputs/0/relative_to", "\"nowhere\"", "/inputs/0/relative_to"},
                       {"/outputs/0/relative_to", "\"table\"", "/outputs/0/relative_to"},
-                      {"/settings/count/origin", "\"fate\"", "/settings/count/origin"},
+                      {"/settings/count/origin", "\"fate\"", "/settings/count: origin is"},
                       {"/exit_code", "-1", "exit_code"},
                       {"/stage", "\"rm -r\"", "stage"},
                       {"/artefact/kind", "\"map\"", "expected \"run\""},

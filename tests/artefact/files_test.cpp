@@ -6,7 +6,7 @@
 
 #include <limits>
 
-#include "artefact/model_json.h"
+#include "artefact/json_file.h"
 #include "base/error.h"
 #include "model/occlusion.h"
 #include "support/edited_json.h"
@@ -88,9 +88,9 @@ TEST_F(ArtefactFilesTest, RowsOfRejectedDetectionsAreChecked) {
   sequence.rejected = {{0, "cup", 0.5, {1, 2, 3, 4}, {}, RejectingStage::kImport, "low_box"}};
   WriteSequence(file, sequence, {});
   ExpectEditsRefused(file,
-                     {{"/rejected/rows/0/0", "99999", "frame 99999"},
-                      {"/rejected/rows/0/1", "1", "/rejected/rows/0/1 is 1; expected less than 1"},
-                      {"/rejected/rows/0/2", "7", "/rejected/rows/0/2 is 7"}},
+                     {{"/rejected/rows/0/0", "99999", "/rejected/rows/0/0 is 99999"},
+                      {"/rejected/rows/0/1", "1", "/rejected: row 0 has reason 1"},
+                      {"/rejected/rows/0/2", "7", "and label 7; expected less than"}},
                      [&] { ReadSequence(file); });
 }
 

@@ -100,7 +100,7 @@ TEST_F(SemanticTableFileTest, WhatIsMountedCannotLie) {
       [&] {
         Read({{"labels", {{"cup", entry}}}});
       },
-      {"table.json: labels/cup: attitude is any_face and mount on_wall"});
+      {"table.json: /labels/cup: attitude is any_face and mount on_wall"});
 }
 
 TEST_F(SemanticTableFileTest, WrittenRowsAreReadAsTheyWere) {

@@ -106,7 +106,7 @@ TEST_F(BoxLikelihoodTest, OneEdgeMayBeCutOff) {
   options_.cut_edge_probability = 0.05;
   const auto as_cut = Match(Wider(-0.5));
   ASSERT_TRUE(as_it_is && as_cut);
-  EXPECT_EQ(as_cut->cut_edge, 2);
+  EXPECT_EQ(as_cut->cut_edge, BoxSide::kRight);
   EXPECT_LT(as_cut->cost, as_it_is->cost);
   EXPECT_LT(as_cut->distance, 0.5);
   EXPECT_FALSE(Match(expected_.box)->cut_edge);

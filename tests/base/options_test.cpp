@@ -7,6 +7,7 @@
 
 #include "artefact/json_file.h"
 #include "base/error.h"
+#include "support/schema_violation.h"
 
 namespace soslam {
 namespace {

@@ -8,7 +8,7 @@
 #include "base/process.h"
 #include "geometry/angles.h"
 #include "geometry/iou.h"
-#include "initialisation/estimates_of_sequence.h"
+#include "initialisation/initialise.h"
 #include "support/scene.h"
 #include "synthesis/render.h"
 #include "synthesis/scene.h"

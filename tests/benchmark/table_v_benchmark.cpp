@@ -10,7 +10,7 @@
 
 #include "benchmark/inputs.h"
 #include "benchmark/paper_baseline.h"
-#include "initialisation/estimates_of_sequence.h"
+#include "initialisation/initialise.h"
 #include "orientation/refine_by_profile.h"
 
 namespace soslam {

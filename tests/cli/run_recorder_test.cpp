@@ -201,6 +201,9 @@ TEST_F(RunRecorderTest, FilesOfOthersAreNotReplaced) {
     before_writing = [] {};
     EXPECT_EQ(Run(), 0) << errors_;
     EXPECT_EQ(Run(), 0) << errors_;
+    Write(file, "");
+    EXPECT_EQ(Run(), 0) << errors_;
+    EXPECT_NE(FileBytes(folder_ / file), "");
   }
 }
 

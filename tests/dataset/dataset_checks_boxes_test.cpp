@@ -189,28 +189,105 @@ TEST_F(DatasetChecksTest, HalfAxesOfAnotherUnit) {
   }
 }
 
-// The upright boxes around oblique ones reach out of the image, and are not those of true objects.
-TEST_F(DatasetChecksTest, ObliqueBoxesAreNoOtherMistake) {
-  dataset.label = [](size_t) { return "chair"; };
-  dataset.objects = dataset.TrueObjects(/*first_id=*/1, /*unit_m=*/1.0);
-  const auto write = [&](double wider, double rotation) {
-    WriteCoco(
-        [wider](const Box& b) {
-          return std::array{b.Centre().x() + 0.5 - 0.5 * wider * b.Width(), b.y_min + 0.5,
-                            wider * b.Width(), b.Height()};
-        },
-        [rotation](size_t ball) {
-          return nlohmann::json{{"track_id", ball + 1}, {"attributes", {{"rotation", rotation}}}};
-        });
+// Boxes of COCO, each turned by the angle that `angle_deg` gives to its ball.
+class TurnedBoxesTest : public DatasetChecksTest {
+ protected:
+  using Numbers = std::array<double, 4>;
+
+  TurnedBoxesTest() {
+    dataset.label = [](size_t) { return "chair"; };
+    dataset.objects = dataset.TrueObjects(/*first_id=*/1, /*unit_m=*/1.0);
+  }
+
+  void Write(const std::function<Numbers(const Box&)>& numbers) {
+    WriteCoco(numbers, [&](size_t ball) {
+      return nlohmann::json{{"track_id", ball + 1},
+                            {"attributes", {{"rotation", angle_deg(ball)}}}};
+    });
+  }
+
+  static Numbers CornerAndSize(const Box& b) {
+    return {b.x_min + 0.5, b.y_min + 0.5, b.Width(), b.Height()};
+  }
+
+  std::function<double(size_t)> angle_deg = [](size_t ball) {
+    return 20.0 + 30.0 * static_cast<double>(ball);
   };
-  write(2.5, 45.0);
+};
+
+TEST_F(TurnedBoxesTest, ThatAreRightAreNoOtherMistake) {
+  Write(&CornerAndSize);
   ExpectWarning({"oblique_boxes", "120 of 120"});
-  write(2.5, 90.0);
-  ExpectWarning({"object_half_axes"});
-  write(10.0, 45.0);
-  ExpectAmongWarnings({"oblique_boxes"});
-  write(10.0, 90.0);
-  ExpectRefused<NothingUsableError>({"reach out of the image"});
+  // Those of objects that the image cuts extend beyond it.
+  Write([](const Box& b) {
+    return b.Centre().x() < 320.0 ? Numbers{-20.0, 200.0, 80.0, 80.0} : CornerAndSize(b);
+  });
+  angle_deg = [](size_t) { return 45.0; };
+  EXPECT_THAT(Warnings(), testing::Not(testing::Contains(testing::HasSubstr("box_convention"))));
+}
+
+TEST_F(TurnedBoxesTest, CornersWhereSizesBelong) {
+  for (const double turn_deg : {30.0, 90.0, 200.0}) {
+    angle_deg = [=](size_t) { return turn_deg; };
+    Write([](const Box& b) { return Numbers{b.x_min, b.y_min, b.x_max, b.y_max}; });
+    ExpectRefused({"meant as two corners"});
+  }
+}
+
+TEST_F(TurnedBoxesTest, OfImagesOfAnotherSize) {
+  Write([](const Box& b) {
+    return Numbers{3 * b.x_min, 3 * b.y_min, 3 * b.Width(), 3 * b.Height()};
+  });
+  ExpectRefused({"images of another size"});
+  Write([](const Box& b) {
+    return Numbers{b.x_min / 640, b.y_min / 480, b.Width() / 640, b.Height() / 480};
+  });
+  ExpectRefused({"fractions of the image"});
+}
+
+// Upright boxes end at the border of the smaller image, oblique ones among them beyond it.
+TEST_F(TurnedBoxesTest, AmongBoxesOfSmallerImages) {
+  dataset.written_camera = {1280, 960, 1000.0, 1000.0, 639.5, 479.5};
+  angle_deg = [](size_t ball) { return ball == 0 ? 45.0 : 0.0; };
+  Write([](const Box& b) {
+    const auto cut = [](double x, double size) {
+      return std::clamp(0.5 * size + 3.0 * (x - 0.5 * size), 0.0, size);
+    };
+    const Eigen::Vector2d low(cut(b.x_min, 640), cut(b.y_min, 480));
+    return Numbers{low.x(), low.y(), cut(b.x_max, 640) - low.x(), cut(b.y_max, 480) - low.y()};
+  });
+  ExpectAmongWarnings({"box_extent", "made smaller"});
+}
+
+// Turned boxes about balls have the balls' size.
+TEST_F(TurnedBoxesTest, OfObjectsOfAnotherSize) {
+  Write([](const Box& b) {
+    return Numbers{b.x_min + 0.25 * b.Width(), b.y_min + 0.25 * b.Height(), 0.5 * b.Width(),
+                   0.5 * b.Height()};
+  });
+  ExpectAmongWarnings({"object_half_axes: true objects look 2 times"});
+}
+
+// Sticks of 0.1 x 0.8 m that stand, in images of a rolled camera.
+TEST_F(TurnedBoxesTest, OfStandingSticks) {
+  dataset.roll_rad = 0.7;
+  auto objects = nlohmann::json::parse(dataset.objects);
+  for (nlohmann::json& object : objects) object["half_axes"] = {0.05, 0.05, 0.4};
+  dataset.objects = objects.dump();
+  const auto stick = [](const Box& b) {
+    const Eigen::Vector2d size(0.25 * b.Width(), 2.0 * b.Height());
+    return Numbers{b.Centre().x() - 0.5 * size.x(), b.Centre().y() - 0.5 * size.y(), size.x(),
+                   size.y()};
+  };
+  for (const double turn : {-1.0, 1.0}) {
+    angle_deg = [&](size_t) { return kDegPerRad * turn * dataset.roll_rad; };
+    Write(stick);
+    if (turn < 0.0) {
+      ExpectWarning({"oblique_boxes"});
+    } else {
+      ExpectAmongWarnings({"object_half_axes"});
+    }
+  }
 }
 
 // The rotation by 40 degrees about z with qw first.

@@ -51,6 +51,24 @@ TEST_F(DatasetChecksTest, ImagesThatAreTurnedUpsideDown) {
   EXPECT_THAT(Warnings(), IsEmpty());
 }
 
+TEST_F(DatasetChecksTest, BoxesAndACameraThatSoslamMadeAreUpright) {
+  WriteImages(640, 480, /*exif_orientation=*/3);
+  const auto import_with = [&](const std::string& source, const std::string& first_line) {
+    dataset.camera_source = source;
+    dataset.first_line_of_boxes = first_line;
+    return Warnings();
+  };
+  const std::string upright = "# Written by soslam-frames from boxes.csv\n";
+  EXPECT_THAT(import_with("soslam-reconstruct", upright), IsEmpty());
+  for (const auto& [orientation, findings] : {std::pair("upright", 0u), std::pair("stored", 1u)}) {
+    const nlohmann::json header = {{"settings", {{"image_orientation", orientation}}}};
+    EXPECT_THAT(import_with("soslam-reconstruct", "# " + header.dump() + "\n"),
+                testing::SizeIs(findings));
+  }
+  EXPECT_THAT(import_with("soslam-reconstruct", ""), testing::SizeIs(1));
+  EXPECT_THAT(import_with("calibration", upright), testing::SizeIs(1));
+}
+
 // A camera of the stored images.
 TEST_F(DatasetChecksTest, ImagesThatAreShownWithSwappedSides) {
   WriteImages(640, 480, /*exif_orientation=*/6);
@@ -167,6 +185,16 @@ TEST_F(DatasetChecksTest, ImagesInMilliseconds) {
 TEST_F(DatasetChecksTest, AnotherClock) {
   dataset.pose_time = [](double t) { return fmt::format("{:.6f}", t + 5000.0); };
   ExpectRefused({"other clocks", "5000.000 apart"});
+}
+
+// The first pose has the time of the first image.
+TEST_F(DatasetChecksTest, AClockThatRunsFasterOrSlower) {
+  for (const double rate : {0.001, 0.125, 8.0, 1000.0}) {
+    dataset.pose_time = [=](double t) { return fmt::format("{:.6f}", 100.0 + rate * (t - 100.0)); };
+    ExpectRefused({fmt::format("runs {:g} times as fast", rate),
+                   fmt::format("as 100.000 + (t - 100.000) / {:g}", rate)});
+    EXPECT_THAT(Refusal(), testing::Not(HasSubstr("about their z axis")));
+  }
 }
 
 TEST_F(DatasetChecksTest, AClockThatJumps) {

@@ -108,8 +108,11 @@ TEST_F(DetectionsCsvTest, BadFilesAreNamed) {
       {"frame,track_id,label,x1,y1,x2,y2\n0,1,cup,2,3,4,5\n",
        {"detections.csv:1: ", "'track_id' would be ignored", "object_id"}},
       {"filename,class,confidence,xmin,ymin,xmax,ymax\na.png,cup,1,1,2,3,4\n",
-       {"detections.csv:1", "frame,label,x1,y1,x2,y2 missing", "class for label, xmin for x1",
-        "ymax for y2"}},
+       {"detections.csv:1", "frame,label,x1,y1,x2,y2 missing",
+        "filename for frame (the row of its image in the image list, from 0), class for label",
+        "xmin for x1", "ymax for y2"}},
+      {"Image,label,x1,y1,x2,y2\na.png,cup,1,2,3,4\n",
+       {"detections.csv:1: frame missing", "it may have image for frame (the row of its image"}},
       {"frame,x1,y1,right,bottom,label\n0,1,2,3,4,cup\n",
        {": x2,y2 missing", "; it may have right for x2, bottom for y2"}},
       {"frame,id,bb_left,bb_top,bb_width,bb_height,conf\n1,1,2,3,4,5,1\n",
@@ -166,6 +169,8 @@ TEST_F(CocoResultsTest, ADataSetHoldsItsBoxesItself) {
   EXPECT_EQ(boxes[2].object_id, 6);
 }
 
+bool IsOblique(const LabelledBox& box) { return box.as_drawn && box.as_drawn->IsOblique(); }
+
 // Attributes of CVAT: a box of 40 x 20 pixels, whose centre is 30, 20, by quarter turns, by one of
 // 30 degrees, and by one that nobody sees.
 TEST_F(CocoResultsTest, TurnedBoxesBecomeUpright) {
@@ -179,7 +184,7 @@ TEST_F(CocoResultsTest, TurnedBoxesBecomeUpright) {
     ExpectBox(Only(turned(half_turn_deg).boxes).box, {9.5, 9.5, 49.5, 29.5});
     const CocoBoxes quarter = turned(half_turn_deg + 90.0);
     ExpectBox(Only(quarter.boxes).box, {19.5, -0.5, 39.5, 39.5});
-    EXPECT_FALSE(quarter.boxes[0].is_enlarged);
+    EXPECT_FALSE(IsOblique(quarter.boxes[0]));
   }
   for (const double angle_deg : {30.0, 150.0, 330.0}) {
     const CocoBoxes oblique = turned(angle_deg);
@@ -187,9 +192,9 @@ TEST_F(CocoResultsTest, TurnedBoxesBecomeUpright) {
     const double half_height = 10.0 + 10.0 * std::sqrt(0.75);
     ExpectBox(Only(oblique.boxes).box,
               {29.5 - half_width, 19.5 - half_height, 29.5 + half_width, 19.5 + half_height});
-    EXPECT_TRUE(oblique.boxes[0].is_enlarged);
+    EXPECT_TRUE(IsOblique(oblique.boxes[0]));
   }
-  EXPECT_FALSE(turned(0.2).boxes.at(0).is_enlarged);
+  EXPECT_FALSE(IsOblique(turned(0.2).boxes.at(0)));
 }
 
 TEST_F(CocoResultsTest, NumbersMayBeTextOrNull) {
@@ -216,7 +221,7 @@ TEST_F(CocoResultsTest, WordsAsAttributesAreNoAngles) {
                           "attributes": {{"rotation": {}}}}}])",
                                     value)));
     ExpectBox(Only(read.boxes).box, {9.5, 9.5, 49.5, 29.5});
-    EXPECT_FALSE(read.boxes[0].is_enlarged);
+    EXPECT_FALSE(IsOblique(read.boxes[0]));
   }
 }
 
@@ -242,6 +247,32 @@ TEST_F(CocoResultsTest, TwoFilesMayNotContradictEachOther) {
       {"dataset.json", "category 1 is 'milk carton'", "'cup' in", "results.json"});
 }
 
+// Images are those of the boxes' own file. Folders, endings and what tools add to the names of
+// copies make no other image.
+TEST_F(CocoResultsTest, ImagesOfTwoFilesThatContradictEachOtherAreAFinding) {
+  const auto read = [&](const std::string& own_name, const std::string& other_name) {
+    return ReadCocoResults(
+        Write("results.json",
+              R"({"annotations": [{"image_id": 3, "category_id": 1, "bbox": [1, 2, 3, 4]}],
+                  "images": [{"id": 3, "file_name": ")" +
+                  own_name + R"("}]})"),
+        Write("dataset.json", R"({"images": [{"id": 3, "file_name": ")" + other_name +
+                                  R"("}, {"id": 4, "file_name": "d.png"}],
+                                  "categories": [{"id": 1, "name": "cup"}]})"));
+  };
+  for (const char* same :
+       {"rgb/b.png", "b.png", "b", "images/b.png", "b_png.rf.0123456789ab.jpg"}) {
+    EXPECT_THAT(read("rgb/b.png", same).findings, IsEmpty()) << same;
+    EXPECT_THAT(read(same, "rgb/b.png").findings, IsEmpty()) << same;
+  }
+  const CocoBoxes boxes = read("rgb/b.png", "rgb/c.png");
+  EXPECT_EQ(Only(boxes.boxes).frame, FrameKey("rgb/b.png"));
+  EXPECT_THAT(
+      Only(boxes.findings).found,
+      testing::AllOf(testing::HasSubstr("results.json: image 3 is 'rgb/b.png', but 'rgb/c.png' in"),
+                     testing::HasSubstr("dataset.json")));
+}
+
 // A data set may leave its images, its categories or both to the file that is given beside it.
 TEST_F(CocoResultsTest, ADataSetHoldsWhatTheOtherFileDoesNot) {
   const std::string annotations =
@@ -253,9 +284,9 @@ TEST_F(CocoResultsTest, ADataSetHoldsWhatTheOtherFileDoesNot) {
       {"{" + annotations + "," + categories + "}", kDataset},
       {"{" + annotations + "," + categories + "}", "{" + images + "}"},
       {"{" + annotations + "," + images + "}", "{" + categories + "}"},
-      // Ids of images are those of the file that has them.
-      {"{" + annotations + "," + images + "}",
-       R"({"images": [{"id": 3, "file_name": "rgb/a.png"}],)" + categories + "}"}};
+      // Entries without a name, and those of other images, say nothing of this image.
+      {"{" + annotations + R"(, "images": [{"id": 3}, {"id": 1, "file_name": ""}]})", kDataset},
+      {"{" + annotations + R"(, "images": [{"id": 9, "file_name": "z.png"}]})", kDataset}};
   for (const auto& [boxes, dataset] : files) {
     SCOPED_TRACE(boxes + dataset);
     const LabelledBox box = Only(ReadWith(dataset, boxes));
@@ -384,11 +415,8 @@ TEST_F(LabelFileTest, TheNearestListCounts) {
   EXPECT_FALSE(nearest({{"data.yaml", {}}}));
   EXPECT_EQ(nearest({{"a/data.yaml", {"Coffee_Table", "cup", "book"}}, near})->place, near.place);
   EXPECT_THAT(findings, IsEmpty());
-  EXPECT_EQ(nearest({far, broken, near})->names, near.names);
-  ASSERT_EQ(findings.size(), 2u);
-  EXPECT_EQ(findings[0].found, "obj.names: broken");
-  EXPECT_EQ(findings[1].found,
-            "a/b/classes.txt: class 0 is 'coffee table', but 'cup' in a/data.yaml");
+  EXPECT_EQ(nearest({broken, near})->names, near.names);
+  EXPECT_EQ(Only(findings).found, "obj.names: broken");
   EXPECT_EQ(nearest({near, {"data.yaml", {}, "broken"}})->names, near.names);
   EXPECT_EQ(findings.size(), 1u);
   ExpectError<InputError>(
@@ -396,7 +424,34 @@ TEST_F(LabelFileTest, TheNearestListCounts) {
         nearest({near, beside});
       },
       {"class 1 is 'cup'", "'book' in a/b/data.yaml", "class_names"});
+  ExpectError<InputError>(
+      [&] {
+        nearest({far, near});
+      },
+      {"a/b/classes.txt: class 0 is 'coffee table'", "'cup' in a/data.yaml", "class_names"});
   ExpectError<InputError>([&] { nearest({far, broken}); }, {"obj.names: broken"});
+}
+
+TEST_F(LabelFileTest, LabelImgsTemplateYieldsToOtherNames) {
+  ClassNames labelimg{"a/labels/classes.txt",
+                      {"dog", "person", "cat", "tv", "car", "meatballs", "marinara sauce",
+                       "tomato sauce", "chicken noodle soup", "french onion soup", "chicken breast",
+                       "ribs", "pulled pork", "hamburger", "cavity"}};
+  const ClassNames right{"a/data.yaml", {"cup", "book"}};
+  std::vector<Finding> findings;
+  EXPECT_EQ(NearestNames({labelimg}, &findings)->names, labelimg.names);
+  EXPECT_EQ(NearestNames({labelimg, {"a/data.yaml", {"dog"}}}, &findings)->names, labelimg.names);
+  EXPECT_THAT(findings, IsEmpty());
+  EXPECT_EQ(NearestNames({labelimg, right}, &findings)->names, right.names);
+  EXPECT_EQ(Only(findings).found,
+            "a/labels/classes.txt: class 0 is 'dog', but 'cup' in a/data.yaml");
+  // labelImg appends the classes that it is used for.
+  labelimg.names.push_back("cup");
+  ExpectError<InputError>(
+      [&] {
+        NearestNames({labelimg, right}, &findings);
+      },
+      {"class 0 is 'dog'"});
 }
 
 TEST_F(LabelFileTest, LatinLettersOfOneByteAreRefused) {

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "artefact/model_json.h"
+#include "artefact/json_file.h"
 #include "support/exported_world.h"
 #include "support/lists.h"
 #include "support/random_estimates.h"
@@ -117,7 +117,9 @@ using nlohmann::json;
 
 json Quality(double scale, const Rigid3d& truth_from_scaled) {
   return {{"alignments",
-           {{{"segment", 4}, {"scale", scale}, {"truth_from_scaled", truth_from_scaled}}}},
+           {{{"segment", 4},
+             {"scale", scale},
+             {"truth_from_scaled", DescribedToJson(truth_from_scaled)}}}},
           {"landmarks",
            {{{"object", 2},
              {"fate", "found"},

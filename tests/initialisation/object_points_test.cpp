@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "initialisation/estimates_of_sequence.h"
+#include "initialisation/initialise.h"
 #include "support/cuboid_map.h"
 #include "support/points_on_objects.h"
 #include "support/random.h"

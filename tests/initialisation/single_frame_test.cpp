@@ -5,7 +5,7 @@
 
 #include "geometry/angles.h"
 #include "geometry/iou.h"
-#include "initialisation/estimates_of_sequence.h"
+#include "initialisation/initialise.h"
 #include "initialisation/svd.h"
 #include "support/random.h"
 #include "support/scene.h"

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/angles.h"
-#include "initialisation/estimates_of_sequence.h"
+#include "initialisation/initialise.h"
 #include "initialisation/object_evidence.h"
 
 namespace soslam {

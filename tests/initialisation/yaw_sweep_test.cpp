@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "initialisation/estimates_of_sequence.h"
+#include "initialisation/initialise.h"
 #include "support/level_sequence.h"
 #include "support/scene.h"
 #include "support/shape_exponents.h"

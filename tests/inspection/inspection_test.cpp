@@ -10,12 +10,14 @@
 
 #include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
+#include "association/agreement.h"
 #include "base/error.h"
 #include "dataset/reconstruct_options.h"
 #include "geometry/angles.h"
 #include "initialisation/options.h"
 #include "inspection/doubts.h"
 #include "mapping/options.h"
+#include "planes/planes_estimate.h"
 #include "stage/stages.h"
 #include "support/expect_error.h"
 #include "support/random.h"
@@ -153,13 +155,13 @@ TEST_F(InspectionTest, MetricsWithoutIdsHaveARowPerLandmark) {
                      {1, 4, true, std::nullopt, Explanation{MapReason::kGated, "near_border 4"}}};
   quality.misses[MapReason::kGated] = 1;
   quality.landmarks.resize(3);
-  quality.landmarks[0].fate = LandmarkRow::Fate::kFound;
+  quality.landmarks[0].fate = LandmarkFate::kFound;
   quality.landmarks[0].true_index = 0;
   quality.landmarks[0].errors.emplace().iou = 0.75;
   quality.landmarks[1].object_index = 1;
   quality.landmarks[1].why_false = Explanation{MapReason::kBackground, ""};
   quality.landmarks[2].object_index = 2;
-  quality.landmarks[2].fate = LandmarkRow::Fate::kIgnored;
+  quality.landmarks[2].fate = LandmarkFate::kIgnored;
   WriteMetrics(File(), metrics, sequence_, {});
   const Inspection inspection = Read();
   EXPECT_EQ(Said(inspection, "alignment"),
@@ -183,7 +185,7 @@ TEST_F(InspectionTest, PlanesSayWhatStandsOnThem) {
   for (int i = 0; i < 4; ++i)
     estimate.objects.push_back({1, SupportReason::kOwnHeight, {}, {}, {}});
   estimate.objects[2].reason = SupportReason::kLowestCost;
-  WritePlanes(File(), estimate, sequence_, {});
+  WritePlanes(File(), ReportOf(estimate, sequence_), {});
   const Inspection inspection = Read();
   EXPECT_EQ(Said(inspection, "decided by"), "3 own_height, 1 lowest_cost");
   EXPECT_THAT(Said(inspection, "found"), HasSubstr("NOT settled"));
@@ -206,7 +208,7 @@ TEST_F(InspectionTest, AssociationsHaveARowPerObject) {
   agreement.given_of_object = {1};
   agreement.given_objects = 2;
   agreement.matched = 1;
-  WriteAssociations(File(), sequence_, association, agreement, {});
+  WriteAssociations(File(), ReportOf(sequence_, association, agreement), {});
   const Inspection inspection = Read();
   EXPECT_THAT(Said(inspection, "agreement"), HasSubstr("precision 1.000, recall 0.500"));
   EXPECT_EQ(Said(inspection, "detections"), "10: 10 new_track");

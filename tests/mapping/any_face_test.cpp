@@ -13,7 +13,7 @@
 #include "evaluation/landmark_errors.h"
 #include "evaluation/statistics.h"
 #include "geometry/angles.h"
-#include "initialisation/estimates_of_sequence.h"
+#include "initialisation/initialise.h"
 #include "mapping/back_end.h"
 #include "mapping/initial_landmarks.h"
 #include "support/one_body.h"

@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "evaluation/metrics.h"
 #include "geometry/iou.h"
-#include "initialisation/estimates_of_sequence.h"
+#include "initialisation/initialise.h"
 #include "initialisation/single_frame.h"
 #include "mapping/initial_landmarks.h"
 #include "support/cuboid_map.h"

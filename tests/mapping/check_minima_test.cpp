@@ -3,13 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <numbers>
-#include <optional>
 #include <utility>
 
+#include "mapping/back_end_problem.h"
 #include "support/cuboid_map.h"
-#include "support/one_body.h"
 
 namespace soslam {
 namespace {
@@ -48,32 +46,37 @@ TEST(CheckMinima, FindsTheMinimumAQuarterTurnAway) {
   EXPECT_FALSE(minima[2].IsAboveLowest());
 }
 
-// Exact boxes from all sides leave it to the ratio alone which horizontal axis is x: with a / b =
-// r, the cost of both residuals is log(r)^2 over the variance.
-TEST(QuarterTurnProbabilities, AreThoseOfTheRatio) {
-  Landmark body;
-  body.shape_exponents = kCuboidExponent;
-  body.half_axes = {0.3, 0.4, 0.35};
-  body.frame_from_object.translation.z() = 0.35;
-  const Sequence sequence = ViewsOfBody(body, CamerasOnArc(100, 6.0));
+// The edges of turned bodies are not in the images. This costs as much as edges weigh at the bodies
+// that they are of; by their own weight, next to nothing.
+TEST(CheckMinima, EdgesThatAreNotSeenCostAsMuchAsTheyWeigh) {
+  const Sequence sequence = CuboidSequence(3, 4);
   BackEndInput input = TruthInput(sequence);
-  input.priors[0]->log_sigma.setConstant(std::log(4.0 / 3.0));
-  OptimiseOptions options = Options();
-  options.upright.detection_sigma_fraction = 1e-3;
-  options.upright.view_correlation_deg = 0.0;
-  for (const double dispersion : {1.0, 2.0}) {
-    EXPECT_NEAR(QuarterTurnProbabilities(input, options, dispersion, 1)[0].value(),
-                1.0 / (1.0 + std::exp(1.0 / dispersion)), 0.01);
-  }
+  input.edge_images = DrawnEdges(sequence);
+  const OptimiseOptions options = Options();
+  const auto constant_cost = [&] {
+    BackEndProblem problem(input, options);
+    problem.RenewImageResiduals();
+    return problem.summary().constant_cost;
+  };
+  const double of_truth = constant_cost();
+  const auto truth = input.initial_landmarks;
+  for (auto& landmark : input.initial_landmarks) landmark = RotatedAboutZ(*landmark, 0.5);
+  const double by_own_weight = constant_cost();
+  input.edges_weighed_at = truth;
+  const double by_weight_of_truth = constant_cost();
+  EXPECT_GT(by_weight_of_truth, 3.0 * of_truth);
+  EXPECT_GT(by_weight_of_truth, 3.0 * by_own_weight);
 }
 
-TEST(QuarterTurnProbabilities, AreNoneWithoutLandmarks) {
-  const Sequence sequence = CuboidSequence(2, 12);
+// A body half a turn on is the same one, and no other minimum.
+TEST(CheckMinima, BodiesThatAreTheSameAreOneMinimum) {
+  const Sequence sequence = CuboidSequence(1, 12);
   BackEndInput input = TruthInput(sequence);
-  input.initial_landmarks[0].reset();
-  const auto probabilities = QuarterTurnProbabilities(input, Options(), 1.0, 1);
-  EXPECT_FALSE(probabilities[0]);
-  EXPECT_TRUE(probabilities[1]);
+  const Landmark truth = *input.initial_landmarks[0];
+  input.initial_landmarks[0] = RotatedAboutZ(truth, std::numbers::pi);
+  const auto minima = CheckMinima(input, Options(), 1);
+  ASSERT_EQ(minima.size(), 1u);
+  EXPECT_EQ(minima[0].cost, minima[0].lowest_cost);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include "evaluation/metrics.h"
 #include "evaluation/result_checks.h"
 #include "geometry/angles.h"
-#include "initialisation/estimates_of_sequence.h"
+#include "initialisation/initialise.h"
 #include "mapping/initial_landmarks.h"
 #include "support/cuboid_map.h"
 #include "support/one_body.h"

@@ -6,6 +6,7 @@
 #include <regex>
 
 #include "artefact/json_file.h"
+#include "support/schema_violation.h"
 #include "support/small_pipeline.h"
 
 namespace soslam {

@@ -8,7 +8,7 @@
 
 #include "association/association.h"
 #include "base/error.h"
-#include "initialisation/estimates_of_sequence.h"
+#include "initialisation/initialise.h"
 #include "initialisation/single_frame.h"
 #include "initialisation/svd.h"
 #include "mapping/back_end.h"

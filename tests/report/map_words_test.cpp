@@ -16,14 +16,20 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-json World(const json& scale) { return {{"scale", scale}, {"up", {{"sigma_deg", 0.44}}}}; }
+Artefact<WorldReport> World(const WorldScale& scale) {
+  Artefact<WorldReport> world;
+  world.body.scale = scale;
+  world.body.up.sigma_deg = 0.44;
+  return world;
+}
 
-json Scale(const json& found_by) {
-  return {{"metres_per_unit", 0.3},
-          {"log_sigma", 0.05},
-          {"interval_95", {0.25, 0.36}},
-          {"found_by", found_by},
-          {"objects", 7}};
+WorldScale Scale(const std::vector<std::string>& found_by) {
+  return {.metres_per_unit = 0.3,
+          .log_sigma = 0.05,
+          .low = 0.25,
+          .high = 0.36,
+          .found_by = found_by,
+          .objects = 7};
 }
 
 TEST(ScaleFromWorld, SaysHowGoodScaleAndUpAreAndWhatTheyRestOn) {
@@ -41,16 +47,16 @@ TEST(ScaleFromWorld, SaysHowGoodScaleAndUpAreAndWhatTheyRestOn) {
 }
 
 TEST(ScaleFromWorld, SaysWhatContradictsScaleAndUp) {
-  json scale = Scale({"objects", "camera_height_m"});
-  scale["contradicted_by"] = {"scale_of_objects_differs"};
+  WorldScale scale = Scale({"objects", "camera_height_m"});
+  scale.contradicted_by = {"scale_of_objects_differs"};
   EXPECT_EQ(ScaleFromWorld(World(scale), {}).warning,
             "The scale may be wrong by more than that: the heights of objects contradict the "
             "camera's height given.");
   scale = Scale({"objects"});
-  scale["contradicted_by"] = {"scale_contradicted"};
-  json world = World(scale);
+  scale.contradicted_by = {"scale_contradicted"};
+  Artefact<WorldReport> world = World(scale);
   const auto warning_of = [&](const char* check) {
-    world["findings"] = {{{"check", check}}};
+    world.findings = {{check, Severity::kWarning, "", "", "", ""}};
     return ScaleFromWorld(world, {}).warning;
   };
   EXPECT_THAT(warning_of("up_direction"), HasSubstr("objects look alike in other ways to hold"));

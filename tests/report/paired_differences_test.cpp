@@ -78,7 +78,7 @@ TEST(DifferencesTable, ADetectorsBoxesHaveARowOfTheirOwn) {
     results.WriteMetrics(dataset, "B", {{.id = 1, .iou = 0.5, .rotation_deg = 1.0}});
   }
   std::vector<DatasetResult> datasets = ReadResults(results.path());
-  for (const int of_detector : {0, 1}) datasets[of_detector].facts.boxes_of = "detector";
+  for (const int of_detector : {0, 1}) datasets[of_detector].facts.boxes_of = BoxesOf::kDetector;
   const auto comparisons = ParseComparisons("A B");
   const auto rows = CellTexts(DifferencesTable(datasets, comparisons, kIou));
   ASSERT_EQ(rows.size(), 5u);

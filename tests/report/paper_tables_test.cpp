@@ -133,7 +133,7 @@ TEST_F(PaperTablesTest, ADetectorsBoxesHaveARowOverTheObjectsThatAllVariantsHave
   }
   results_.WriteMetrics("shed", "OursP", {{.id = 1, .iou = 0.9}});
   std::vector<DatasetResult> datasets = Read();
-  for (const int of_detector : {0, 1, 3}) datasets[of_detector].facts.boxes_of = "detector";
+  for (const int of_detector : {0, 1, 3}) datasets[of_detector].facts.boxes_of = BoxesOf::kDetector;
   const Table table = TableOf(datasets);
   EXPECT_EQ(CellTexts(table).back(),
             "detector's boxes common objects f 2 - - 0.400 - *0.600* - - - -");

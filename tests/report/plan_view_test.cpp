@@ -146,6 +146,34 @@ TEST_P(PlanSvgTest, NamesAllObjectsInsideThePlanAndApart) {
 
 INSTANTIATE_TEST_SUITE_P(Counts, PlanSvgTest, testing::Values(1, 2, 7, 15, 25, 40));
 
+TEST(PlanSvg, LinesToNamesCrossNoPictureOfAnotherObject) {
+  const std::regex line("class=\"leader\" d=\"M([0-9.]+) ([0-9.]+)L([0-9.]+) ([0-9.]+)");
+  const std::regex picture(
+      "<use [^>]*x=\"([0-9.]+)\" y=\"([0-9.]+)\" width=\"([0-9.]+)\" height=\"([0-9.]+)");
+  const auto all = [](const std::string& svg, const std::regex& pattern) {
+    std::vector<Eigen::Vector4d> found;
+    for (std::sregex_iterator next(svg.begin(), svg.end(), pattern), end; next != end; ++next) {
+      found.emplace_back(std::stod((*next)[1]), std::stod((*next)[2]), std::stod((*next)[3]),
+                         std::stod((*next)[4]));
+    }
+    return found;
+  };
+  for (const int count : {10, 13, 17}) {
+    const std::string svg = PlanSvg(PlanOf(count), kWidePlan);
+    ASSERT_EQ(all(svg, picture).size(), static_cast<size_t>(count));
+    for (const Eigen::Vector4d& ends : all(svg, line)) {
+      for (const Eigen::Vector4d& rectangle : all(svg, picture)) {
+        const Eigen::AlignedBox2d inside(rectangle.head<2>().array() + 1.0,
+                                         (rectangle.head<2>() + rectangle.tail<2>()).array() - 1.0);
+        for (double share = 0.0; share < 0.95; share += 0.05) {
+          EXPECT_FALSE(inside.contains((1.0 - share) * ends.head<2>() + share * ends.tail<2>()))
+              << count;
+        }
+      }
+    }
+  }
+}
+
 TEST(PlanSvg, IsToScale) {
   const PlanView plan = PlanOf(7);
   const std::string svg = PlanSvg(plan, kWidePlan);

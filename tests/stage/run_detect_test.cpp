@@ -179,27 +179,32 @@ TEST(LabelsForDetectorTest, BadOptionsAreRefused) {
                  {"interchangeable_labels"});
 }
 
-// Boxes are those of the image as viewers show it, or as it is stored. For the latter the network
-// sees both, and is as sure as the image fills its input.
+// Boxes are those of the image as viewers show it, or as it is stored. The network sees both, and
+// is as sure as the image fills its input.
 TEST_F(RunDetectTest, ExifTurnsImages) {
   const cv::Mat image(32, 64, CV_8UC3, cv::Scalar(0, 0, 255));
   const std::string jpeg = EncodedImage(".jpg", image);
   Write("rgb/a.jpg", JpegWithExif(jpeg, ExifOf(6)));
   Write("rgb.txt", "0 rgb/a.jpg\n");
-  options_.min_score = 0.3;  // half of the input is the image
-  Run();
-  // (22, 17) to (42, 47) of the input, whose columns 16 to 48 are the upright image of 32 x 64.
-  ExpectBox(ReadDetectionsCsv(folder_ / "detections.csv").at(0).box, {5.5, 16.5, 25.5, 46.5});
-  options_.image_orientation = ImageOrientation::kStored;
-  options_.input_width = 64;
-  options_.input_height = 32;
-  Run();
-  ExpectBox(ReadDetectionsCsv(folder_ / "detections.csv").at(0).box, {21.5, 16.5, 41.5, 31.5});
+  const auto expect_box = [&](BoxOrientation orientation, const Box& box) {
+    options_.image_orientation = orientation;
+    Run();
+    ExpectBox(ReadDetectionsCsv(folder_ / "detections.csv").at(0).box, box);
+  };
   options_.input_width = 32;
   options_.input_height = 64;
-  Run();
   // (22, 17) to (32, 47) of the upright image, whose right column is the first stored row.
-  ExpectBox(ReadDetectionsCsv(folder_ / "detections.csv").at(0).box, {16.5, -0.5, 46.5, 9.5});
+  expect_box(BoxOrientation::kUpright, {21.5, 16.5, 31.5, 46.5});
+  expect_box(BoxOrientation::kStored, {16.5, -0.5, 46.5, 9.5});
+  expect_box(BoxOrientation::kSurer, {21.5, 16.5, 31.5, 46.5});
+  options_.input_width = 64;
+  options_.input_height = 32;
+  // (22, 17) to (42, 32) of the stored image.
+  expect_box(BoxOrientation::kUpright, {-0.5, 21.5, 14.5, 41.5});
+  expect_box(BoxOrientation::kStored, {21.5, 16.5, 41.5, 31.5});
+  expect_box(BoxOrientation::kSurer, {21.5, 16.5, 41.5, 31.5});
+  EXPECT_NE(FileBytes(folder_ / "detections.csv").find(R"("image_orientation":"stored")"),
+            std::string::npos);
 }
 
 TEST_F(RunDetectTest, NothingFoundIsNotAResult) {

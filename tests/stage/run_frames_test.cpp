@@ -71,8 +71,9 @@ TEST_F(RunFramesTest, LargePhotosAreTurnedUprightAndScaledDown) {
   EXPECT_NEAR(header->focal_over_diagonal.value_or(0.0), 26.0 / 43.267, 1e-9);
 }
 
-// Poses of COLMAP refer to photos as they are stored; boxes that are given, to the upright ones.
-TEST_F(RunFramesTest, StoredPhotosAreCopiedAndBoxesTurned) {
+// For a model of COLMAP, which may be of the stored photos. Boxes that are given are of the upright
+// ones.
+TEST_F(RunFramesTest, PhotosThatExifTurnsAreCopiedIfWanted) {
   for (int i = 0; i < 2; ++i) {
     WritePhoto(photos_ / (std::to_string(i) + ".jpg"), DrawnView(40 * i, {200, 100}),
                ExifOf(i == 0 ? 6 : 8));
@@ -80,19 +81,16 @@ TEST_F(RunFramesTest, StoredPhotosAreCopiedAndBoxesTurned) {
   WriteBytes(folder_ / "boxes.csv",
              "frame,label,score,x1,y1,x2,y2\n0,cup,0.9,10,20,30,50\n1,cup,0.9,10,20,30,50\n");
   FrameOptions options;
-  options.image_orientation = ImageOrientation::kStored;
+  options.keep_exif_turn = true;
   const fs::path boxes_file = folder_ / "boxes.csv";
   RunFrames(options, {{"images", photos_}, {"output", output_}, {"detections", boxes_file}}, 2);
   const json frames = ReadArtefact(output_ / "frames.json", "frames");
-  EXPECT_EQ(frames.at("width"), 200);
-  EXPECT_EQ(frames.at("height"), 100);
-  EXPECT_EQ(frames.at("findings").at(0).at("check"), "image_orientation");
+  EXPECT_EQ(frames.at("width"), 100);
+  EXPECT_EQ(frames.at("height"), 200);
+  EXPECT_FALSE(frames.contains("findings"));
   EXPECT_EQ(FileBytes(output_ / "rgb/0.jpg"), FileBytes(photos_ / "0.jpg"));
   const auto boxes = ReadDetectionsCsv(output_ / "detections.csv");
-  // The upright photos are 100 x 200 pixels; their pixel (x, y) is stored at (y, 99 - x) and at
-  // (199 - y, x).
-  EXPECT_EQ(boxes.at(0).box, (Box{20, 69, 50, 89}));
-  EXPECT_EQ(boxes.at(1).box, (Box{149, 10, 179, 30}));
+  for (const LabelledBox& box : boxes) EXPECT_EQ(box.box, (Box{10, 20, 30, 50}));
 }
 
 TEST_F(RunFramesTest, SaysWhatIsLeftOut) {

@@ -101,10 +101,10 @@ TEST_F(RunInspectTest, TheHeadlineOfAMapIsALine) {
   GroundEstimate ground;
   ground.scale = ScalePosterior{.log_sigma = 0.05, .low = -0.1, .high = 0.1};
   ground.known_scales = {{0.0, 0.1, "camera_height_m"}};
-  WriteWorld(File("world.json"), ground, sequence_,
-             {OptionsToJson(GroundOptions()),
-              {},
-              {{kObjectsAgainstSettingsCheck, Severity::kWarning, "", "", "", ""}}});
+  const std::vector<Finding> findings = {
+      {kObjectsAgainstSettingsCheck, Severity::kWarning, "", "", "", ""}};
+  WriteWorld(File("world.json"), ReportOf(ground, sequence_, findings),
+             {OptionsToJson(GroundOptions()), {}, findings});
   EXPECT_EQ(RunInspect(request, true),
             "3 objects, scale +- 11 % (uncertain: the heights of objects contradict the camera's "
             "height given), 1 object uncertain\n");

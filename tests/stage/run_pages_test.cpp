@@ -222,7 +222,7 @@ TEST_F(RunPagesTest, WithoutTrueObjectsNothingIsSaidOfThem) {
   results_.WriteMetrics("room", "OursS", {});
   const std::string html = Markup();
   for (const char* words :
-       {"IoU", "Rot", "yaw error", "Numbers", "all that is true", "ATE", "Worst first", "ruth"}) {
+       {"IoU", "Rot", "yaw error", "Numbers", "all true objects", "ATE", "Worst first", "ruth"}) {
     EXPECT_EQ(html.find(words, html.find("<main")), html.npos) << words;
   }
   EXPECT_THAT(html, AllOf(HasSubstr("<h2>Objects</h2>"), HasSubstr("yaw sigma")));

@@ -8,11 +8,13 @@
 #include <opencv2/imgproc.hpp>
 
 #include "artefact/files.h"
-#include "artefact/model_json.h"
+#include "artefact/json_file.h"
 #include "base/error.h"
 #include "dataset/dataset_json.h"
 #include "dataset/reconstruct_options.h"
 #include "dataset/trajectories.h"
+#include "geometry/angles.h"
+#include "geometry/rigid3.h"
 #include "stage/stages.h"
 #include "support/drawn_photos.h"
 #include "support/expect_error.h"
@@ -110,10 +112,10 @@ TEST_F(RunReconstructTest, WritesADatasetFolder) {
   ASSERT_EQ(point.observations.size(), 3u);
   EXPECT_EQ(point.observations[2].frame_id, 2);
   EXPECT_EQ(point.observations[2].pixel, Eigen::Vector2d(11.5, 24.0));
-  const auto summary = ReadReconstruction(Output("reconstruction.json"));
+  const auto summary = ReadReconstruction(Output("reconstruction.json")).body;
   EXPECT_EQ(summary.registered, 3);
   EXPECT_EQ(summary.colmap, "3.8");
-  EXPECT_FALSE(summary.camera_is_given);
+  EXPECT_EQ(summary.camera, DataSource::kEstimated);
 }
 
 TEST_F(RunReconstructTest, ColmapIsCalledForTheProcessorAndOneCamera) {
@@ -142,7 +144,7 @@ TEST_F(RunReconstructTest, AGivenModelGivesTheSameBytes) {
   for (const char* file : {"camera.json", "odometry.txt", "points.h5"}) {
     EXPECT_EQ(FileBytes(folder_ / "again" / file), FileBytes(Output(file))) << file;
   }
-  EXPECT_EQ(ReadReconstruction(folder_ / "again/reconstruction.json").colmap, "");
+  EXPECT_EQ(ReadReconstruction(folder_ / "again/reconstruction.json").body.colmap, "");
   ExpectError<InputError>([&] { Run("again", "nothing"); }, {"nothing", "no model of COLMAP"});
 }
 
@@ -168,7 +170,7 @@ TEST_F(RunReconstructTest, AModelWithoutTracksGetsPointsOfItsPoses) {
   EXPECT_EQ(ReadTrajectory(Output("odometry.txt")).size(), 6u);
   const std::vector<MapPoint> points = ReadPoints(Output("points.h5"));
   EXPECT_GT(points.size(), 100u);
-  EXPECT_EQ(ReadReconstruction(Output("reconstruction.json")).points, std::ssize(points));
+  EXPECT_EQ(ReadReconstruction(Output("reconstruction.json")).body.points, std::ssize(points));
   const auto is_right = [](const MapPoint& point) {
     return std::abs(point.position_in_world.z() - kDepthM) < 0.1;
   };
@@ -225,7 +227,7 @@ TEST_F(RunReconstructTest, AGivenCameraIsKept) {
   EXPECT_THAT(calls, HasSubstr("--Mapper.ba_refine_focal_length 0"));
   EXPECT_THAT(calls, HasSubstr("--Mapper.max_extra_param 1e6")) << "any distortion is taken";
   EXPECT_EQ(FileBytes(Output("camera.json")), camera);
-  EXPECT_TRUE(ReadReconstruction(Output("reconstruction.json")).camera_is_given);
+  EXPECT_EQ(ReadReconstruction(Output("reconstruction.json")).body.camera, DataSource::kGiven);
   options_.calibration = CalibrationChoice::kInitial;
   camera_ = "SIMPLE_RADIAL 64 48 50 32 24 0.01";
   WriteModel("0", 3);
@@ -234,19 +236,32 @@ TEST_F(RunReconstructTest, AGivenCameraIsKept) {
   EXPECT_THAT(FileBytes(folder_ / "refined/camera.json"), HasSubstr("0.01"));
   options_ = {};
   Write("data/camera.json",
-        R"({"width": 64, "height": 48, "fx": 51, "fy": 50, "cx": 31.5, "cy": 23.5})");
+        R"({"width": 64, "height": 48, "fx": 60, "fy": 50, "cx": 31.5, "cy": 23.5})");
   ExpectError<InputError>([&] { Run("other", "bin/models"); },
-                          {"camera.json", "another camera than the model's", "fx 50.00", "px"});
+                          {"camera.json", "from those of the model's camera", "fx 50.00", "1 px"});
   Write("data/camera.json",
         R"({"width": 64, "height": 48, "fx": 50, "fy": 50, "cx": 31.5, "cy": 23.5,
-                 "distortion": [0.1, 0, 0, 0, 0]})");
-  ExpectError<InputError>([&] { Run("other", "bin/models"); }, {"displaces image points by 0.8"});
+                 "distortion": [0.2, 0, 0, 0, 0]})");
+  ExpectError<InputError>([&] { Run("other", "bin/models"); }, {"image points are 1."});
+}
+
+TEST_F(RunReconstructTest, AGivenCameraThatDiffersLessThanBoxesShowIsKept) {
+  const std::string camera =
+      R"({"width": 64, "height": 48, "fx": 50, "fy": 50, "cx": 31.53, "cy": 23.5})";
+  Write("data/camera.json", camera);
+  camera_ = "PINHOLE 64 48 50 50 32 24";
+  WriteModel("0", 3);
+  Run();
+  EXPECT_THAT(printed_.output,
+              HasSubstr("image points are 0.03 px (root mean square) from those of the model's"));
+  EXPECT_EQ(FileBytes(Output("camera.json")), camera);
 }
 
 TEST_F(RunReconstructTest, FilesInTheDatasetThatAreOfThisStageAreNotGiven) {
   Run("data");
   Run("data");
-  EXPECT_FALSE(ReadReconstruction(Dataset() / "reconstruction.json").camera_is_given);
+  EXPECT_EQ(ReadReconstruction(Dataset() / "reconstruction.json").body.camera,
+            DataSource::kEstimated);
   Write("data/odometry.txt", "0 0 0 0 0 0 0 1\n");
   ExpectError<SettingsError>([&] { Run("data"); }, {"odometry.txt", "would be replaced"});
 }
@@ -288,9 +303,9 @@ TEST_F(RunReconstructTest, FindingsAreReported) {
   }
   EXPECT_THAT(printed_.output, HasSubstr("; 2 images in a second component"));
   EXPECT_THAT(printed_.output, HasSubstr("without a pose, and not used: rgb/more.png\n"));
-  EXPECT_THAT(ReadReconstruction(Output("reconstruction.json")).images_without_pose,
+  EXPECT_THAT(ReadReconstruction(Output("reconstruction.json")).body.images_without_pose,
               testing::ElementsAre("rgb/more.png"));
-  EXPECT_EQ(FindingsFromJson(ParseJsonFile(Output("reconstruction.json"))).size(), 3u);
+  EXPECT_EQ(FindingsOf(ParseJsonFile(Output("reconstruction.json"))).size(), 3u);
 }
 
 TEST_F(RunReconstructTest, AFinishedModelOfAPartOfTheImages) {
@@ -317,8 +332,7 @@ TEST_F(RunReconstructTest, FailuresOfColmapAreNamed) {
 
 // Images that EXIF turns by half a turn, with a model of which the colours of points tell whether
 // it is of the stored ones.
-TEST_F(RunReconstructTest, AModelOfImagesThatExifTurnsIsOfTheStoredOnes) {
-  options_.image_orientation = ImageOrientation::kStored;
+TEST_F(RunReconstructTest, AModelOfStoredImagesThatExifTurnsIsTurnedUpright) {
   cv::Mat image(48, 64, CV_8UC3);
   cv::randu(image, 0, 255);
   cv::resize(image(cv::Rect(0, 0, 16, 12)).clone(), image, image.size(), 0, 0, cv::INTER_NEAREST);
@@ -344,13 +358,26 @@ TEST_F(RunReconstructTest, AModelOfImagesThatExifTurnsIsOfTheStoredOnes) {
     Write("model/points3D.txt", points);
     Run("out", "model");
   };
+  const auto turns = [&] {
+    std::vector<double> degrees;
+    for (const TimedPose& pose : ReadTrajectory(Output("odometry.txt"))) {
+      degrees.push_back(kDegPerRad * LogRotation(pose.world_from_camera.rotation).norm());
+    }
+    return degrees;
+  };
+  using testing::DoubleNear;
+  const auto are_turned =
+      testing::ElementsAre(DoubleNear(180, 1e-6), DoubleNear(0, 1e-6), DoubleNear(180, 1e-6));
   run_with([&](int x, int y) { return image.at<cv::Vec3b>(y, x); });
   EXPECT_EQ(printed_.errors, "");
+  EXPECT_THAT(printed_.output, HasSubstr("EXIF turns 2 of 3 images; the model is of"));
+  EXPECT_THAT(turns(), are_turned);
   run_with([](int, int) { return cv::Vec3b(128, 128, 128); });
   EXPECT_THAT(printed_.errors, HasSubstr("2 images are turned by EXIF within their size"));
-  ExpectError<InputError>(
-      [&] { run_with([&](int x, int y) { return image.at<cv::Vec3b>(47 - y, 63 - x); }); },
-      {"model: 2 images are turned by EXIF", "of upright ones", "exiftran -ai"});
+  EXPECT_THAT(turns(), are_turned);
+  run_with([&](int x, int y) { return image.at<cv::Vec3b>(47 - y, 63 - x); });
+  EXPECT_EQ(printed_.errors, "") << "a model of upright images";
+  EXPECT_THAT(turns(), testing::Each(DoubleNear(0, 1e-6)));
   Write("model/cameras.txt", "1 PINHOLE 48 64 50 50 24 32\n");
   ExpectError<InputError>([&] { Run("out", "model"); },
                           {"rgb/0.png: is 64 x 48 pixels, the model's camera 48 x 64"});

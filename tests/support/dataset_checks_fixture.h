@@ -46,6 +46,8 @@ struct PlausibleDataset {
 
   // What the files say.
   Camera written_camera = camera;
+  std::string camera_source = "the test";
+  std::string first_line_of_boxes;  // a comment
   std::function<Rigid3d(const Rigid3d&)> odometry = [](const Rigid3d& pose) { return pose; };
   std::function<int(int)> pose_of_frame = [](int frame) { return frame; };
   std::function<int(int)> view_of_boxes = [](int frame) { return frame; };
@@ -115,7 +117,7 @@ struct PlausibleDataset {
     const auto write = [&](const std::string& name, const std::string& text) {
       WriteBytes(folder / name, text);
     };
-    write("camera.json", CameraText({written_camera, std::nullopt}, "the test"));
+    write("camera.json", CameraText({written_camera, std::nullopt}, camera_source));
     write("planes.json", plane);
     std::string images, poses, truth;
     for (int frame = 0; frame < kFrames; ++frame) {
@@ -128,7 +130,7 @@ struct PlausibleDataset {
     if (!objects.empty()) write("objects.json", objects);
     write("odometry.txt", poses);
     if (has_truth) write("groundtruth.txt", truth);
-    write("detections.csv", Detections());
+    write("detections.csv", first_line_of_boxes + Detections());
   }
 
  private:

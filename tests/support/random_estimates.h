@@ -78,6 +78,7 @@ inline MapEstimate RandomMap() {
   map.planes_in_world = {RandomPlane(), RandomPlane()};
   map.solver = {12.5,
                 0.1,
+                0.0,
                 1.0 / 3.0,
                 80.0,
                 3,

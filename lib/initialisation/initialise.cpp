@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "initialisation/estimates_of_sequence.h"
+#include "initialisation/initialise.h"
 
 #include <cmath>
 #include <limits>

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "artefact/files.h"
+#include "model/describe_metrics.h"
+
+namespace soslam {
+
+void WriteAssociations(const std::filesystem::path& path, const Associations& associations,
+                       const ArtefactInfo& info) {
+  WriteArtefact(path, "associations", info, DescribedToJson(associations));
+}
+
+void WritePlanes(const std::filesystem::path& path, const PlanesReport& report,
+                 const ArtefactInfo& info) {
+  WriteArtefact(path, "planes", info, DescribedToJson(report));
+}
+
+constexpr const char* kWorldKind = "world";
+
+void WriteWorld(const std::filesystem::path& path, const WorldReport& report,
+                const ArtefactInfo& info) {
+  WriteArtefact(path, kWorldKind, info, DescribedToJson(report));
+}
+
+Artefact<WorldReport> ReadWorld(const std::filesystem::path& path) {
+  return ReadDescribed<WorldReport>(path, kWorldKind);
+}
+
+constexpr const char* kReconstructionKind = "reconstruction";
+
+void WriteReconstruction(const std::filesystem::path& path, const ReconstructionSummary& summary,
+                         const ArtefactInfo& info) {
+  WriteArtefact(path, kReconstructionKind, info, DescribedToJson(summary));
+}
+
+Artefact<ReconstructionSummary> ReadReconstruction(const std::filesystem::path& path) {
+  return ReadDescribed<ReconstructionSummary>(path, kReconstructionKind);
+}
+
+void WriteMetrics(const std::filesystem::path& path, const Metrics& metrics,
+                  const Sequence& sequence, const ArtefactInfo& info) {
+  ArtefactInfo with_findings = info;
+  if (metrics.map_quality) with_findings.findings = metrics.map_quality->alignments.findings;
+  WriteArtefact(path, "metrics", with_findings, DescribedToJson(metrics, &sequence));
+}
+
+}  // namespace soslam

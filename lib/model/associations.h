@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/description.h"
+#include "geometry/box.h"
+
+namespace soslam {
+
+// The content of associations.json: which detections were found to be of the same object, and why.
+// Frames and objects are named by their ids.
+
+// Result of linking one detection to the tracks of earlier frames.
+enum class LinkDecision {
+  kNewTrack,   // no track fits it better than an unseen object does
+  kLinked,     // to a track that stayed in the image since its last detection
+  kRevisited,  // to a track that left the image since its last detection
+  kDuplicate,  // dropped: a box with a higher score covers the same place
+};
+inline constexpr std::array kLinkDecisionNames = {"new_track", "linked", "revisited", "duplicate"};
+inline constexpr const auto& NamesOf(LinkDecision) { return kLinkDecisionNames; }
+
+// Result of a track after merging and removal of false tracks.
+enum class TrackFate {
+  kObject,
+  kMerged,            // into another track that fits enough of its boxes
+  kTooFewDetections,  // false: fewer than min_observations
+  kRarelyDetected,    // false: in less than min_detection_share of the frames that should show it
+  kNoLandmark,        // its boxes determine no landmark
+  kNoSupport,         // its boxes fit better at a free height than on any support plane
+  kMoves,             // its label is one of things that move
+  kLowScores,         // false: none of its detections has min_best_score
+  kNeverWhole,        // false: none of its detections shows all edges
+};
+inline constexpr std::array kTrackFateNames = {
+    "object",     "merged", "too_few_detections", "rarely_detected", "no_landmark",
+    "no_support", "moves",  "low_scores",         "never_whole"};
+inline constexpr const auto& NamesOf(TrackFate) { return kTrackFateNames; }
+
+struct Associations {
+  struct DetectionName {
+    int frame = 0;
+    int given_object = 0;
+  };
+  struct Link {
+    double overlap = 0.0;
+    double distance_sigmas = 0.0;
+    std::optional<BoxSide> cut_edge = {};
+    int frames_since_seen = 0;
+  };
+  struct DetectionRow {
+    DetectionName name;
+    LinkDecision decision = LinkDecision::kNewTrack;
+    std::optional<Link> link = {};
+    std::optional<int> track = {}, object = {};
+    bool superseded = false;
+    std::optional<DetectionName> duplicate_of = {};
+  };
+  struct MergeRow {
+    int into_track = 0;
+    int explained_boxes = 0;
+    int tried_boxes = 0;
+    int shared_frames = 0;
+  };
+  struct TrackRow {
+    int track = 0;
+    TrackFate fate = TrackFate::kObject;
+    std::optional<MergeRow> merge = {};
+    int linked_detections = 0;
+    int detections = 0;
+    std::optional<int> frames_in_sight = {};
+  };
+  struct ObjectRow {
+    int object = 0;
+    int track = 0;
+    std::string label;
+    std::map<std::string, double> label_votes = {};
+    int detections = 0;
+    std::optional<int> given_object = {};
+  };
+  struct AgreementRow {
+    int objects = 0;
+    int given_objects = 0;
+    int matched = 0;
+    std::optional<double> precision = {}, recall = {}, f1 = {};
+  };
+  std::vector<DetectionRow> detections = {};
+  std::vector<TrackRow> tracks = {};
+  std::vector<ObjectRow> objects = {};
+  AgreementRow agreement;
+};
+
+template <typename Visitor>
+void Describe(Visitor& visit, Associations::DetectionName& name) {
+  visit.Field("frame", &name.frame, "id of the frame", kNotNegative);
+  visit.Field("given_object", &name.given_object,
+              "id of the object that the detection has in the sequence that was read, which names "
+              "it with the frame; no decision looks at it");
+}
+
+template <typename Visitor>
+void Describe(Visitor& visit, Associations::Link& link) {
+  visit.Field("overlap", &link.overlap,
+              "intersection over union of the box and that of the outline of the track's landmark",
+              kShare);
+  visit.Field("distance_sigmas", &link.distance_sigmas,
+              "Mahalanobis distance of the box from the expected one: spread of boxes, covariance "
+              "of the landmark, drift of the odometry since it was last seen",
+              kNotNegative);
+  visit.Field("cut_edge", &link.cut_edge,
+              "edge that was taken as cut off by something unknown, and left out of the distance");
+  visit.Field("frames_since_seen", &link.frames_since_seen, "since the track's last detection",
+              kAtLeastOne);
+}
+
+template <typename Visitor>
+void Describe(Visitor& visit, Associations::DetectionRow& row) {
+  Describe(visit, row.name);
+  visit.Field("decision", &row.decision,
+              "new_track: no track fits it better than an unseen object does; linked: to a track "
+              "that stayed in the image since its last detection; revisited: to one that left it; "
+              "duplicate: a box with a higher score covers the same place");
+  visit.Field("link", &row.link, "fit of the track to the box; null without a link");
+  visit.Field("track", &row.track, "that it was linked to or started; null for duplicates",
+              kNotNegative);
+  visit.Field("object", &row.object,
+              "id of the object that it is of; null where it is not used: it is a duplicate or "
+              "superseded, or the fate of its track says why",
+              kAtLeastOne);
+  visit.Field("superseded", &row.superseded,
+              "not used: its object has another box in the frame, from a track that was merged");
+  visit.Field("duplicate_of", &row.duplicate_of, "the detection that it is a duplicate of");
+}
+
+template <typename Visitor>
+void Describe(Visitor& visit, Associations::MergeRow& merge) {
+  visit.Field("into_track", &merge.into_track, "the track that took it up", kNotNegative);
+  visit.Field("explained_boxes", &merge.explained_boxes, "of its boxes that the other one fits",
+              kNotNegative);
+  visit.Field("tried_boxes", &merge.tried_boxes, "of its boxes that were tested", kAtLeastOne);
+  visit.Field("shared_frames", &merge.shared_frames, "in which both have a detection",
+              kNotNegative);
+}
+
+template <typename Visitor>
+void Describe(Visitor& visit, Associations::TrackRow& row) {
+  visit.Field("track", &row.track, "position in this list, from 0", kNotNegative);
+  visit.Field("fate", &row.fate,
+              "object: it is one; merged: into another track; the others are false: "
+              "too_few_detections; rarely_detected, for the frames that should show it; "
+              "no_landmark: its boxes determine no body; no_support: they fit better at a free "
+              "height than on any support plane; moves: its label is one of moving_labels; "
+              "low_scores: none of its detections has min_best_score; never_whole: none of its "
+              "detections shows all edges");
+  visit.Field("merge", &row.merge, "why it was merged; null where it was not");
+  visit.Field("linked_detections", &row.linked_detections, "linked frame by frame", kAtLeastOne);
+  visit.Field("detections", &row.detections, "with those of tracks merged into it, one per frame",
+              kAtLeastOne);
+  visit.Field("frames_in_sight", &row.frames_in_sight,
+              "frames that should show it: in the image, near enough and not hidden; null where "
+              "its fate was decided without",
+              kNotNegative);
+}
+
+template <typename Visitor>
+void Describe(Visitor& visit, Associations::ObjectRow& row) {
+  visit.Field("object", &row.object, "id in the sequence that was written", kAtLeastOne);
+  visit.Field("track", &row.track, "the track that it is", kNotNegative);
+  visit.Field("label", &row.label, "the label with the most votes", kNotEmpty);
+  visit.Field("label_votes", &row.label_votes, "sum of the scores of its detections, by label");
+  visit.Field("detections", &row.detections, "number", kAtLeastOne);
+  visit.Field("given_object", &row.given_object,
+              "id of the given object with which it shares the most detections, one to one, and "
+              "whose ground truth it takes");
+}
+
+template <typename Visitor>
+void Describe(Visitor& visit, Associations::AgreementRow& agreement) {
+  visit.Field("objects", &agreement.objects, "found ones", kNotNegative);
+  visit.Field("given_objects", &agreement.given_objects,
+              "objects of the sequence that was read that stand still, with at least "
+              "min_observations detections",
+              kNotNegative);
+  visit.Field("matched", &agreement.matched,
+              "pairs that share more than half of the detections that either has", kNotNegative);
+  visit.Field("precision", &agreement.precision, "matched / objects; null without given objects",
+              kShare);
+  visit.Field("recall", &agreement.recall, "matched / given_objects", kShare);
+  visit.Field("f1", &agreement.f1, "their harmonic mean", kShare);
+}
+
+template <typename Visitor>
+void Describe(Visitor& visit, Associations& associations) {
+  visit.Field("detections", &associations.detections,
+              "all detections of the sequence that was read, in its order");
+  visit.Field("tracks", &associations.tracks, "in the order in which they were started");
+  visit.Field("objects", &associations.objects, "of the sequence that was written, by id");
+  visit.Field("agreement", &associations.agreement, "of the objects with the given ones");
+}
+
+}  // namespace soslam
