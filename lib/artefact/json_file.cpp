@@ -117,6 +117,7 @@ std::string DigestViolation(const std::string& sha256) {
 }
 
 std::vector<Finding> FindingsOf(const json& artefact) {
+  if (!artefact.is_object()) throw InputError("is no object; expected an artefact");
   return DescribedFromJson<std::vector<Finding>>(artefact.value("findings", json::array()));
 }
 
@@ -216,8 +217,9 @@ void internal::ReadInFile(const std::filesystem::path& path, const json& documen
   try {
     read();
   } catch (const InputError& error) {
-    const json version =
-        document.value("/artefact/schema_version"_json_pointer, json(kSchemaVersion));
+    const json header = document.is_object() ? document.value("artefact", json()) : json();
+    const json version = header.is_object() ? header.value("schema_version", json(kSchemaVersion))
+                                            : json(kSchemaVersion);
     throw InputError(fmt::format(
         "{}: {}{}", path.string(), error.what(),
         version == json(kSchemaVersion)
