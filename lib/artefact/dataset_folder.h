@@ -117,6 +117,7 @@ void Describe(Visitor& visit, FramesRecord& record) {
   visit.OrDefault("ordered_by", &record.ordered_by, std::string("time"),
                   "time, that of the video or in the EXIF data of photos; or name, with numbers as "
                   "numbers");
+  visit.Check([&] { return NotOneOf("ordered_by", record.ordered_by, {"time", "name"}); });
   std::vector<SourceFrame> chosen, left_out;
   for (const SourceFrame& frame : record.frames) {
     (frame.rejection ? left_out : chosen).push_back(frame);

@@ -14,7 +14,8 @@ using nlohmann::json;
 
 json::json_pointer Place::Pointer() const {
   if (parent_ == nullptr) return json::json_pointer();
-  return key_.empty() ? parent_->Pointer() / index_ : parent_->Pointer() / std::string(key_);
+  return key_.data() == nullptr ? parent_->Pointer() / index_
+                                : parent_->Pointer() / std::string(key_);
 }
 
 namespace internal {

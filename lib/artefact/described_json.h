@@ -323,6 +323,8 @@ class JsonReader {
     } else if constexpr (std::same_as<Value, bool>) {
       *value = internal::ReadTruth(json, place);
     } else if constexpr (std::integral<Value>) {
+      static_assert(sizeof(Value) <= sizeof(int),
+                    "limits are doubles, which have all such numbers");
       Limits of_type = limits;
       of_type.min = std::max(limits.min, static_cast<double>(std::numeric_limits<Value>::min()));
       of_type.max = std::min(limits.max, static_cast<double>(std::numeric_limits<Value>::max()));

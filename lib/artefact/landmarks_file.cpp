@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <stdexcept>
+
 #include "artefact/files.h"
 #include "model/describe_estimates.h"
 
@@ -22,6 +24,10 @@ MapEstimate ReadMap(const std::filesystem::path& path, const Sequence& sequence)
 
 void WriteMap(const std::filesystem::path& path, const MapEstimate& map, const Sequence& sequence,
               const ArtefactInfo& info) {
+  if (map.world_from_camera.size() != sequence.frames.size() ||
+      map.planes_in_world.size() != sequence.planes.size()) {
+    throw std::logic_error("the map has other frames or planes than its sequence");
+  }
   WriteArtefact(path, kMapKind, info, DescribedToJson(map, &sequence));
 }
 

@@ -107,6 +107,11 @@ void CheckBases(const std::vector<RunFile>& files, const RunRecord& record,
 void WriteRun(const std::filesystem::path& path, const RunRecord& record) {
   json document = DescribedToJson(record);
   document["artefact"] = HeaderOfKind(kRunKind);
+  try {
+    DescribedFromJson<RunDocument>(document);
+  } catch (const InputError& error) {
+    throw std::logic_error(fmt::format("{}: {}", path.string(), error.what()));
+  }
   WriteTextFile(path, JsonText(document, 2) + "\n");
 }
 

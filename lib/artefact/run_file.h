@@ -81,11 +81,14 @@ void Describe(Visitor& visit, RunSetting& setting) {
   visit.Field("value", &setting.value, "number, text or truth value");
   visit.Field("origin", &setting.origin, "default, settings file or command line");
   visit.Check([&] {
-    const std::array known = {"default", "settings file", "command line"};
-    return std::ranges::find(known, setting.origin) != known.end()
-               ? std::string()
-               : fmt::format("origin is \"{}\"; expected default, settings file or command line",
-                             setting.origin);
+    return NotOneOf("origin", setting.origin, {"default", "settings file", "command line"});
+  });
+  visit.Check([&] {
+    const bool is_plain =
+        setting.value.is_boolean() || setting.value.is_number() || setting.value.is_string();
+    return is_plain ? std::string()
+                    : "value is " + Excerpt(setting.value) +
+                          "; expected a number, a text or a truth value";
   });
 }
 
@@ -93,10 +96,10 @@ template <typename Visitor>
 void Describe(Visitor& visit, RunRecord& record) {
   visit.Field("stage", &record.stage, "name of the executable");
   visit.Check([&] {
-    const bool is_name =
-        record.stage.starts_with("soslam-") && std::ranges::all_of(record.stage, [](char letter) {
-          return letter == '-' || (letter >= 'a' && letter <= 'z');
-        });
+    const bool is_name = record.stage.size() > 7 && record.stage.starts_with("soslam-") &&
+                         std::ranges::all_of(record.stage, [](char letter) {
+                           return letter == '-' || (letter >= 'a' && letter <= 'z');
+                         });
     return is_name ? std::string()
                    : fmt::format("/stage is \"{}\"; expected soslam-...", record.stage);
   });
@@ -113,6 +116,11 @@ void Describe(Visitor& visit, RunRecord& record) {
   visit.Field("exit_code", &record.exit_code, "of the program", {0.0, 255.0});
   visit.OrNull("error", &record.error, "why it failed; null after success");
   visit.Field("timing", &record.timing, "as in timing.json");
+  visit.Check([&] {
+    return record.timing.is_object()
+               ? std::string()
+               : "timing is " + Excerpt(record.timing) + "; expected an object with fields";
+  });
 }
 
 // The schema of run.json, with its header.

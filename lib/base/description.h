@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <concepts>
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <string>
+#include <vector>
 
 namespace soslam {
 
@@ -60,6 +66,13 @@ template <typename Enum>
 concept Named = requires(Enum value) {
   { NamesOf(value) } -> std::convertible_to<std::span<const char* const>>;
 };
+
+// What keeps a text from being one of these, in words; empty if it is one.
+inline std::string NotOneOf(const char* field, const std::string& text,
+                            const std::vector<std::string>& known) {
+  if (std::ranges::find(known, text) != known.end()) return "";
+  return fmt::format("{} is \"{}\"; expected {}", field, text, fmt::join(known, " or "));
+}
 
 template <Named Enum>
 const char* NameOf(Enum value) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <stdexcept>
 #include <utility>
 #include <variant>
 
@@ -175,6 +176,9 @@ class Importer {
       detection.frame_index = std::get<int>(slots_.at(row.frame_id));
       const auto object =
           std::ranges::lower_bound(sequence_->objects, row.object_id, {}, &Object::id);
+      if (object == sequence_->objects.end() || object->id != row.object_id) {
+        throw std::logic_error(fmt::format("no reader makes object {}", row.object_id));
+      }
       detection.object_index = static_cast<int>(object - sequence_->objects.begin());
       detection.score = row.score;
       detection.box = row.box;

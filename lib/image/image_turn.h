@@ -48,7 +48,7 @@ constexpr ImageTurn ExifTurn(int orientation) {
 }
 
 // The turned box; `size` is that of the image before.
-inline Box TurnedBox(const Box& box, const ImageSize& size, const ImageTurn& turn) {
+inline Box Turned(const Box& box, const ImageSize& size, const ImageTurn& turn) {
   const Eigen::Vector2d one = turn.Turned({box.x_min, box.y_min}, size);
   const Eigen::Vector2d other = turn.Turned({box.x_max, box.y_max}, size);
   const Eigen::Vector2d least = one.cwiseMin(other), most = one.cwiseMax(other);

@@ -97,8 +97,8 @@ void Describe(Visitor& visit, ObjectMetrics& metrics) {
               "smallest rotation onto any axes of the truth; null for bodies of rotation");
   visit.Field("yaw_error_deg", &metrics.yaw_deg,
               "between the x axes about the true z axis, modulo half a turn");
-  visit.Field("attitude_error_deg", &metrics.attitude_deg,
-              "smallest rotation of the object's own axes onto the true ones up to half turns");
+  visit.OrDefault("attitude_error_deg", &metrics.attitude_deg, {},
+                  "smallest rotation of the object's own axes onto the true ones up to half turns");
   visit.Field("what_if", &metrics.what_if,
               "of single-frame estimates: means over the observations, 0 without landmark");
 }

@@ -288,7 +288,7 @@ void Describe(Visitor& visit, Sequence& sequence) {
                  "the camera without it");
   visit.AfterReading([&] { sequence.image_distortion = DistortionOfCoefficients(distortion); });
   visit.Check([&] {
-    return distortion.empty() || sequence.image_distortion
+    return distortion.empty() || (distortion.size() > 4 && sequence.image_distortion)
                ? std::string()
                : fmt::format("image_distortion has {} numbers; expected 5, 8, 12 or 14",
                              distortion.size());

@@ -276,8 +276,14 @@ void Describe(Visitor& visit, WorldReport::Up& up) {
   visit.Field("found_by", &up.found_by,
               "planes: horizontal planes of points with objects on them; cameras: the way that "
               "cameras are held");
+  visit.Check([&] { return NotOneOf("found_by", up.found_by, {"planes", "cameras"}); });
   visit.Field("cameras_held", &up.cameras_held,
               "as held in planes.json; turned: in many ways, so that only planes tell up");
+  visit.Check([&] {
+    std::vector<std::string> known(kCameraHoldingNames.begin(), kCameraHoldingNames.end());
+    known.push_back("turned");
+    return NotOneOf("cameras_held", up.cameras_held, known);
+  });
   visit.Field("verticals", &up.verticals,
               "vertical edges in the images were used; false also where points contradict them");
   visit.Field("sigma_of_cameras_deg", &up.sigma_of_cameras_deg, "of up without the points",

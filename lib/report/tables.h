@@ -99,6 +99,8 @@ template <typename Visitor>
 void Describe(Visitor& visit, PublishedTable& table) {
   visit.Field("table", &table.table, "its number, as I", kNotEmpty);
   visit.Field("quantity", &table.quantity, "iou or rotation_deg: means over objects", kNotEmpty);
+  visit.Check([&] { return NotOneOf("table", table.table, {"I", "II", "III", "IV"}); });
+  visit.Check([&] { return NotOneOf("quantity", table.quantity, {"iou", "rotation_deg"}); });
   visit.Field("source", &table.source, "where it is printed", kNotEmpty);
   visit.Field("rows", &table.rows, "in the order of the publication");
   visit.Field("average", &table.average, "as printed", {},

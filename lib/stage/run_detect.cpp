@@ -146,9 +146,9 @@ AllDetections DetectInBoth(const std::vector<fs::path>& images, const DetectIn& 
     const ImageHeader header = ReadImageHeader(turned[i]).value();
     const ImageTurn turn = ExifTurn(header.orientation);
     for (YoloDetection& detection : *detections[i]) {
-      detection.box = is_stored ? TurnedBox(detection.box, header.stored, turn)
-                                : TurnedBox(detection.box, header.Size(ImageOrientation::kUpright),
-                                            turn.Inverse());
+      detection.box = is_stored ? Turned(detection.box, header.stored, turn)
+                                : Turned(detection.box, header.Size(ImageOrientation::kUpright),
+                                         turn.Inverse());
     }
   }
   return all;

@@ -28,6 +28,7 @@ TEST_F(EditedFileTest, SequencesAreRefused) {
        {"/frames/0/world_from_camera/translation", "[1, 2]",
         "/frames/0/world_from_camera/translation is [1,2]"},
        {"/camera/fx", "0", "/camera/fx is 0"},
+       {"/image_distortion", "[0.1, 0.2, 0.0, 0.0]", "image_distortion has 4 numbers"},
        {"/objects/0/ground_truth/landmark/half_axes/2", "-1",
         "/objects/0/ground_truth/landmark/half_axes/2 is -1"},
        {"/objects/0/ground_truth/landmark/shape_exponent", "0.99",

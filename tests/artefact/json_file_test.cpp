@@ -104,6 +104,13 @@ TEST_F(JsonFileTest, AnOlderFileThatLacksAFieldIsSaidToBeOlder) {
                            "schema version is [1,8]", "[1, 10]: run the stage"});
 }
 
+TEST_F(JsonFileTest, FindingsOfWhatIsNoArtefactAreRefused) {
+  for (const json& document : {json(), json::array(), json("text")}) {
+    ExpectError<InputError>([&] { FindingsOf(document); }, {"is no object"});
+  }
+  EXPECT_TRUE(FindingsOf(json::object()).empty());
+}
+
 TEST_F(JsonFileTest, WritingWhatTheSchemaForbidsIsOurBug) {
   EXPECT_THROW(WriteArtefact(file, "landmarks", {}, {{"objects", 3}}), std::logic_error);
   EXPECT_THROW(WriteArtefact(file, "no such kind", {}, json::object()), std::logic_error);

@@ -103,6 +103,22 @@ TEST_F(SemanticTableFileTest, WhatIsMountedCannotLie) {
       {"table.json: /labels/cup: attitude is any_face and mount on_wall"});
 }
 
+TEST_F(SemanticTableFileTest, WhatIsNoTableIsRefusedByName) {
+  for (const json& document : {json(), json::array({kRatioOnly}), json("chair"), json(3)}) {
+    ExpectError<InputError>([&] { Read(document); }, {"table.json: the document is "});
+  }
+  ExpectError<InputError>(
+      [&] {
+        Read({{"artefact", json::array()}, {"labels", {{"cup", kRatioOnly}}}});
+      },
+      {"table.json: has no artefact header"});
+  ExpectError<InputError>(
+      [&] {
+        Read({{"labels", {{"", {{"a_by_c", 1.0}}}}}});
+      },
+      {"/labels/ has no field"});
+}
+
 TEST_F(SemanticTableFileTest, WrittenRowsAreReadAsTheyWere) {
   SemanticRow cup = {
       "cup", {"mug"}, {{1.2, 0.9}, {0.1, 0.2}, 1.4, 0.5, LogNormal{0.1, 0.3}}, 7, "the test"};

@@ -44,6 +44,21 @@ TEST_F(PaperTablesTest, NoneWithoutAMeasuredValue) {
   EXPECT_THAT(PaperTables(Read(), OnePublishedTable()), IsEmpty());
 }
 
+TEST(ReadPublished, RefusesAQuantityThatIsNone) {
+  const TemporaryFolder folder;
+  const nlohmann::json means = {{"objects", 3}, {"values", {{"OursS", 0.5}}}};
+  const auto path =
+      WriteBytes(folder / "published.json", nlohmann::json({{"tables",
+                                                             {{{"table", "I"},
+                                                               {"quantity", "iuo"},
+                                                               {"source", "a paper"},
+                                                               {"rows", nlohmann::json::array()},
+                                                               {"average", means}}}}})
+                                                .dump());
+  ExpectError<InputError>([&] { ReadPublished(path); },
+                          {"published.json: /tables/0: quantity is \"iuo\""});
+}
+
 TEST_F(PaperTablesTest, PublishedRowsStandBelowMeasuredOnes) {
   results_.WriteMetrics("attic", "OursP", {{.id = 1, .iou = 0.5}});
   results_.WriteMetrics("room", "OursP", {{.id = 1, .iou = 0.25, .observations = 7}});

@@ -268,6 +268,10 @@ TEST_F(PlanTest, RefusalsNameTheFile) {
   ExpectRefused("Full", {"datasets/room.json", "'extends' is for variants only"});
   Write("pipelines/datasets/room.json", R"({"about": {"boxes_of": "hand"}})");
   ExpectRefused("Plain", {"datasets/room.json: about", "boxes_of"});
+  for (const char* about : {"[]", "\"my room\"", "3"}) {
+    Write("pipelines/datasets/room.json", fmt::format(R"({{"about": {}}})", about));
+    ExpectRefused("Plain", {"datasets/room.json: about: the document is ", about});
+  }
   // Also of a stage that does not run.
   Write("pipelines/datasets/room.json", R"({"associate": {"min_observations": 0}})");
   ExpectRefused("Plain", {"datasets/room.json: associate", "min_observations"});
