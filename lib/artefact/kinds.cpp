@@ -41,10 +41,7 @@ const std::vector<ArtefactKind>& ArtefactKinds() {
       KindOf<PlanesReport>("planes", "estimated support planes"),
       KindOf<ReconstructionSummary>("reconstruction",
                                     "poses, camera and points by structure from motion"),
-      {"semantic_table",
-       "sizes and shapes by label (SemTable of eq. (11)): a, b and c are the "
-       "half axes along x (front), y (left) and z (up) of the upright thing",
-       &SemanticTableSchema,
+      {"semantic_table", "sizes and shapes by label", &SemanticTableSchema,
        [](const nlohmann::json& document) { DescribedFromJson<Artefact<SemanticRows>>(document); }},
       KindOf<Sequence>("sequence", "a dataset, checked and gated"),
       KindOf<WorldReport>("world", "up, scale and support planes of a world that had neither")};

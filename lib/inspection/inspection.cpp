@@ -10,6 +10,7 @@
 
 #include "artefact/hdf5_artefact.h"
 #include "artefact/json_file.h"
+#include "artefact/kinds.h"
 #include "association/options.h"
 #include "base/error.h"
 #include "base/options.h"
@@ -122,27 +123,26 @@ constexpr size_t kLineWidth = 100;
 
 struct Kind {
   const char* name;
-  const char* title;
+  const char* title;  // null: that of ArtefactKinds()
   Inspection (*of_document)(const json& document) = nullptr;
   Inspection (*of_file)(const std::filesystem::path& file) = nullptr;
 };
 
 constexpr std::array<Kind, 13> kKinds = {{
-    {"associations", "which detections are of the same object, and why", &InspectAssociations},
+    {"associations", nullptr, &InspectAssociations},
     {"edges", "edges, distances and corners of images", nullptr, &InspectEdges},
-    {"frames", "images chosen from photos or a video", &InspectFrames},
-    {"landmarks", "estimated landmarks", &InspectLandmarks},
-    {"map", "landmarks and trajectory of the back end", &InspectMap},
-    {"metrics", "errors against ground truth", &InspectMetrics},
-    {"planes", "estimated support planes", &InspectPlanes},
+    {"frames", nullptr, &InspectFrames},
+    {"landmarks", nullptr, &InspectLandmarks},
+    {"map", nullptr, &InspectMap},
+    {"metrics", nullptr, &InspectMetrics},
+    {"planes", nullptr, &InspectPlanes},
     {"points", "sparse points of structure from motion", nullptr, &InspectPoints},
-    {"reconstruction", "poses, camera and points by structure from motion", nullptr,
-     &InspectReconstruction},
-    {"semantic_table", "sizes and shapes by label", nullptr, &InspectSemanticTable},
-    {"sequence", "a dataset, checked and gated", nullptr, &InspectSequence},
+    {"reconstruction", nullptr, nullptr, &InspectReconstruction},
+    {"semantic_table", nullptr, nullptr, &InspectSemanticTable},
+    {"sequence", nullptr, nullptr, &InspectSequence},
     {"symmetry", "what symmetry and edges say about the yaw of observations", nullptr,
      &InspectSymmetry},
-    {"world", "up, scale and support planes of a world that had neither", nullptr, &InspectWorld},
+    {"world", nullptr, nullptr, &InspectWorld},
 }};
 
 const Kind& FindKind(std::string_view name, const std::filesystem::path& file) {
@@ -187,7 +187,8 @@ Inspection Inspect(const std::filesystem::path& file, const std::optional<Sequen
   Inspection inspection = kind.of_file != nullptr ? kind.of_file(file)
                                                   : kind.of_document(ReadArtefact(file, kind.name));
   if (sequence) AddLabels(*sequence, &inspection.table);
-  inspection.title = fmt::format("{}: {} ({})", file.string(), kind.name, kind.title);
+  const std::string title = kind.title == nullptr ? FindArtefactKind(kind.name)->title : kind.title;
+  inspection.title = fmt::format("{}: {} ({})", file.string(), kind.name, title);
   try {
     const std::vector<Fact> provenance = Provenance(header);
     inspection.facts.insert(inspection.facts.begin(), provenance.begin(), provenance.end());

@@ -105,7 +105,10 @@ void Describe(Visitor& visit, SemanticRows& rows) {
                  "for labels that are not listed; absent: objects of such labels are left out");
   std::map<std::string, SemanticRow> labels;
   for (const SemanticRow& row : rows.rows) labels[row.label] = row;
-  visit.Field("labels", &labels, "entries by label");
+  visit.Field(
+      "labels", &labels,
+      "entries by label: SemTable of eq. (11), a, b and c the half axes along x (front), y (left) "
+      "and z (up) of the upright thing");
   visit.AfterReading([&] {
     if (rows.default_row) rows.default_row->label = "default";
     rows.rows.clear();
