@@ -147,6 +147,12 @@ class Recording {
     for (const KittiLabel& label : labels_) tracks[label.track].push_back(&label);
     for (auto& [track, labels] : tracks) {
       std::ranges::stable_sort(labels, {}, &KittiLabel::frame);
+      const auto again = std::ranges::adjacent_find(labels, {}, &KittiLabel::frame);
+      if (again != labels.end()) {
+        throw InputError(
+            fmt::format("{}: track {} again in frame {}; expected each track once a frame",
+                        (*std::next(again))->place, track, (*again)->frame));
+      }
       std::vector<Landmark> in_world;
       for (const KittiLabel* label : labels) {
         if (label->type != labels.front()->type) {

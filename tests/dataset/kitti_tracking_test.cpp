@@ -196,6 +196,10 @@ TEST_F(KittiTrackingTest, BadInputIsRefused) {
   ExpectRefusedWith("label_02/0003.txt",
                     "0 5 " + KittiBox().Columns() + "1 5 " + KittiBox().Columns("Van"),
                     {"label_02/0003.txt:2", "track 5", "Van", "Car"});
+  ExpectRefusedWith(
+      "label_02/0003.txt",
+      "1 5 " + KittiBox().Columns() + "0 5 " + KittiBox().Columns() + "1 5 " + KittiBox().Columns(),
+      {"label_02/0003.txt:3", "track 5 again in frame 1"});
   ExpectRefusedWith("label_02/0003.txt", KittiBox().Columns(), {"15 values", "frame track"});
   ExpectRefusedWith("poses/0007.txt", "", {"poses/0007.txt", "no pose"});
   ExpectRefusedWith("calib/0007.txt", "", {"calib/0007.txt", "P2"});
