@@ -135,25 +135,14 @@ std::vector<SettingsOfFile> ReadVariantLayers(fs::path file) {
 }
 
 void CheckNeeds(const VariantSettings& settings, const std::string& file) {
-  const auto need = [&](const std::string& who, const std::string& stage) {
-    if (settings.options.contains(stage)) return;
-    throw SettingsError(fmt::format("{}: {} stage '{}' in 'stages'", file, who, stage));
-  };
   for (const auto& [name, options] : settings.options) {
-    for (const std::string& needed : FindStage(name)->needs) {
-      need(fmt::format("stage '{}' needs", name), needed);
-    }
-  }
-  const std::pair<const char*, const char*> users_of_images[] = {
-      {"initialise", "setting 'method' = cuboid_proposals of initialise needs"},
-      {"optimise", "settings 'symmetry' and 'edge_alignment' of optimise need"}};
-  for (const auto& [stage, who] : users_of_images) {
-    const auto used = settings.options.find(stage);
-    if (used != settings.options.end() && UsesImages(stage, used->second)) need(who, "edges");
-  }
-  for (const auto& [stage, options] : settings.options) {
-    if (UsesPoints(options)) {
-      need(fmt::format("setting 'point_evidence' of {} needs", stage), "track");
+    for (const StageInput& input : FindStage(name)->inputs) {
+      // The last of the makers; the others read what it writes.
+      const std::string& needed = input.makers.back();
+      const std::optional<std::string> asking = AskingSetting(input, options);
+      if (!asking || settings.options.contains(needed)) continue;
+      throw SettingsError(fmt::format("{}: stage '{}'{}{} needs stage '{}' in 'stages'", file, name,
+                                      asking->empty() ? "" : " with ", *asking, needed));
     }
   }
 }

@@ -29,39 +29,58 @@ json Resolve(const json& values, const std::string& where) {
 }
 
 template <typename Options>
-PipelineStage Stage(const char* name, std::vector<std::string> needs,
-                    std::set<std::string> other_inputs, std::vector<StageOutput> outputs,
-                    const char* asked_by = nullptr) {
+PipelineStage Stage(const char* name, std::vector<StageInput> inputs,
+                    std::map<std::string, std::string> other_inputs,
+                    std::vector<StageOutput> outputs, const char* asked_by = nullptr) {
   return {name,
           &Resolve<Options>,
           &OptionRows<Options>,
-          std::move(needs),
+          std::move(inputs),
           std::move(other_inputs),
           std::move(outputs),
           asked_by};
 }
 
+std::vector<PipelineStage> MakeStages() {
+  const std::pair<std::string, std::string> dataset = {"dataset", "$(dataset)"};
+  const std::pair<std::string, std::string> table = {"table", "$(pipelines)/{}"};
+  const StageInput imported = {"sequence", {"import"}};
+  const StageInput sequence = {"sequence", {"planes", "associate", "ground", "import"}};
+  const StageInput initial = {"initial", {"initialise"}};
+  const StageInput edges = {"edges", {"edges"}};
+  const StageInput edges_of_cuboids = {"edges", {"edges"}, {{"method", "cuboid_proposals"}}};
+  const StageInput edges_of_symmetry = {
+      "edges", {"edges"}, {{"symmetry", true}, {"edge_alignment", true}}};
+  const StageInput points = {"points", {"track"}, {{"point_evidence", true}}};
+  const StageInput start = {"landmarks", {"refine", "initialise"}};
+  const StageInput landmarks = {"landmarks", {"optimise", "refine", "initialise"}};
+  const StageOutput sequence_file = {"output", "sequence.json"};
+  return {
+      Stage<ImportOptions>("import", {}, {dataset}, {sequence_file}),
+      Stage<GroundOptions>("ground", {sequence},
+                           {dataset, {"points", "$(dataset)/points.h5"}, table},
+                           {sequence_file, {"world", "world.json"}}, "ground"),
+      Stage<AssociateOptions>("associate", {sequence}, {table},
+                              {sequence_file, {"associations", "associations.json"}},
+                              "association"),
+      Stage<PlanesOptions>("planes", {sequence}, {dataset, table},
+                           {sequence_file, {"report", "planes.json"}}, "planes"),
+      // Neither edge maps nor points depend on the world or its unit.
+      Stage<EdgesOptions>("edges", {imported}, {dataset}, {{"output", "edges.h5"}}),
+      Stage<TrackOptions>("track", {imported}, {dataset}, {{"output", "points.h5"}}),
+      Stage<InitialiseOptions>("initialise", {sequence, edges_of_cuboids, points}, {table},
+                               {{"output", "initial.json"}}),
+      Stage<OrientationOptions>("refine", {sequence, edges, initial, points}, {table},
+                                {{"output", "refined.json"}, {"curves", "symmetry.h5"}}),
+      Stage<OptimiseOptions>("optimise", {sequence, edges_of_symmetry, start, points}, {table},
+                             {{"output", "map.json"}}),
+      Stage<EvaluateOptions>("evaluate", {sequence, landmarks}, {}, {{"output", "metrics.json"}})};
+}
+
 }  // namespace
 
 const std::vector<PipelineStage>& Stages() {
-  static const StageOutput sequence = {"output", "sequence.json"};
-  static const std::vector<PipelineStage> stages = {
-      Stage<ImportOptions>("import", {}, {"dataset"}, {sequence}),
-      Stage<GroundOptions>("ground", {"import"}, {"dataset", "table"},
-                           {sequence, {"world", "world.json"}}, "ground"),
-      Stage<AssociateOptions>("associate", {"import"}, {"table"},
-                              {sequence, {"associations", "associations.json"}}, "association"),
-      Stage<PlanesOptions>("planes", {"import"}, {"dataset", "table"},
-                           {sequence, {"report", "planes.json"}}, "planes"),
-      Stage<EdgesOptions>("edges", {"import"}, {"dataset"}, {{"output", "edges.h5"}}),
-      Stage<TrackOptions>("track", {"import"}, {"dataset"}, {{"output", "points.h5"}}),
-      Stage<InitialiseOptions>("initialise", {"import"}, {"table"}, {{"output", "initial.json"}}),
-      Stage<OrientationOptions>("refine", {"import", "initialise", "edges"}, {"table"},
-                                {{"output", "refined.json"}, {"curves", "symmetry.h5"}}),
-      Stage<OptimiseOptions>("optimise", {"import", "initialise"}, {"table"},
-                             {{"output", "map.json"}}),
-      Stage<EvaluateOptions>("evaluate", {"import", "initialise"}, {},
-                             {{"output", "metrics.json"}})};
+  static const std::vector<PipelineStage> stages = MakeStages();
   return stages;
 }
 
@@ -75,20 +94,14 @@ std::vector<StageOutput> OutputsOfStage(const std::string& stage) {
   return found == nullptr ? std::vector<StageOutput>() : found->outputs;
 }
 
-bool StageReads(const std::string& stage, const std::string& input) {
-  const PipelineStage* found = FindStage(stage);
-  return found != nullptr && found->other_inputs.contains(input);
-}
-
-bool UsesImages(const std::string& stage, const json& settings) {
-  if (stage == "initialise") return settings.at("method") == "cuboid_proposals";
-  if (stage == "optimise") {
-    return settings.at("symmetry") == true || settings.at("edge_alignment") == true;
+std::optional<std::string> AskingSetting(const StageInput& input, const json& settings) {
+  if (input.asked_by.empty()) return "";
+  for (const auto& [name, value] : input.asked_by) {
+    if (settings.at(name) != value) continue;
+    return name + " = " + (value.is_string() ? value.get<std::string>() : value.dump());
   }
-  return stage == "refine";
+  return std::nullopt;
 }
-
-bool UsesPoints(const json& settings) { return settings.value("point_evidence", false); }
 
 std::vector<std::string> PipelineStages() {
   std::vector<std::string> names;

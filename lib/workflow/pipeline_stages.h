@@ -3,8 +3,9 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
-#include <set>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/options.h"
@@ -17,6 +18,14 @@ struct StageOutput {
   std::string file;
 };
 
+// An artefact that a stage reads.
+struct StageInput {
+  std::string argument;             // "landmarks"
+  std::vector<std::string> makers;  // the first of these stages that has run writes it
+  // Settings of the reading stage, each of which asks for it with this value; none: always read.
+  std::vector<std::pair<std::string, nlohmann::json>> asked_by = {};
+};
+
 // A stage that variants may run.
 struct PipelineStage {
   const char* name;
@@ -24,8 +33,9 @@ struct PipelineStage {
   // `where`.
   nlohmann::json (*resolve)(const nlohmann::json& values, const std::string& where);
   std::vector<OptionRow> (*rows)();
-  std::vector<std::string> needs;      // stages whose artefacts it reads
-  std::set<std::string> other_inputs;  // arguments: "dataset" and "table"
+  std::vector<StageInput> inputs;
+  // Paths in a makefile by argument; {} stands for the name of the semantic table.
+  std::map<std::string, std::string> other_inputs;
   std::vector<StageOutput> outputs;
   // Its setting that asks for it unless it is "given"; null for a stage that 'stages' lists.
   const char* asked_by = nullptr;
@@ -33,20 +43,15 @@ struct PipelineStage {
 
 // In order of execution.
 const std::vector<PipelineStage>& Stages();
-const PipelineStage* FindStage(const std::string& name);
+const PipelineStage* FindStage(const std::string& name);  // null if there is none
 
 // The names of all stages.
 std::vector<std::string> PipelineStages();
 // Empty for programs that are not stages of a plan.
 std::vector<StageOutput> OutputsOfStage(const std::string& stage);
 
-// True if a stage of a plan gets the dataset's folder as `input` "dataset", the semantic table as
-// "table".
-bool StageReads(const std::string& stage, const std::string& input);
-
-// True if a stage with these (resolved) settings reads the edge maps of images.
-bool UsesImages(const std::string& stage, const nlohmann::json& settings);
-// True if a stage with these (resolved) settings uses sparse points as evidence.
-bool UsesPoints(const nlohmann::json& settings);
+// The setting that asks for an input, with its value: "symmetry = true". Empty text: read without
+// any; nothing: not read with these (resolved) settings.
+std::optional<std::string> AskingSetting(const StageInput& input, const nlohmann::json& settings);
 
 }  // namespace soslam

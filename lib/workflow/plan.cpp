@@ -25,36 +25,22 @@ constexpr size_t kKeyDigits = 10;
 // Ids of instances of one variant, keyed by stage.
 using InstanceIds = std::map<std::string, std::string>;
 
-// What a stage of a variant reads, in which these instances come before it.
-std::map<std::string, ArtefactSource> InputsOf(const std::string& stage, const json& settings,
-                                               const InstanceIds& before) {
-  // The output of the first of these stages that the variant has.
-  const auto latest = [&](const std::vector<std::string>& stages) -> ArtefactSource {
-    for (const std::string& maker : stages) {
-      if (before.contains(maker)) return {before.at(maker), OutputsOfStage(maker).front().file};
-    }
-    throw std::logic_error(stage + " lacks an input, which CheckNeeds refuses");
-  };
-  if (stage == "import") return {};
-  // Neither edge maps nor points depend on the world or its unit.
-  if (stage == "edges" || stage == "track") return {{"sequence", latest({"import"})}};
-  std::map<std::string, ArtefactSource> inputs;
-  inputs["sequence"] = latest({"planes", "associate", "ground", "import"});
-  if (UsesImages(stage, settings)) inputs["edges"] = latest({"edges"});
-  if (stage == "refine") inputs["initial"] = latest({"initialise"});
-  if (UsesPoints(settings)) inputs["points"] = latest({"track"});
-  if (stage == "optimise") inputs["landmarks"] = latest({"refine", "initialise"});
-  if (stage == "evaluate") inputs["landmarks"] = latest({"optimise", "refine", "initialise"});
-  return inputs;
-}
-
 StageInstance InstanceOf(const std::string& stage, const VariantSettings& settings,
                          const InstanceIds& before) {
   StageInstance instance;
   instance.stage = stage;
   instance.settings = settings.options.at(stage);
-  instance.inputs = InputsOf(stage, instance.settings, before);
-  if (StageReads(stage, "table")) instance.semantic_table = settings.semantic_table;
+  const PipelineStage& described = *FindStage(stage);
+  for (const StageInput& input : described.inputs) {
+    if (!AskingSetting(input, instance.settings)) continue;
+    const auto maker = std::ranges::find_if(
+        input.makers, [&](const std::string& name) { return before.contains(name); });
+    if (maker == input.makers.end()) {
+      throw std::logic_error(stage + " lacks an input, which CheckNeeds refuses");
+    }
+    instance.inputs[input.argument] = {before.at(*maker), OutputsOfStage(*maker).front().file};
+  }
+  if (described.other_inputs.contains("table")) instance.semantic_table = settings.semantic_table;
   json inputs = json::object();
   for (const auto& [argument, source] : instance.inputs) inputs[argument] = source.instance;
   if (!instance.semantic_table.empty()) inputs["table"] = instance.semantic_table;
@@ -102,7 +88,9 @@ std::vector<std::filesystem::path> PrerequisitesOf(const StageInstance& instance
     files.push_back(folders.results / InstancePath(source.instance, source.file));
   }
   if (instance.stage == "import") files.push_back(folders.results / kDatasetListing);
-  if (StageReads(instance.stage, "dataset")) files.push_back(folders.results / kImagesListing);
+  if (FindStage(instance.stage)->other_inputs.contains("dataset")) {
+    files.push_back(folders.results / kImagesListing);
+  }
   if (!instance.semantic_table.empty()) {
     files.push_back(folders.pipelines / instance.semantic_table);
   }

@@ -143,17 +143,16 @@ std::string InstanceRules(const StageInstance& instance) {
     prerequisites.push_back(file.string());
   }
   std::string command = "soslam-" + instance.stage;
-  if (StageReads(instance.stage, "dataset")) command += " --dataset $(dataset)";
-  if (instance.stage == "ground") command += " --points $(dataset)/points.h5";
+  for (const auto& [argument, path] : FindStage(instance.stage)->other_inputs) {
+    command +=
+        fmt::format(" --{} {}", argument, fmt::format(fmt::runtime(path), instance.semantic_table));
+  }
   std::set<std::string> stamps;
   for (const auto& [argument, source] : instance.inputs) {
     stamps.insert(Shared(source.instance, "done"));
     command += fmt::format(" --{} {}", argument, Shared(source.instance, source.file));
   }
   prerequisites.insert(prerequisites.end(), stamps.begin(), stamps.end());
-  if (!instance.semantic_table.empty()) {
-    command += " --table $(pipelines)/" + instance.semantic_table;
-  }
   for (const StageOutput& output : OutputsOfStage(instance.stage)) {
     outputs.push_back(Shared(instance.Id(), output.file));
     command += fmt::format(" --{} {}", output.argument, outputs.back());

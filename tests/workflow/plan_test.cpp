@@ -233,7 +233,7 @@ TEST_F(PlanTest, RefusalsNameTheFile) {
       {R"({"stages": ["initialise"]})", "needs stage 'import'"},
       {R"({"stages": ["import", "initialise", "refine"]})", "needs stage 'edges'"},
       {R"({"stages": ["import", "initialise", "optimise"], "optimise": {"symmetry": true}})",
-       "need stage 'edges'"},
+       "with symmetry = true needs stage 'edges'"},
       {R"({"initialise": {"method": "cuboid_proposals"}})", "needs stage 'edges'"},
       {R"({"stages": ["import", "edges", "initialise", "refine", "optimise"],
            "initialise": {"point_evidence": true}})",
