@@ -170,12 +170,12 @@ FETCH = MIRROR='$(MIRROR)' WITHOUT='$(WITHOUT)' pipelines/fetch.sh $(DOWNLOADS)
 
 .PHONY: data
 data: ## Fetch DATASET=<name> from its publishers, check it, lay our annotation over it: DATA_ROOT/<name>
-	@pipelines/install-packages.sh pipelines/data-packages.txt
+	@pipelines/install-packages.sh data
 	@$(FETCH) $(ANNOTATIONS) $(DATA_ROOT) '$(DATASET)'
 
 .PHONY: network
 network: ## Fetch the detector network YOLOX-nano, check it and show its licence: NETWORKS/yolox_nano
-	@pipelines/install-packages.sh pipelines/data-packages.txt
+	@pipelines/install-packages.sh data
 	@$(FETCH) pipelines/networks $(NETWORKS) yolox_nano
 	@cat $(NETWORKS)/yolox_nano/README.md
 
@@ -349,7 +349,7 @@ reproduce: build ## Run what made the variants in RESULTS once more, as recorded
 
 .PHONY: setup
 setup: ## Install the packages that are missing (apt, as root or through sudo)
-	@pipelines/install-packages.sh pipelines/packages.txt
+	@pipelines/install-packages.sh build
 
 .PHONY: build
 build: $(BUILD)/build.ninja ## Build the executables of the stages
@@ -366,24 +366,24 @@ test: test-build ## Build everything and run the fast tests (3 minutes)
 
 .PHONY: test-slow
 test-slow: test-build ## Run the slow tests: faults, browsers, videos, clusters, statistics
-	@pipelines/install-packages.sh pipelines/test-packages.txt || echo 'setup: tests that need a browser or ffmpeg are skipped'
+	@pipelines/install-packages.sh test || echo 'setup: tests that need a browser or ffmpeg are skipped'
 	@ctest --test-dir $(BUILD) --output-on-failure --label-regex slow -j2
 
 .PHONY: test-build
 test-build: $(BUILD)/build.ninja
-	@pipelines/install-packages.sh pipelines/data-packages.txt || echo 'setup: tests of downloads are skipped'
+	@pipelines/install-packages.sh data || echo 'setup: tests of downloads are skipped'
 	@pipelines/build.sh $(BUILD)
 
 .PHONY: test-slurm
 test-slurm: build ## Install Slurm, and run the tests of sweeps on a cluster of two nodes on this machine
-	@pipelines/install-packages.sh pipelines/slurm-packages.txt
+	@pipelines/install-packages.sh slurm
 	@pipelines/build.sh $(BUILD) slurm_test
 	@SOSLAM_SLURM=required ctest --test-dir $(BUILD) --output-on-failure --tests-regex '^slurm'
 
 # Five repetitions, each of a tenth of a second or more: the table has their medians.
 .PHONY: bench
 bench: $(BUILD)/build.ninja ## Measure how long things take, beside the paper's method: RESULTS/bench.md, bench.json
-	@pipelines/install-packages.sh pipelines/bench-packages.txt
+	@pipelines/install-packages.sh bench
 	@flock $(BUILD) cmake $(BUILD) > /dev/null
 	@pipelines/build.sh $(BUILD) soslam-bench soslam-bench-table
 	@mkdir -p $(RESULTS)
@@ -396,7 +396,7 @@ bench: $(BUILD)/build.ninja ## Measure how long things take, beside the paper's 
 
 .PHONY: formatter
 formatter:
-	@pipelines/install-packages.sh pipelines/format-packages.txt
+	@pipelines/install-packages.sh format
 
 .PHONY: format
 format: formatter ## Format the sources

@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
-# install-packages.sh LIST: installs what is missing of the packages in the file LIST through apt, as
+# install-packages.sh SECTION: installs what is missing of the packages in a section of packages.txt through apt, as
 # root or through sudo. Says nothing when nothing is missing. Exit code 3: this system has no such package.
 set -euo pipefail
 
-list=$1
-mapfile -t wanted < <(grep -v '^#' "$list")
+list=$(dirname "$0")/packages.txt
+mapfile -t wanted < <(sed -n "/^\[$1\]$/,/^\[/p" "$list" | grep '^[a-z]')
+[[ ${#wanted[@]} -gt 0 ]] || { echo "setup: $list has no section [$1]" >&2; exit 2; }
 
 if ! command -v dpkg-query > /dev/null || ! command -v apt-get > /dev/null; then
-  echo "setup: no apt on this system; the packages in $list must be there under its own names" >&2
+  echo "setup: no apt on this system; the packages of [$1] in $list must be there under its own names" >&2
   exit 0
 fi
 

@@ -40,7 +40,7 @@ done
 [[ ${MAP_CAMERA_HEIGHT%.*} -le 100 ]] || refuse "CAMERA_HEIGHT=$MAP_CAMERA_HEIGHT: expected metres, at most 100"
 
 if [[ -z $MAP_MODEL ]] && ! command -v colmap > /dev/null; then
-  pipelines/install-packages.sh pipelines/colmap-packages.txt ||
+  pipelines/install-packages.sh colmap ||
     refuse "COLMAP is missing, which finds where the images were taken; install it, or give MODEL=<its finished model>"
 fi
 
