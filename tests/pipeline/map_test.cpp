@@ -61,8 +61,8 @@ void WriteModelOfSmallScene(const fs::path& dataset, const fs::path& folder) {
   WriteBytes(folder / "points3D.txt", lines);
 }
 
-// `make map` of the project itself, on photos of the small scene in a folder with a name that make
-// and the shell would read otherwise.
+// `soslam map` of the project itself, on photos of the small scene in a folder with a name that
+// make and the shell would read otherwise.
 class MapTest : public testing::Test {
  protected:
   static constexpr int kFrames = 8;
@@ -78,16 +78,26 @@ class MapTest : public testing::Test {
     WriteFakeColmap(programs_);
   }
 
-  std::vector<std::string> Words(const std::vector<std::string>& settings) const {
-    std::vector<std::string> words = MakeWords(
-        {"-C", SOSLAM_SOURCE_DIR, "map", "--no-print-directory", "THREADS=2",
-         "MAPS=" + maps_.string(), "BUILD=" + fs::path(SOSLAM_BINARY_DIR).parent_path().string()});
-    words.insert(words.begin(), {"env", "PATH=" + programs_.string() + ":" + std::getenv("PATH")});
-    words.insert(words.end(), settings.begin(), settings.end());
+  // The words that call ./soslam of the project.
+  std::vector<std::string> Words(const std::string& command,
+                                 const std::vector<std::string>& options) const {
+    std::vector<std::string> words = {"env",
+                                      "PATH=" + programs_.string() + ":" + std::getenv("PATH"),
+                                      SOSLAM_SOURCE_DIR "/soslam",
+                                      command,
+                                      "--threads",
+                                      "2",
+                                      "--maps",
+                                      maps_,
+                                      "--build",
+                                      fs::path(SOSLAM_BINARY_DIR).parent_path()};
+    words.insert(words.end(), options.begin(), options.end());
     return words;
   }
-  std::vector<std::string> WordsForPhotos() const {
-    return Words({"IMAGES=" + photos_.string(), "DETECTIONS=" + detections_.string()});
+  std::vector<std::string> WordsForPhotos(const std::vector<std::string>& options = {}) const {
+    std::vector<std::string> words = Words("map", {photos_, "--detections", detections_});
+    words.insert(words.end(), options.begin(), options.end());
+    return words;
   }
   CommandResult MapPhotos() const { return RunCommand(WordsForPhotos()); }
   // What the steps made, without lists of files, which have their times.
@@ -123,8 +133,8 @@ TEST_F(SlowMapTest, EndsWithOneLineAndGoesOnWhereSomethingChanged) {
   const fs::path elsewhere = pipeline_.Folder() / "elsewhere";
   fs::create_directory(elsewhere);
   fs::rename(photos_, elsewhere / photos_.filename());
-  ExpectSuccess(RunCommand(Words({"IMAGES=" + (elsewhere / photos_.filename()).string(),
-                                  "DETECTIONS=" + detections_.string()})));
+  ExpectSuccess(
+      RunCommand(Words("map", {elsewhere / photos_.filename(), "--detections", detections_})));
   EXPECT_EQ(Made(), made);
   fs::rename(elsewhere / photos_.filename(), photos_);
   ExpectSuccess(MapPhotos());
@@ -141,13 +151,12 @@ TEST_F(SlowMapTest, EndsWithOneLineAndGoesOnWhereSomethingChanged) {
 
 TEST_F(SlowMapTest, TakesAFinishedModel) {
   fs::remove(programs_ / "colmap");
-  std::vector<std::string> words = WordsForPhotos();
-  words.insert(words.end(), {"MODEL=" + (programs_ / "models/0").string(), "NAME=room", "SCALE=1"});
-  EXPECT_THAT(ExpectSuccess(RunCommand(words)), HasSubstr("3 objects, scale +- 4 %"));
-  EXPECT_THAT(RunCommand(Words({"IMAGES=" + programs_.string(),
-                                "DETECTIONS=" + detections_.string(), "NAME=room"}))
-                  .errors,
-              HasSubstr("is of other images"));
+  EXPECT_THAT(ExpectSuccess(RunCommand(WordsForPhotos(
+                  {"--model", programs_ / "models/0", "--name", "room", "--scale", "1"}))),
+              HasSubstr("3 objects, scale +- 4 %"));
+  EXPECT_THAT(
+      RunCommand(Words("map", {programs_, "--detections", detections_, "--name", "room"})).errors,
+      HasSubstr("is of other images"));
 }
 
 // The model is of the photos as they are stored, the boxes of the upright ones.
@@ -162,72 +171,75 @@ TEST_F(SlowMapTest, TakesAModelOfPhotosThatExifTurns) {
     box.box = {359.0 - stored.y_max, stored.x_min, 359.0 - stored.y_min, stored.x_max};
   }
   WriteBytes(detections_, LabelledBoxesText(boxes));
-  std::vector<std::string> words = WordsForPhotos();
-  words.insert(words.end(), {"MODEL=" + (programs_ / "models/0").string(), "NAME=room", "SCALE=1"});
-  EXPECT_THAT(ExpectSuccess(RunCommand(words)), HasSubstr("3 objects, scale +- 4 %"));
+  EXPECT_THAT(ExpectSuccess(RunCommand(WordsForPhotos(
+                  {"--model", programs_ / "models/0", "--name", "room", "--scale", "1"}))),
+              HasSubstr("3 objects, scale +- 4 %"));
 }
 
 TEST_F(SlowMapTest, OtherTargetsKnowAMapByItsName) {
   ExpectSuccess(MapPhotos());
   const auto made = Made();
-  const auto make = [&](const std::vector<std::string>& settings) {
-    std::vector<std::string> words = Words(settings);
-    std::erase(words, "map");
-    return RunCommand(words);
+  const auto run = [&](const std::string& command, const std::vector<std::string>& options) {
+    return RunCommand(Words(command, options));
   };
-  EXPECT_THAT(ExpectSuccess(make({"doctor", "NAME=it_s_my_room_1"})), HasSubstr("it_s_my_room_1"));
-  const std::string results = (maps_ / "it_s_my_room_1/results").string();
-  EXPECT_THAT(make({"doctor", "DATASET=it_s_my_room_1", "RESULTS=" + results}).errors,
-              HasSubstr("expected NAME=it_s_my_room_1"));
-  EXPECT_THAT(make({"doctor", "NAME=another"}).errors, HasSubstr("no such map"));
-  EXPECT_THAT(make({"run", "NAME=it_s_my_room_1", "RESULTS=" + results}).errors,
-              HasSubstr("expected one of them"));
-  EXPECT_THAT(make({"demo", "NAME=it_s_my_room_1"}).errors, HasSubstr("takes no NAME"));
-  EXPECT_THAT(make({"clean", "NAME=it_s_my_room_1 2"}).errors, HasSubstr("expected one name"));
+  const std::string name = "it_s_my_room_1";
+  EXPECT_THAT(ExpectSuccess(run("doctor", {"--name", name})), HasSubstr(name));
+  const std::string results = maps_ / name / "results";
+  EXPECT_THAT(run("doctor", {name, "--results", results}).errors,
+              HasSubstr("is of a map of photos"));
+  EXPECT_THAT(run("doctor", {"--name", "another"}).errors, HasSubstr("no such map"));
+  EXPECT_THAT(run("run", {"room_a", "--name", name}).errors, HasSubstr("expected one of them"));
+  EXPECT_THAT(run("run", {"--name", name + " 2"}).errors, HasSubstr("expected letters and digits"));
   EXPECT_EQ(Made(), made);
-  ExpectSuccess(make({"verify", "NAME=it_s_my_room_1"}));
+  ExpectSuccess(run("verify", {"--name", name}));
 }
 
 TEST_F(MapTest, RefusesWhatIsMissing) {
-  const auto expect_refused = [&](const std::vector<std::string>& settings,
+  const auto expect_refused = [&](const std::vector<std::string>& options, int code,
                                   const std::string& words) {
     SCOPED_TRACE(words);
-    EXPECT_THAT(ExpectExit(2, RunCommand(Words(settings))).errors, HasSubstr(words));
+    EXPECT_THAT(ExpectExit(code, RunCommand(Words("map", options))).errors, HasSubstr(words));
     EXPECT_FALSE(fs::exists(maps_));
   };
-  const std::string images = "IMAGES=" + photos_.string();
-  const std::string network = "NETWORK=" + detections_.string();
-  const std::string marker = (pipeline_.Folder() / "marker").string();
-  expect_refused({}, "expected IMAGES=");
-  expect_refused({images}, "expected NETWORK=");
-  expect_refused({images, "NETWORK=$(shell touch " + marker + ")"}, "no such file");
-  expect_refused({images, "NETWORK=`touch " + marker + "`"}, "no such file");
-  expect_refused({images, "NETWORK=a\ntouch " + marker}, "expected a path of one line");
-  expect_refused({images, network, "SCALE=2m"}, "SCALE='2m': expected a number");
-  expect_refused({images, network, "SCALE=-2"}, "SCALE='-2': expected a number");
-  expect_refused({images, network, "SCALE=.5"}, "found no MODEL");
-  expect_refused({images, network, "SCALE=2"}, "found no MODEL");
-  expect_refused({images, network, "CAMERA_HEIGHT=160"}, "expected metres");
-  expect_refused({images, network, "CAMERA_HEIGHT=1,6"},
-                 "CAMERA_HEIGHT='1,6': expected a decimal point");
-  expect_refused({images, network, "VARIANT=InitS"}, "the first one makes no map");
-  expect_refused({images, network, "VARIANT=OursS Best"}, "VARIANT='Best': no such variant");
-  expect_refused({"IMAGE=x", network}, "IMAGE=...: no variable of this Makefile");
-  expect_refused({images, network, "NAME=room 2"}, "expected one name of letters and digits");
-  expect_refused({images, "NETWORK=x", "NAME=.."}, "expected letters and digits");
-  expect_refused({images, "NETWORK=x", "NAME=../x"}, "expected letters and digits");
-  expect_refused({"IMAGES=/nowhere's", "NETWORK=x"}, "'/nowhere's': no such folder");
+  const auto expect_refused_for_photos = [&](std::vector<std::string> options,
+                                             const std::string& words) {
+    options.insert(options.begin(), {photos_, "--network", detections_});
+    expect_refused(options, 2, words);
+  };
+  const std::string marker = pipeline_.Folder() / "marker";
+  expect_refused({}, 2, "images are not given; expected a folder of photos");
+  expect_refused({photos_}, 2, "expected a network");
+  for (const std::string& network : {"$(shell touch " + marker + ")", "`touch " + marker + "`"}) {
+    expect_refused({photos_, "--network", network}, 3, "no such file");
+  }
+  expect_refused({photos_, "--network", "a\ntouch " + marker}, 2, "expected a path of one line");
+  expect_refused({"/nowhere's", "--network", detections_}, 3, "'/nowhere's'; there is no such");
+  expect_refused_for_photos({"--detections", detections_}, "found a network and detections");
+  expect_refused_for_photos({"--scale", "2m"}, "scale is '2m'; expected a number");
+  expect_refused_for_photos({"--scale", "-2"}, "scale is '-2'; expected a number");
+  expect_refused_for_photos({"--scale", ".5"}, "found no model");
+  expect_refused_for_photos({"--scale", "2"}, "found no model");
+  expect_refused_for_photos({"--camera_height", "160"}, "expected metres");
+  expect_refused_for_photos({"--camera_height", "1,6"}, "with a decimal point");
+  expect_refused_for_photos({"--variant", "InitS"}, "the first one makes no map");
+  expect_refused_for_photos({"--variant", "OursS Best"}, "variant 'Best': no such variant");
+  expect_refused_for_photos({"--image", "x"}, "--image: no such option");
+  expect_refused_for_photos({photos_}, "was named before it");
+  for (const std::string name : {"room 2", "..", "../x"}) {
+    expect_refused_for_photos({"--name", name}, "expected letters and digits");
+  }
   EXPECT_FALSE(fs::exists(marker));
 }
 
-TEST_F(MapTest, GoesIntoTheFolderOfMapsByDefault) {
-  std::vector<std::string> words =
-      Words({"IMAGES=" + photos_.string(), "NETWORK=x", "VARIANT=OursS OursSTE", "-n"});
-  std::erase(words, "MAPS=" + maps_.string());
-  EXPECT_THAT(ExpectSuccess(RunCommand(words)),
-              testing::AllOf(HasSubstr("MAP_ROOT=maps/"), HasSubstr("'OursS OursSTE'")));
-  std::erase(words, "VARIANT=OursS OursSTE");
-  EXPECT_THAT(RunCommand(words).output, HasSubstr("MAP_VARIANT='OursSP'"));
+// Make and the door are told the same.
+TEST_F(MapTest, MakeTakesPathsWithAnyCharacters) {
+  const auto errors = [&](const std::string& network) {
+    return RunCommand(MakeWords({"-C", SOSLAM_SOURCE_DIR, "map", "MAPS=" + maps_.string(),
+                                 "IMAGES=" + photos_.string(), "NETWORK=" + network}))
+        .errors;
+  };
+  EXPECT_THAT(errors("$(shell it's)"), HasSubstr("'$(shell it's)': no such file"));
+  EXPECT_THAT(errors(""), HasSubstr("expected a network"));
 }
 
 TEST_F(SlowMapTest, KilledAnywhereItGoesOn) {

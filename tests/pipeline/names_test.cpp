@@ -19,21 +19,24 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-// A small pipeline, and the project's Makefile with what the caller sets for it.
+// A small pipeline, and the project's commands with what the caller sets for it.
 class NamesTest : public testing::Test {
  protected:
   CommandResult Make(const std::string& goal, std::vector<std::string> settings) const {
     settings.push_back(goal);
     return RunCommand(pipeline_.WordsOfProject(settings));
   }
-  void ExpectRefused(const std::string& goal, const std::string& setting,
+  CommandResult Command(const std::string& command, const std::vector<std::string>& options) const {
+    return RunCommand(pipeline_.WordsOfCommand(command, options));
+  }
+  void ExpectRefused(const std::string& option, const std::string& value,
                      const std::string& expected) const {
-    SCOPED_TRACE(goal + " " + setting);
-    const std::string errors = ExpectExit(2, Make(goal, {setting})).errors;
+    SCOPED_TRACE(option + " " + value);
+    const std::string errors = ExpectExit(2, Command("run-built", {option, value})).errors;
     EXPECT_THAT(errors, HasSubstr(expected));
     EXPECT_EQ(std::ranges::count(errors, '\n'), 1) << errors;
     EXPECT_FALSE(fs::exists(Marker()));
-    EXPECT_FALSE(fs::exists(pipeline_.Results()));
+    EXPECT_FALSE(fs::exists(pipeline_.Results() / "plan.mk"));
   }
   // What a name that is carried out would make.
   fs::path Marker() const { return pipeline_.Folder() / "marker"; }
@@ -43,45 +46,49 @@ class NamesTest : public testing::Test {
 
 TEST_F(NamesTest, OfTheCallerAreNeverCarriedOut) {
   const std::string touch = "touch " + Marker().string();
-  for (const std::string name : {"DATASET", "VARIANT", "DATA_ROOT", "RESULTS", "PIPELINES", "BUILD",
-                                 "BIN", "THREADS", "STAGE", "DATASETS", "SCENES"}) {
-    ExpectRefused("run-built", name + "=a;" + touch, "expected no ;");
-    ExpectRefused("run-built", name + "=$(shell " + touch + ")", "expected no $");
-    ExpectRefused("run-built", name + "=a`" + touch + "`", "expected no `");
-    ExpectRefused("run-built", name + "=a';" + touch + ";'", "expected no '");
+  for (const std::string& text : {"a;" + touch + ";'`" + touch + "`", "$(shell " + touch + ")"}) {
+    for (const std::string option : {"dataset", "data_root", "results", "pipelines", "build",
+                                     "variant", "threads", "jobs", "outside_paths"}) {
+      ExpectRefused("--" + option, text, "expected");
+    }
+    for (const std::string option : {"annotations", "networks", "without", "downloads"}) {
+      EXPECT_NE(Command("data", {"--" + option, text}).exit_code, 0);
+    }
+    EXPECT_FALSE(fs::exists(Marker()));
   }
-  ExpectRefused("run-built", "OUTSIDE_PATHS=;" + touch, "expected --allow_outside_paths");
-  for (const std::string name : {"DOWNLOADS", "ANNOTATIONS", "NETWORKS", "WITHOUT", "MIRROR"}) {
-    ExpectRefused("data", name + "=$(shell " + touch + ")", "expected");
-    ExpectRefused("data", name + "=a';" + touch + ";'", "expected");
-  }
-  ExpectExit(2, Make("run-built", {"VARIANT=SVD\n\t" + touch}));
-  EXPECT_FALSE(fs::exists(Marker()));
 }
 
 TEST_F(NamesTest, OfTheCallerAreNeitherSplitNorOptions) {
-  for (const std::string name : {"DATA_ROOT", "RESULTS", "PIPELINES", "BUILD"}) {
-    ExpectRefused("run-built", name + "=a b", "expected one folder without spaces");
-    ExpectRefused("run-built", name + "=-n", "begins with -");
+  for (const std::string option : {"--data_root", "--results", "--pipelines", "--build"}) {
+    ExpectRefused(option, "a b", "expected one folder without spaces");
   }
-  ExpectRefused("run", "DATASET=a b", "expected the name of one folder in DATA_ROOT");
-  ExpectRefused("run", "DATASET=-n", "begins with -");
-  ExpectRefused("run", "VARIANT=InitP --help", "begins with -");
-  ExpectRefused("run", "DATASET=nowhere", "DATASET=nowhere: no such folder in DATA_ROOT");
-  ExpectRefused("run", "VARIANT=OursX", "VARIANT=OursX: no such variant; known are");
-  for (const std::string name : {".", "..", "../data/..", "/"}) {
-    ExpectRefused("run-built", "DATASET=" + name, "expected the name of one folder in DATA_ROOT");
+  for (const std::string name : {"a b", "-n", ".", "..", "../data/..", "/"}) {
+    ExpectRefused("--dataset", name, "data root");
   }
+  ExpectRefused("--dataset", "/elsewhere/room/", "(or dataset room, data root /elsewhere)");
+  EXPECT_THAT(ExpectExit(2, Command("run", {"--dataset", "nowhere"})).errors,
+              HasSubstr("dataset is 'nowhere'; there is no such folder"));
+  ExpectRefused("--variant", "OursX", "no such variant");
+  EXPECT_THAT(ExpectExit(2, Command("run", {"--variant", "OursX"})).errors,
+              HasSubstr("variant 'OursX': no such variant; known are"));
+  ExpectRefused("--variants", "OursS", "--variants: no such option");
+  EXPECT_THAT(ExpectExit(2, Command("fly", {})).errors, HasSubstr("'fly': no such command"));
+  EXPECT_THAT(ExpectExit(2, Command("run", {"--variant"})).errors,
+              HasSubstr("expected a value after it"));
+  EXPECT_THAT(ExpectExit(2, Make("run-built", {"VARIANTS=OursS"})).errors,
+              HasSubstr("VARIANTS=...: no variable of this Makefile"));
 }
 
 TEST_F(NamesTest, ADatasetMayBeNamedByItsPath) {
   const std::string path = pipeline_.Dataset().string();
   for (const std::string& name : {path, path + "/", std::string("small/")}) {
+    ExpectSuccess(Command("run-built", {"--dataset", name, "--variant", "SVD"}));
+    EXPECT_TRUE(fs::exists(pipeline_.Results() / "SVD/metrics.json"));
+    fs::remove_all(pipeline_.Results());
     ExpectSuccess(Make("run-built", {"DATASET=" + name, "VARIANT=SVD"}));
     EXPECT_TRUE(fs::exists(pipeline_.Results() / "SVD/metrics.json"));
+    fs::remove_all(pipeline_.Results());
   }
-  fs::remove_all(pipeline_.Results());
-  ExpectRefused("run-built", "DATASET=/elsewhere/room/", "(or DATASET=room DATA_ROOT=/elsewhere/)");
 }
 
 TEST_F(NamesTest, OfImagesMayBeAnything) {

@@ -132,6 +132,24 @@ class SmallPipeline {
     return MakeWords(words);
   }
 
+  // The words that call ./soslam of the project for this dataset, and with these options.
+  std::vector<std::string> WordsOfCommand(const std::string& command,
+                                          const std::vector<std::string>& options) const {
+    std::vector<std::string> words = {SOSLAM_SOURCE_DIR "/soslam",
+                                      command,
+                                      "small",
+                                      "--build",
+                                      std::filesystem::path(SOSLAM_BINARY_DIR).parent_path(),
+                                      "--data_root",
+                                      Dataset().parent_path(),
+                                      "--results",
+                                      Results().parent_path(),
+                                      "--pipelines",
+                                      Pipelines()};
+    words.insert(words.end(), options.begin(), options.end());
+    return words;
+  }
+
   // A folder with all programs, where that of a stage crashes.
   std::string ProgramsWithACrashIn(const std::string& stage) const {
     const std::filesystem::path programs = folder_ / "programs";
