@@ -24,10 +24,11 @@ namespace {
 constexpr double kYawBin = 6.0 * kRadPerDeg;
 constexpr double kYawStep = 3.0 * kRadPerDeg;
 constexpr size_t kMinViews = 2;
-// Enough to see an object from all sides that it is seen from.
-constexpr size_t kMaxViews = 16;
+// Views of an object with images or points, which are slow to fit: enough to see it from all sides
+// that it is seen from.
+constexpr size_t kMaxViewsWithImages = 16;
 constexpr size_t kMaxCandidates = 12;
-constexpr size_t kAllMinima = std::numeric_limits<size_t>::max();
+constexpr size_t kAll = std::numeric_limits<size_t>::max();
 
 // The evidence for an object in the world, from views of it (indices in Sequence::detections), with
 // constant poses. Keeps references to its arguments.
@@ -104,8 +105,7 @@ std::optional<Landmark> ChooseLandmark(const BackEndInput& input, size_t object_
     ObjectEvidence boxes = on_face;
     boxes.further.clear();
     boxes.compared_cost = nullptr;
-    std::ranges::copy(ProfileOverYaw(boxes, kYawStep).Minima(kAllMinima),
-                      std::back_inserter(hypotheses));
+    std::ranges::copy(ProfileOverYaw(boxes, kYawStep).Minima(kAll), std::back_inserter(hypotheses));
   }
   if (hypotheses.empty()) return std::nullopt;
   const double point_size_m = SizeForPoints(hypotheses);
@@ -194,10 +194,13 @@ std::vector<std::optional<Landmark>> ChooseInitialUprightLandmarks(
     hypotheses[object.object_index].push_back(*object.landmark_in_world);
   }
   const auto detections = DetectionsByObject(sequence);
+  const bool has_boxes_alone =
+      input.symmetry_images.empty() && input.edge_images.empty() && input.points.empty();
+  const size_t max_views = has_boxes_alone ? kAll : kMaxViewsWithImages;
   std::vector<std::optional<Landmark>> initial_landmarks(sequence.objects.size());
   ParallelFor("objects", initial_landmarks.size(), threads, [&](size_t i) {
     if (detections[i].empty() || !sequence.objects[i].is_static) return;
-    const std::vector<int> views = SpreadOver(detections[i], kMaxViews);
+    const std::vector<int> views = SpreadOver(detections[i], max_views);
     initial_landmarks[i] = ChooseLandmark(input, i, views, std::move(hypotheses[i]), options);
   });
   return initial_landmarks;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/iou.h"
+#include "initialisation/initialise.h"
 #include "mapping/initial_landmarks.h"
 #include "support/cuboid_map.h"
 #include "support/random.h"
@@ -67,6 +68,19 @@ TEST_F(UprightStarts, ComeFromSeveralViewsWhereSingleFramesSayNothing) {
     if (i == 1) continue;
     EXPECT_GT(BoxIou(*initial_landmarks[i], sequence_.objects[i].ground_truth->landmark_in_world),
               0.98);
+  }
+}
+
+TEST_F(UprightStarts, AreFittedToAllViewsWhereThereAreBoxesAlone) {
+  sequence_ = WithBoxNoise(CuboidSequence(2, 60), 3.0);
+  estimates_ = {};
+  const BackEndInput input = TruthInput(sequence_);
+  const LandmarkEstimates fitted =
+      InitialiseMultiView(sequence_, input.priors, options_.upright, 1);
+  const auto initial_landmarks = Choose();
+  for (size_t i = 0; i < initial_landmarks.size(); ++i) {
+    ASSERT_TRUE(initial_landmarks[i]);
+    EXPECT_GT(BoxIou(*initial_landmarks[i], fitted.objects[i].landmark_in_world.value()), 0.9999);
   }
 }
 
