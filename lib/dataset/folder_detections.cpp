@@ -179,11 +179,12 @@ std::vector<DetectionRow> RowsOfBoxes(const std::vector<LabelledBox>& boxes,
     rows.back().image_size = box.image_size;
     rows.back().as_drawn = box.as_drawn;
   }
-  if (const size_t copies = lookup.CountCopies(); copies > 0) {
+  if (const size_t other_names = lookup.CountOtherNames(); other_names > 0) {
     fmt::print(
-        "{}: {} images are found by the names of copies, as Roboflow and Label Studio write them; "
-        "their boxes have to be those of the whole images, neither cropped nor padded\n",
-        files.detections.filename().string(), copies);
+        "{}: {} images are found by names with another ending, or of copies, as Roboflow and Label "
+        "Studio write them; their boxes have to be those of the whole images, neither cropped nor "
+        "padded\n",
+        files.detections.filename().string(), other_names);
   }
   const size_t unlisted = boxes.size() - rows.size();
   if (unlisted == 0) return rows;

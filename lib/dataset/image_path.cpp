@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/paths.h"
 #include "base/text.h"
+#include "dataset/photo_folder.h"
 
 namespace soslam {
 namespace {
@@ -126,9 +127,9 @@ std::string NameOfOriginal(const std::string& copy) {
 
 }  // namespace
 
-size_t FrameLookup::CountCopies() const {
+size_t FrameLookup::CountOtherNames() const {
   return static_cast<size_t>(std::ranges::count_if(
-      copies_, [](const auto& copy_of_row) { return !copy_of_row.second.empty(); }));
+      other_names_, [](const auto& name_of_row) { return !name_of_row.second.empty(); }));
 }
 
 std::optional<int> FrameLookup::Find(const FrameKey& key, const std::string& place) {
@@ -137,11 +138,16 @@ std::optional<int> FrameLookup::Find(const FrameKey& key, const std::string& pla
   }
   std::string name = std::get<std::string>(key);
   if (!rows_by_name_.contains(name)) std::ranges::replace(name, '\\', '/');  // Windows' paths
-  auto found = rows_by_name_.find(name);
   const std::string file_name = fs::path(name).filename().string();
-  if (found == rows_by_name_.end()) found = rows_by_name_.find(file_name);
-  const bool is_copy = found == rows_by_name_.end();
-  if (is_copy) found = rows_by_name_.find(NameOfOriginal(file_name));
+  const auto find = [&](const fs::path& image) {
+    const auto found = rows_by_name_.find(image.string());
+    const bool has_another_ending = found == rows_by_name_.end() && HasNameOfImage(image);
+    return has_another_ending ? rows_by_name_.find(image.stem().string()) : found;
+  };
+  const bool has_own_name = rows_by_name_.contains(name) || rows_by_name_.contains(file_name);
+  auto found = rows_by_name_.find(name);
+  if (found == rows_by_name_.end()) found = find(file_name);
+  if (found == rows_by_name_.end()) found = find(NameOfOriginal(file_name));
   if (found == rows_by_name_.end()) return std::nullopt;
   const std::vector<int>& rows = found->second;
   if (rows.size() > 1) {
@@ -158,11 +164,11 @@ std::optional<int> FrameLookup::Find(const FrameKey& key, const std::string& pla
                     "is; expected images of one folder",
                     place, name, row, named.string()));
   }
-  const std::string copy = is_copy ? file_name : "";
-  if (copies_.try_emplace(row, copy).first->second != copy) {
+  const std::string other_name = has_own_name ? "" : file_name;
+  if (other_names_.try_emplace(row, other_name).first->second != other_name) {
     throw InputError(
         fmt::format("{}: image '{}' would be row {} of the list, as another copy of it or itself "
-                    "is; expected one of each image: export boxes without augmentation",
+                    "is; expected one name of each image: export boxes without augmentation",
                     place, name, row));
   }
   return row;

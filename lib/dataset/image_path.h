@@ -33,23 +33,24 @@ class FrameLookup {
   explicit FrameLookup(const std::vector<ListedImage>& images);
 
   // The 0-based row; none when the list has no such image. A name is the path in the list, also
-  // with backslashes, or the file name without folder, or that without extension; all of them also
-  // as Roboflow (a_jpg.rf.0123abcd.jpg) and Label Studio (0123abcd-a.jpg) write the name of a copy.
-  // A folder may have another name than in the list, but not that of another camera (cam0 and cam1,
-  // left and right). Throws InputError, naming `place`, for a name shared by several images, for
-  // names with several folders of one image, and for several copies of one image.
+  // with backslashes, or the file name without folder, without extension or with that of another
+  // image format; all of them also as Roboflow (a_jpg.rf.0123abcd.jpg) and Label Studio
+  // (0123abcd-a.jpg) write the name of a copy. A folder may have another name than in the list, but
+  // not that of another camera (cam0 and cam1, left and right). Throws InputError, naming `place`,
+  // for a name shared by several images, for names with several folders of one image, and for
+  // several names of one image.
   std::optional<int> Find(const FrameKey& key, const std::string& place);
 
-  // Number of images found by the name of a copy.
-  size_t CountCopies() const;
+  // Number of images found by the name of a copy, or with another extension.
+  size_t CountOtherNames() const;
 
  private:
   std::vector<std::filesystem::path> folders_;  // folder of each row
   std::map<std::string, std::vector<int>> rows_by_name_;
   // Folder in the first name that was looked up, keyed by row.
   std::map<int, std::filesystem::path> named_folders_;
-  // Name of the copy by which a row was found first, empty for its own name; keyed by row.
-  std::map<int, std::string> copies_;
+  // Name by which a row was found first, empty for its own name; keyed by row.
+  std::map<int, std::string> other_names_;
 };
 
 // The row of the image of each pose, at least one; none for images that are not listed. Throws

@@ -337,7 +337,7 @@ TEST_F(FolderFormatsTest, CopiesOfAnnotationToolsHaveTheImagesSize) {
   testing::internal::CaptureStdout();
   EXPECT_EQ(ImportOne(DetectionsFormat::kCoco, "coco.json").frame_index, 1);
   EXPECT_THAT(testing::internal::GetCapturedStdout(),
-              testing::HasSubstr("coco.json: 1 images are found by the names of copies"));
+              testing::HasSubstr("coco.json: 1 images are found by names with another ending"));
   EXPECT_TRUE(Import().findings.empty());
   Write("coco.json", DataSetOfCopies(640, 640));
   ExpectRefused({"1 of 1 boxes are of images of 640 x 640 pixels", "640 x 480"});

@@ -97,17 +97,33 @@ TEST_F(FrameLookupTest, NamesWithOrWithoutFolderAndExtension) {
 }
 
 TEST_F(FrameLookupTest, CopiesOfAnnotationTools) {
-  EXPECT_EQ(lookup_.CountCopies(), 0u);
+  EXPECT_EQ(lookup_.CountOtherNames(), 0u);
   EXPECT_EQ(lookup_.Find("12.51_png.rf.0123456789abcdef0123456789abcdef.jpg", ""), 1);
   EXPECT_EQ(lookup_.Find("train/12.51_png.rf.0123456789abcdef0123456789abcdef.jpg", ""), 1);
   EXPECT_EQ(lookup_.Find("images/1a2b3c4d-12.50.png", ""), 0);
-  EXPECT_EQ(lookup_.CountCopies(), 2u);
+  EXPECT_EQ(lookup_.CountOtherNames(), 2u);
   EXPECT_EQ(FrameLookup({{1.0, "a.jpg"}}).Find("1a2b3c4d__a", ""), 0);
   EXPECT_EQ(FrameLookup({{1.0, "a.jpg"}}).Find("a_jpg.rf.0123456789abcdef", ""), 0);
   for (const char* no_copy : {"12.51_png.rf..jpg", "1a2b3c4-12.50.png", "1a2b3c4d12.50.png",
                               "x_png.rf.0123456789abcdef.jpg"}) {
     EXPECT_EQ(lookup_.Find(no_copy, ""), std::nullopt) << no_copy;
   }
+}
+
+TEST_F(FrameLookupTest, AnotherEndingIsTheSameImage) {
+  for (const char* name : {"12.51.jpg", "images/12.51.jpg"}) {
+    FrameLookup lookup({{1.0, "12.50.png"}, {2.0, "rgb/12.51.png"}});
+    EXPECT_EQ(lookup.Find(name, ""), 1) << name;
+    EXPECT_EQ(lookup.CountOtherNames(), 1u);
+    ExpectError<InputError>([&] { lookup.Find("12.51.png", "images.txt:5"); },
+                            {"images.txt:5", "'12.51.png'", "row 1", "one name of each image"});
+  }
+  EXPECT_EQ(FrameLookup({{1.0, "rgb/IMG_1.jpg"}}).Find("IMG_1.JPG", ""), 0);
+  EXPECT_EQ(FrameLookup({{1.0, "a.jpg"}}).Find("1a2b3c4d-a.png", ""), 0);
+  EXPECT_EQ(FrameLookup({{1.0, "a.jpg"}, {2.0, "a.png"}}).Find("a.png", ""), 1);
+  EXPECT_EQ(lookup_.Find("12.jpg", ""), std::nullopt);
+  EXPECT_EQ(lookup_.Find("12.51.txt", ""), std::nullopt);
+  ExpectError<InputError>([&] { lookup_.Find("0.jpg", "images.txt:5"); }, {"2, 3"});
 }
 
 TEST_F(FrameLookupTest, SeveralCopiesOfAnImageAreRefused) {
