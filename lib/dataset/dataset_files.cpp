@@ -93,10 +93,13 @@ DatasetFiles FindDatasetFiles(const fs::path& folder, const ImportOptions& optio
     missing.push_back(fmt::format("a trajectory ({} or {})", usual.odometry, usual.groundtruth));
   }
   if (!missing.empty()) {
-    throw InputError(fmt::format("{}: {} {} missing; expected a dataset folder of format {}",
-                                 folder.string(), fmt::join(missing, ", "),
-                                 missing.size() == 1 ? "is" : "are",
-                                 kDatasetFormatNames[static_cast<size_t>(options.format)]));
+    const bool lacks_boxes = options.detections.empty() && !Exists(files.detections);
+    throw InputError(fmt::format(
+        "{}: {} {} missing; expected a dataset folder of format {}{}", folder.string(),
+        fmt::join(missing, ", "), missing.size() == 1 ? "is" : "are",
+        kDatasetFormatNames[static_cast<size_t>(options.format)],
+        lacks_boxes ? "; boxes of other programs are given by detections and detections_format"
+                    : ""));
   }
   files.trajectory = wanted ? *wanted : *other;
   files.trajectory_is_fallback = !wanted;

@@ -16,6 +16,7 @@
 
 #include "base/error.h"
 #include "base/paths.h"
+#include "base/text.h"
 #include "dataset/class_names.h"
 #include "dataset/dataset_files.h"
 
@@ -81,7 +82,14 @@ YoloTexts ReadYoloTexts(const fs::path& path) {
   }
   YoloTexts texts = IsFolder(path) ? ReadFolder(path) : ReadArchive(path);
   if (texts.images.empty()) {
-    throw InputError(path.string() + ": has no *.txt; expected one for each image");
+    std::vector<std::string> folders;
+    for (const fs::path& entry : IsFolder(path) ? FolderEntries(path) : std::vector<fs::path>()) {
+      if (IsFolder(entry)) folders.push_back(entry.filename().string());
+    }
+    throw InputError(fmt::format(
+        "{}: has no *.txt; expected one for each image{}", path.string(),
+        folders.empty() ? ""
+                        : ", directly in this folder; it has folders: " + NamesInWords(folders)));
   }
   std::set<std::string> images;
   for (const YoloText& text : texts.images) {

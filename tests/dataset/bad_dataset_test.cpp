@@ -33,7 +33,7 @@ const std::vector<BadCase> kBadCases = {
      "odometry.txt:2: quaternion has norm 1.02"},
     {"odometry.txt", "3.001", "2.001", "timestamp 2.001 twice"},
     {"odometry.txt", "", "", "has no pose"},
-    {"detections.csv", nullptr, "", "is missing"},
+    {"detections.csv", nullptr, "", "given by detections and detections_format"},
     {"detections.csv", "", "", "is empty"},
     {"detections.csv", "score", "confidence", "column 'confidence' would be ignored"},
     {"detections.csv", "y2\n", "y2,y2\n", "column 'y2' is twice"},

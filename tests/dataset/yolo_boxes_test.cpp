@@ -59,6 +59,8 @@ TEST_F(YoloTextsTest, ArchivesOfCvatAndMacOs) {
 TEST_F(YoloTextsTest, NothingToReadAndTwoOfOneNameAreNamed) {
   fs::create_directories(folder_ / "labels");
   ExpectError<InputError>([&] { ReadYoloTexts(folder_ / "labels"); }, {"labels", "no *.txt"});
+  Write("labels/train/1.txt", "");
+  ExpectError<InputError>([&] { ReadYoloTexts(folder_ / "labels"); }, {"it has folders: train"});
   ExpectError<InputError>([&] { ReadYoloTexts(folder_ / "none"); }, {"none", "is missing"});
   Write("packed/a/1.txt", "");
   Write("packed/b/1.txt", "");
