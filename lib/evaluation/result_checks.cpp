@@ -160,6 +160,7 @@ std::string PlanesInWords(const Sequence& sequence, const InputAlternative& foun
 std::vector<Finding> CheckFailures(const LandmarkEstimates& estimates) {
   int tries = 0;
   int failed = 0;
+  int cut_off = 0;
   std::map<std::string, int> reasons;
   const auto count = [&](bool has_failed, const std::string& reason) {
     if (has_failed && reason == kMovingObject) return;
@@ -167,19 +168,27 @@ std::vector<Finding> CheckFailures(const LandmarkEstimates& estimates) {
     if (!has_failed) return;
     ++failed;
     ++reasons[reason];
+    if (reason == "fewer_than_three_measured_edges") ++cut_off;
   };
   for (const auto& observation : estimates.observations) {
     count(observation.hypotheses.empty(), observation.failure);
   }
   for (const auto& object : estimates.objects) count(!object.landmark_in_world, object.failure);
   if (3 * failed <= tries) return {};
-  return {
-      {"failures", Severity::kWarning,
-       fmt::format("{} of {} tries gave no landmark: {}", failed, tries, CountsInWords(reasons)),
-       "a landmark from two tries of three at least",
-       "poses the other way round, planes or boxes of another convention, another camera, or too "
-       "few views",
-       "look at the findings of the import, then at boxes and planes in an image: soslam-inspect"}};
+  Finding finding{
+      "failures",
+      Severity::kWarning,
+      fmt::format("{} of {} tries gave no landmark: {}", failed, tries, CountsInWords(reasons)),
+      "a landmark from two tries of three at least",
+      "poses the other way round, planes or boxes of another convention, another camera, or too "
+      "few views",
+      "look at the findings of the import, then at boxes and planes in an image: soslam-inspect"};
+  if (2 * cut_off > failed) {
+    finding.cause = "objects that the border of the image, or what is in front of them, cuts off";
+    finding.remedy =
+        "nothing where other images show them whole; otherwise images from farther away";
+  }
+  return {finding};
 }
 
 std::vector<Finding> CheckObjectIds(const Sequence& sequence) {

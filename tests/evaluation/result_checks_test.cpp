@@ -127,7 +127,13 @@ TEST(CheckFailuresTest, MoreThanAThirdWithoutALandmark) {
   estimates.observations[0] = {0, {}, "no_solution"};
   EXPECT_THAT(CheckFailures(estimates), IsEmpty());
   estimates.observations[1] = {1, {}, "no_solution"};
-  EXPECT_EQ(Only(CheckFailures(estimates)).found, "2 of 3 tries gave no landmark: 2 no_solution");
+  Finding finding = Only(CheckFailures(estimates));
+  EXPECT_EQ(finding.found, "2 of 3 tries gave no landmark: 2 no_solution");
+  EXPECT_THAT(finding.cause, HasSubstr("poses the other way round"));
+  for (int i : {0, 1}) estimates.observations[i].failure = "fewer_than_three_measured_edges";
+  finding = Only(CheckFailures(estimates));
+  EXPECT_THAT(finding.cause, HasSubstr("cuts off"));
+  EXPECT_THAT(finding.remedy, HasSubstr("farther away"));
 }
 
 TEST(CheckDegenerateTest, LandmarksThatViewsDoNotDetermine) {
