@@ -93,10 +93,11 @@ struct ImageFormat {
   // The header of a file. None if it has no size, or one that a decoder might read differently.
   std::optional<ImageHeader> (*header)(const ImageBytes& file);
   // Number of bytes that the image takes: phones and others append data of their own. None if the
-  // file is truncated: decoders fill in the missing part without an error. If there is a header,
-  // its size must have passed IsImageSize.
-  std::optional<size_t> (*length)(std::string_view file);
-  const char* whole;  // how to distinguish a complete file from a truncated one, for error messages
+  // file is truncated. Null for formats whose decoders refuse truncated files; those of others fill
+  // in the missing part without an error.
+  std::optional<size_t> (*length)(std::string_view file) = nullptr;
+  // How to distinguish a complete file from a truncated one, for error messages.
+  const char* whole = nullptr;
   // Sets the file's orientation to 1, for formats whose decoders turn images unasked; else null.
   void (*clear_orientation)(std::span<char> file) = nullptr;
   // What a file of this format has in place of one image; null if the format allows nothing else.

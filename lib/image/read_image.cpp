@@ -79,7 +79,7 @@ std::pair<const ImageFormat*, ImageHeader> Check(const std::filesystem::path& pa
     throw InputError(fmt::format("{}: is {} x {} pixels; expected at most {} in all", path.string(),
                                  header->stored.width, header->stored.height, kMaxPixels));
   }
-  const auto length = format->length(file);
+  const auto length = format->length == nullptr ? std::optional(file.size()) : format->length(file);
   if (!length) {
     throw InputError(fmt::format("{}: is cut short after {} bytes; expected a {} image {}",
                                  path.string(), file.size(), format->name, format->whole));

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <vector>
 
 namespace soslam {
@@ -85,11 +84,16 @@ class TiffDirectory {
     return std::ranges::count(entries_, tag, &TiffEntry::tag);
   }
 
-  // A number of the first entry with this tag; none if there is none, or it is not in the file.
+  // A number of an entry; none if it has fewer, or this one is not in the file.
+  std::optional<std::uint64_t> Number(const TiffEntry& entry, std::uint64_t index) const {
+    if (index >= entry.count) return std::nullopt;
+    return file_.NumberAt(entry.begin + index * entry.bytes_each, entry.bytes_each, order_);
+  }
+
+  // A number of the first entry with this tag; none as for Find, or if it is not in the file.
   std::optional<std::uint64_t> Number(std::uint64_t tag, std::uint64_t index = 0) const {
     const auto entry = Find(tag);
-    if (!entry || index >= entry->count) return std::nullopt;
-    return file_.NumberAt(entry->begin + index * entry->bytes_each, entry->bytes_each, order_);
+    return entry ? Number(*entry, index) : std::nullopt;
   }
 
   // At most `most` characters of the first entry with this tag; empty if there is none.
@@ -180,51 +184,28 @@ std::string ExifTimeTaken(std::string_view exif) {
 namespace {
 
 // TIFF 6.0, section 8 and "Tiled images".
-constexpr std::uint64_t kWidth = 256, kHeight = 257, kBitsPerSample = 258, kCompression = 259;
-constexpr std::uint64_t kSamplesPerPixel = 277;
+constexpr std::uint64_t kWidth = 256, kHeight = 257, kBitsPerSample = 258;
 constexpr std::uint64_t kStripOffsets = 273, kStripByteCounts = 279;
 constexpr std::uint64_t kTileWidth = 322, kTileHeight = 323, kTileOffsets = 324;
 constexpr std::uint64_t kTileByteCounts = 325;
 
 bool IsTiff(std::string_view first_bytes) { return OrderOf(first_bytes.substr(0, 4)).has_value(); }
 
-bool IsOneOf(std::uint64_t number, std::initializer_list<std::uint64_t> numbers) {
-  return std::ranges::find(numbers, number) != numbers.end();
-}
-
-// True if the pixels are stored in a supported way: 1, 8 or 16 bits per sample, up to four samples;
-// uncompressed, or packed by LZW, JPEG, deflate or run lengths; in strips, or in tiles of a
-// plausible size.
-bool IsReadable(const TiffDirectory& directory) {
-  constexpr std::uint64_t kMaxTileSide = 1 << 13;
-  const auto number = [&](std::uint64_t tag, std::uint64_t otherwise) {
-    return directory.Count(tag) > 0 ? directory.Number(tag).value_or(0) : otherwise;
-  };
-  return IsOneOf(number(kBitsPerSample, 1), {1, 8, 16}) &&
-         IsOneOf(number(kSamplesPerPixel, 1), {1, 2, 3, 4}) &&
-         IsOneOf(number(kCompression, 1), {1, 5, 7, 8, 32773, 32946}) &&
-         number(kTileWidth, 0) <= kMaxTileSide && number(kTileHeight, 0) <= kMaxTileSide;
-}
-
-// True if decoders cannot use any other value than the first: no tag is there twice.
-bool IsUnambiguous(const TiffDirectory& directory) {
-  return std::ranges::all_of(
-      std::initializer_list<std::uint64_t>{kWidth, kHeight, kBitsPerSample, kCompression,
-                                           kSamplesPerPixel, kStripOffsets, kStripByteCounts,
-                                           kTileWidth, kTileHeight, kTileOffsets, kTileByteCounts,
-                                           kTiffOrientation},
-      [&](std::uint64_t tag) { return directory.Count(tag) <= 1; });
-}
-
-// Header of the first page.
+// Header of the first page. libtiff, too, takes the first of two entries with the same tag; it
+// allocates whole tiles.
 std::optional<ImageHeader> Header(const ImageBytes& file) {
+  constexpr std::uint64_t kMaxBits = 16, kMaxTileSide = 1 << 13;
   const auto directory = TiffDirectory::Read(file);
-  if (!directory || !IsUnambiguous(*directory) || !IsReadable(*directory)) {
-    return std::nullopt;
-  }
+  if (!directory) return std::nullopt;
+  const auto is_at_most = [&](std::uint64_t tag, std::uint64_t most) {
+    return directory->Count(tag) == 0 || directory->Number(tag).value_or(most + 1) <= most;
+  };
   const auto width = directory->Number(kWidth);
   const auto height = directory->Number(kHeight);
-  if (!width || !height) return std::nullopt;
+  if (!width || !height || !is_at_most(kBitsPerSample, kMaxBits) ||
+      !is_at_most(kTileWidth, kMaxTileSide) || !is_at_most(kTileHeight, kMaxTileSide)) {
+    return std::nullopt;
+  }
   return ImageHeader{{static_cast<std::int64_t>(*width), static_cast<std::int64_t>(*height)},
                      OrientationIn(*directory).value_or(1),
                      std::nullopt,
@@ -238,8 +219,9 @@ constexpr std::uint64_t kPhotometric = 262, kDngVersion = 50706;
 // True for pixels that are still those of the sensor.
 bool IsOfSensor(const TiffDirectory& image) {
   constexpr std::uint64_t kColourFilterArray = 32803, kLinearRaw = 34892;
-  return image.Count(kDngVersion) > 0 ||
-         IsOneOf(image.Number(kPhotometric).value_or(0), {kColourFilterArray, kLinearRaw});
+  const std::uint64_t photometric = image.Number(kPhotometric).value_or(0);
+  return image.Count(kDngVersion) > 0 || photometric == kColourFilterArray ||
+         photometric == kLinearRaw;
 }
 
 // True for thumbnails, smaller copies and masks of another image in the file.
@@ -275,31 +257,21 @@ std::optional<OtherContent> Other(const ImageBytes& file) {
   }
 }
 
-// True if all numbers of both entries are in the file, and so are the blocks (offset and length)
-// that they state.
-bool AreInFile(const TiffEntry& places, const TiffEntry& lengths, ByteOrder order,
-               std::string_view file) {
-  const auto number = [&](const TiffEntry& entry, std::uint64_t i) {
-    return ImageBytes(file).NumberAt(entry.begin + i * entry.bytes_each, entry.bytes_each, order);
-  };
-  if (places.count != lengths.count) return false;
-  for (std::uint64_t i = 0; i < places.count; ++i) {
-    const auto begin = number(places, i);
-    const auto length = number(lengths, i);
-    if (!begin || !length || *begin + *length > file.size()) return false;
-  }
-  return true;
-}
-
-// The size of the whole file, as pages lie in any order.
+// The size of the whole file, if all strips or tiles are in it, as they lie in any order. Decoders
+// leave out those of separate planes without an error.
 std::optional<size_t> Length(std::string_view file) {
   const auto directory = TiffDirectory::Read(ImageBytes(file));
   if (!directory) return std::nullopt;
   const bool is_tiled = directory->Count(kTileOffsets) > 0;
   const auto places = directory->Find(is_tiled ? kTileOffsets : kStripOffsets);
   const auto lengths = directory->Find(is_tiled ? kTileByteCounts : kStripByteCounts);
-  const bool is_whole = places && lengths && AreInFile(*places, *lengths, directory->order(), file);
-  return is_whole ? std::optional(file.size()) : std::nullopt;
+  if (!places || !lengths) return std::nullopt;
+  for (std::uint64_t i = 0; i < places->count; ++i) {
+    const auto begin = directory->Number(*places, i);
+    const auto length = directory->Number(*lengths, i);
+    if (!begin || !length || *begin + *length > file.size()) return std::nullopt;
+  }
+  return file.size();
 }
 
 void ClearOrientation(std::span<char> file) {

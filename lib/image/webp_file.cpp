@@ -73,15 +73,8 @@ std::optional<ImageHeader> Header(const ImageBytes& file) {
   return ImageHeader{*size, ExifOrientation(exif).value_or(1), std::nullopt, ExifTimeTaken(exif)};
 }
 
-std::optional<size_t> Length(std::string_view file) {
-  if (file.size() < kFirstChunk) return std::nullopt;
-  const size_t length = kHead + NumberFromBytes(file.substr(4, 4), kOrder);
-  return length <= file.size() ? std::optional(length) : std::nullopt;
-}
-
 }  // namespace
 
-constexpr ImageFormat kWebpFormat = {
-    "WebP", &IsWebp, &Header, &Length, "as long as it says at its beginning", nullptr, &Other};
+constexpr ImageFormat kWebpFormat = {"WebP", &IsWebp, &Header, nullptr, nullptr, nullptr, &Other};
 
 }  // namespace soslam

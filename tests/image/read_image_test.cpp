@@ -143,11 +143,56 @@ TEST_F(ReadImageTest, CutShortBeforeAnotherImageIsRefused) {
                 {"cut short", "IEND"});
 }
 
+// A bitmap that is packed by run lengths.
+std::string PackedBmp(const cv::Mat& grey) {
+  constexpr size_t kCompression = 30, kPixels = 54 + 4 * 256;
+  std::string bmp = EncodedImage(".bmp", grey).substr(0, kPixels);
+  bmp[kCompression] = 1;
+  for (int y = grey.rows - 1; y >= 0; --y) {
+    for (int x = 0; x < grey.cols; ++x) bmp += {'\1', static_cast<char>(grey.at<uchar>(y, x))};
+    bmp += {'\0', y > 0 ? '\0' : '\1'};  // end of a row, of the picture
+  }
+  return bmp;
+}
+
+// A TIFF file with a strip for each of red, green and blue, which are all the same.
+std::string TiffOfPlanes(const cv::Mat& grey) {
+  constexpr ByteOrder kOrder = ByteOrder::kLittleEndian;
+  const size_t lists = TiffRest(10), pixels = lists + 6 + 12 + 12;
+  const std::string plane(grey.datastart, grey.dataend);
+  std::string rest;
+  for (int i = 0; i < 3; ++i) rest += NumberBytes(8, 2, kOrder);
+  for (int i = 0; i < 3; ++i) rest += NumberBytes(pixels + i * plane.size(), 4, kOrder);
+  for (int i = 0; i < 3; ++i) rest += NumberBytes(plane.size(), 4, kOrder);
+  const auto height = static_cast<std::uint64_t>(grey.rows);
+  return Tiff(kOrder,
+              {{256, static_cast<std::uint64_t>(grey.cols)},
+               {257, height},
+               {258, lists, 3, 3},
+               {259, 1},
+               {262, 2},  // red, green, blue
+               {273, lists + 6, 4, 3},
+               {277, 3},
+               {278, height},
+               {279, lists + 18, 4, 3},
+               {284, 2}},  // separate
+              rest + plane + plane + plane);
+}
+
+TEST_F(ReadImageTest, PackedBitmapsAndSeparatePlanesAreRead) {
+  for (const std::string& file : {PackedBmp(TestImage()), TiffOfPlanes(TestImage())}) {
+    const cv::Mat read = ReadImage(Write("a", file), kGrey);
+    EXPECT_EQ(cv::norm(read, TestImage(), cv::NORM_INF), 0.0);
+  }
+}
+
 TEST_F(ReadImageTest, CutShortAnywhereIsRefused) {
+  const std::string packed = PackedBmp(TestImage());
   for (const std::string& whole :
        {EncodedImage(".jpg", TestImage()), EncodedImage(".png", TestImage()),
         EncodedImage(".webp", TestImage()), EncodedImage(".bmp", TestImage()),
-        GreyTiff(TestImage(), 1, ByteOrder::kBigEndian)}) {
+        packed.substr(0, packed.size() - 2),  // which has all pixels
+        GreyTiff(TestImage(), 1, ByteOrder::kBigEndian), TiffOfPlanes(TestImage())}) {
     for (size_t missing = 1; missing <= whole.size(); missing += 1 + missing / 20) {
       ExpectRefused(Write("cut", whole.substr(0, whole.size() - missing)));
     }
@@ -206,9 +251,6 @@ TEST_F(ReadImageTest, OtherFormatsAreRefused) {
                                                 "ftypheic\0\0\0\0mif1heic",
                                                 24));
   ExpectRefused(heif, {"is an HEIF image", "expected a JPEG"});
-  std::string packed = EncodedImage(".bmp", TestImage());
-  packed[30] = 1;  // compression: by runs
-  ExpectRefused(Write("a.bmp", packed), {"BMP"});
   ExpectRefused(Write("a.tiff", EncodedImage(".tiff", cv::Mat(8, 8, CV_32FC1, 0.5))), {"TIFF"});
 }
 
