@@ -30,9 +30,8 @@ struct OnnxHeader {
 };
 
 // Reads the header of an ONNX file. Throws InputError, naming the file `name`, for one that is
-// damaged, has no graph or absurdly many inputs or outputs; and, naming the tensor, for a tensor
-// that has neither external data nor as many numbers as its shape needs: OpenCV derives their
-// number from the shape.
+// damaged or has no graph; and, naming the tensor, for a tensor that has neither external data nor
+// as many numbers as its shape needs: OpenCV derives their number from the shape.
 OnnxHeader ReadOnnxHeader(std::string_view bytes, const std::string& name);
 
 // The shape as text, "[1, 3, ?, 640]".

@@ -33,9 +33,6 @@ TEST(OnnxHeaderTest, HalfPrecisionIsFoundInWeightsAndConstants) {
 TEST(OnnxHeaderTest, FilesWithoutGraphOrWithAbsurdOnesAreRefused) {
   ExpectError<InputError>([] { Read(""); }, {"net.onnx", "no graph"});
   ExpectError<InputError>([] { Read(ProtoMessage().Integer(1, 7).bytes()); }, {"no graph"});
-  OnnxGraph many;
-  for (int i = 0; i < 1001; ++i) many.Output("output", {});
-  ExpectError<InputError>([&] { Read(many.Onnx()); }, {"too many"});
   OnnxGraph deep;
   deep.Output("output", Shape(33, 1));
   ExpectError<InputError>([&] { Read(deep.Onnx()); }, {"too many sides"});
@@ -93,16 +90,14 @@ TEST(OnnxCheckTest, TensorsWithOtherNumbersThanTheirShapeNeedsAreRefused) {
   ExpectRefused(File(Tensor(kFloat, {1u << 20, 1u << 20}).Text(kRawData, Zeros(4))), {"large"});
   ExpectRefused(File(Tensor(kFloat, {~std::uint64_t{0}}).Text(kRawData, Zeros(4))), {"large"});
   ExpectRefused(File(Tensor(kString, {1}).Text(6, "text")), {"type 8"});
-  ExpectRefused(File(Tensor(kFloat, {2}).Text(kExternalData, "elsewhere")), {"0 numbers"});
 }
 
-TEST(OnnxCheckTest, WhatReadersTakeDifferentlyIsRefused) {
+TEST(OnnxCheckTest, LastOfTwoValuesCounts) {
   ExpectRefused(File(Tensor(kFloat, {2}).Integer(kType, kInt8).Text(kRawData, Zeros(8))),
                 {"'weights'"});
   ExpectRefused(File(Tensor(kFloat, {2}).Text(kRawData, Zeros(8)).Text(kRawData, Zeros(4))),
                 {"'weights'"});
-  ExpectRefused(File(Tensor(kFloat, {2}).Text(kRawData, Zeros(8)).Integer(kFloatData, 1)),
-                {"'weights'"});
+  ExpectAccepted(Tensor(kFloat, {2}).Text(kRawData, Zeros(4)).Text(kRawData, Zeros(8)));
 }
 
 TEST(OnnxCheckTest, FilesOfExternalDataAreNamed) {
@@ -130,7 +125,6 @@ TEST(OnnxCheckTest, TensorsAreFoundWhereverTheyAre) {
   ExpectRefused(file(ProtoMessage().Message(6, graph(bad))), {"'weights'"});
   ExpectRefused(file(ProtoMessage().Message(10, good).Message(10, bad)), {"'weights'"});
   ExpectRefused(file(ProtoMessage().Message(11, graph(bad))), {"'weights'"});
-  ExpectRefused(file(ProtoMessage().Message(5, good).Message(5, good)), {"two tensors"});
 }
 
 TEST(OnnxCheckTest, DamagedFilesAreRefused) {
@@ -138,9 +132,9 @@ TEST(OnnxCheckTest, DamagedFilesAreRefused) {
   for (size_t size = 1; size < 6; ++size)
     ExpectRefused(whole.substr(0, whole.size() - size), {"net.onnx"});
   ExpectRefused("no network", {"net.onnx"});
-  ExpectRefused("\x3a\xff\xff\xff\xff\x0f", {"net.onnx", "4294967295 bytes"});
-  ExpectRefused("\x3b", {"kind 3"});
-  ExpectRefused("\x38" + std::string(11, '\xff'), {"64 bits"});
+  ExpectRefused("\x3a\xff\xff\xff\xff\x0f", {"net.onnx", "cut short"});
+  ExpectRefused("\x3b", {"malformed"});
+  ExpectRefused("\x38" + std::string(11, '\xff'), {"malformed"});
   ProtoMessage deep;
   for (int i = 0; i < 1000; ++i) {
     deep = ProtoMessage().Message(1, ProtoMessage().Message(5, ProtoMessage().Message(6, deep)));
