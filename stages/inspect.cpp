@@ -20,6 +20,7 @@ constexpr const char* kExamples =
     "  soslam-inspect map.json --sequence sequence.json --dataset data/room_a --frame 10 --image "
     "frame.png\n"
     "  soslam-inspect map.json --headline\n"
+    "  soslam-inspect sequence.json --table detections\n"
     "  soslam-inspect metrics.json --csv -\n"
     "  soslam-inspect diff one/map.json two/map.json --tolerance 1e-6";
 
@@ -52,6 +53,11 @@ CLI::Option* AddFiles(CLI::App* app, soslam::InspectRequest* request) {
       "sequence.json that the artefact was made from:\nfor labels of objects, and for pictures");
   CLI::Option* dataset =
       add("--dataset", &request->dataset, "dataset folder with the images, for pictures");
+  CLI::Option* table =
+      app->add_option("--table", request->table,
+                      "this table alone, with all rows and what its columns are\n[default all "
+                      "tables, shortened; with --csv the first one]");
+  table->option_text("string")->group("Files");
   CLI::Option* csv = add("--csv", &request->csv,
                          "table to write as CSV, in full precision; - for standard output");
   CLI::Option* headline =
@@ -64,7 +70,7 @@ CLI::Option* AddFiles(CLI::App* app, soslam::InspectRequest* request) {
       add("--image", &request->image,
           "picture to write (.png): of sequence, landmarks and map\nthe boxes, landmarks and "
           "ground truth of a frame; of edges\nits maps; of symmetry the pairs of an observation");
-  for (CLI::Option* option : {dataset, csv, image}) headline->excludes(option);
+  for (CLI::Option* option : {dataset, table, csv, image}) headline->excludes(option);
   return headline;
 }
 

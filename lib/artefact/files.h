@@ -50,6 +50,7 @@ std::vector<MapPoint> ReadPoints(const std::filesystem::path& path);
 // Kinds "associations", "planes" and "world".
 void WriteAssociations(const std::filesystem::path& path, const Associations& associations,
                        const ArtefactInfo& info);
+Artefact<Associations> ReadAssociations(const std::filesystem::path& path);
 void WritePlanes(const std::filesystem::path& path, const PlanesReport& report,
                  const ArtefactInfo& info);
 void WriteWorld(const std::filesystem::path& path, const WorldReport& report,

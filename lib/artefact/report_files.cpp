@@ -4,9 +4,15 @@
 
 namespace soslam {
 
+constexpr const char* kAssociationsKind = "associations";
+
 void WriteAssociations(const std::filesystem::path& path, const Associations& associations,
                        const ArtefactInfo& info) {
-  WriteArtefact(path, "associations", info, DescribedToJson(associations));
+  WriteArtefact(path, kAssociationsKind, info, DescribedToJson(associations));
+}
+
+Artefact<Associations> ReadAssociations(const std::filesystem::path& path) {
+  return ReadDescribed<Associations>(path, kAssociationsKind);
 }
 
 void WritePlanes(const std::filesystem::path& path, const PlanesReport& report,

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <map>
 
-#include "artefact/json_file.h"
+#include "artefact/files.h"
 #include "base/error.h"
 #include "base/paths.h"
 #include "evaluation/statistics.h"
@@ -53,17 +53,13 @@ std::vector<std::string> UncertainSizes(const Covariance9& covariance) {
 }
 
 // The sightings of each object, by its id.
-std::map<int, Sightings> ReadSightings(const fs::path& associations) {
-  if (!Exists(associations)) return {};
-  const json document = ReadArtefact(associations, "associations");
-  const json& tracks = document.at("tracks");
+std::map<int, Sightings> ReadSightings(const fs::path& file) {
+  if (!Exists(file)) return {};
+  const Associations associations = ReadAssociations(file).body;
   std::map<int, Sightings> sightings;
-  for (const json& object : document.at("objects")) {
-    const json& track = TrackAt(tracks, object.at("track"), associations.string());
-    const json& in_sight = track.at("frames_in_sight");
-    if (in_sight.is_null()) continue;
-    sightings[object.at("object").get<int>()] = {object.at("detections").get<int>(),
-                                                 in_sight.get<int>()};
+  for (const Associations::ObjectRow& object : associations.objects) {
+    const std::optional<int> in_sight = associations.tracks[object.track].frames_in_sight;
+    if (in_sight) sightings[object.object] = {object.detections, *in_sight};
   }
   return sightings;
 }

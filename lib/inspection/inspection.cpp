@@ -119,102 +119,161 @@ std::vector<Fact> Provenance(const json& header) {
           {"settings", SettingsInWords(settings, maker->defaults)}};
 }
 
-constexpr size_t kLineWidth = 100;
+// Kinds of HDF5 files, and what they hold.
+const std::map<std::string, std::string> kHdf5Kinds = {
+    {"edges", "edges, distances and corners of images"},
+    {"points", "sparse points of structure from motion"},
+    {"symmetry", "what symmetry and edges say about the yaw of observations"}};
 
-struct Kind {
-  const char* name;
-  const char* title;  // null: that of ArtefactKinds()
-  Inspection (*of_document)(const json& document) = nullptr;
-  Inspection (*of_file)(const std::filesystem::path& file) = nullptr;
-};
-
-constexpr std::array<Kind, 13> kKinds = {{
-    {"associations", nullptr, &InspectAssociations},
-    {"edges", "edges, distances and corners of images", nullptr, &InspectEdges},
-    {"frames", nullptr, &InspectFrames},
-    {"landmarks", nullptr, &InspectLandmarks},
-    {"map", nullptr, &InspectMap},
-    {"metrics", nullptr, &InspectMetrics},
-    {"planes", nullptr, &InspectPlanes},
-    {"points", "sparse points of structure from motion", nullptr, &InspectPoints},
-    {"reconstruction", nullptr, nullptr, &InspectReconstruction},
-    {"semantic_table", nullptr, nullptr, &InspectSemanticTable},
-    {"sequence", nullptr, nullptr, &InspectSequence},
-    {"symmetry", "what symmetry and edges say about the yaw of observations", nullptr,
-     &InspectSymmetry},
-    {"world", nullptr, nullptr, &InspectWorld},
-}};
-
-const Kind& FindKind(std::string_view name, const std::filesystem::path& file) {
-  const auto* found = std::ranges::find(kKinds, name, &Kind::name);
-  if (found != kKinds.end()) return *found;
+[[noreturn]] void RefuseKind(const std::string& kind, const std::filesystem::path& file) {
   std::vector<std::string> known;
-  for (const Kind& kind : kKinds) known.emplace_back(kind.name);
+  for (const auto& [name, title] : kHdf5Kinds) known.push_back(name);
+  for (const ArtefactKind& one : ArtefactKinds()) known.push_back(one.name);
+  std::ranges::sort(known);
   throw InputError(fmt::format("{}: artefact kind is \"{}\"; expected one of {}", file.string(),
-                               name, fmt::join(known, ", ")));
+                               kind, fmt::join(known, ", ")));
 }
 
 // Adds the labels of objects where the artefact has none.
 void AddLabels(const Sequence& sequence, ValueTable* table) {
   const auto column = [&](const char* name) {
-    const auto found = std::ranges::find(table->columns, name, &ValueColumn::name);
-    return static_cast<size_t>(found - table->columns.begin());
+    return std::ranges::find(table->columns, name, &ValueColumn::name) - table->columns.begin();
   };
-  const size_t object = column("object"), label = column("label");
-  if (std::max(object, label) == table->columns.size()) return;
+  const auto count = std::ssize(table->columns);
+  const auto object = std::min(column("object"), column("object_id"));
+  if (object == count || column("label") != count) return;
+  table->columns.insert(table->columns.begin() + object + 1, {"label", "of the object"});
   for (std::vector<Value>& row : table->rows) {
-    const auto found = std::ranges::find(sequence.objects, row[object].get<int>(), &Object::id);
-    if (row[label].is_null() && found != sequence.objects.end()) row[label] = found->label;
+    const auto found = std::ranges::find_if(
+        sequence.objects, [&](const Object& one) { return row[object] == one.id; });
+    row.insert(row.begin() + object + 1,
+               found == sequence.objects.end() ? Value() : Value(found->label));
   }
 }
 
-std::vector<Fact> FindingFacts(const std::filesystem::path& file) {
-  std::vector<Fact> facts;
-  if (IsHdf5(file)) return facts;
-  for (const Finding& finding : FindingsOf(ParseJsonFile(file))) {
-    facts.push_back(
-        {kSeverityNames[static_cast<size_t>(finding.severity)], OneLine(InWords(finding))});
+// "fate: 5 object, 2 merged": how often the columns have each of their values, where these are few
+// texts.
+std::string CountsOf(const ValueTable& table) {
+  constexpr size_t kMostValues = 8;
+  std::string text;
+  for (size_t k = 0; k < table.columns.size(); ++k) {
+    std::map<std::string, int> counts;
+    for (const std::vector<Value>& row : table.rows) {
+      if (row[k].is_string() || row[k].is_boolean()) ++counts[InWords(row[k])];
+    }
+    counts.erase("");
+    if (counts.empty() || counts.size() > kMostValues) continue;
+    text += fmt::format("  {}: {}\n", table.columns[k].name, CountsInWords(counts));
   }
-  return facts;
+  return text;
 }
+
+std::string Styled(fmt::emphasis emphasis, const std::string& text, bool is_coloured) {
+  return is_coloured ? fmt::format(fmt::text_style(emphasis), "{}", text) : text;
+}
+
+// Fields of a record stand below its name, and what they are beside their values.
+std::string FormatFacts(const std::vector<Fact>& facts, bool is_coloured) {
+  constexpr size_t kLineWidth = 110, kValueWidth = 10;
+  const auto field_of = [](const Fact& fact) { return fact.name.substr(fact.name.rfind('/') + 1); };
+  size_t width = 0;
+  for (const Fact& fact : facts) width = std::max(width, 2 + WidthOf(field_of(fact)));
+  const size_t indent = 2 + width + 2, doc_indent = indent + kValueWidth + 2;
+  std::string text, record;
+  for (const Fact& fact : facts) {
+    std::string name = field_of(fact);
+    const std::string record_of_fact = fact.name.substr(0, fact.name.size() - name.size());
+    if (record_of_fact != record && !record_of_fact.empty()) {
+      text += "  " + record_of_fact.substr(0, record_of_fact.size() - 1) + "\n";
+    }
+    record = record_of_fact;
+    if (!record.empty()) name.insert(0, "  ");
+    name.resize(name.size() + width - WidthOf(name), ' ');
+    std::string value = Wrapped(fact.text, kLineWidth - indent, indent);
+    if (!fact.doc.empty()) {
+      const size_t used = WidthOf(fact.text);
+      value += used <= kValueWidth ? std::string(kValueWidth + 2 - used, ' ')
+                                   : "\n" + std::string(doc_indent, ' ');
+      value += Wrapped(fact.doc, kLineWidth - doc_indent, doc_indent);
+    }
+    text += "  " + Styled(fmt::emphasis::faint, name, is_coloured) + "  " + value + "\n";
+  }
+  return text;
+}
+
+std::string TitleOf(const ValueTable& table, bool is_coloured) {
+  return "\n" + Styled(fmt::emphasis::bold, table.name, is_coloured) +
+         fmt::format(", {}{}{}\n", Counted(table.rows.size(), "row"), table.doc.empty() ? "" : ": ",
+                     table.doc);
+}
+
+constexpr size_t kTableWidth = 140;
 
 }  // namespace
 
 Inspection Inspect(const std::filesystem::path& file, const std::optional<Sequence>& sequence) {
-  const nlohmann::json header = ReadArtefactHeader(file);
-  const Kind& kind = FindKind(header.at("kind").get_ref<const std::string&>(), file);
-  CheckArtefactHeader(header, kind.name, file.string());
-  Inspection inspection = kind.of_file != nullptr ? kind.of_file(file)
-                                                  : kind.of_document(ReadArtefact(file, kind.name));
-  if (sequence) AddLabels(*sequence, &inspection.table);
-  const std::string title = kind.title == nullptr ? FindArtefactKind(kind.name)->title : kind.title;
-  inspection.title = fmt::format("{}: {} ({})", file.string(), kind.name, title);
+  const json header = ReadArtefactHeader(file);
+  const std::string kind = header.at("kind");
+  const ArtefactKind* const of_json = FindArtefactKind(kind);
+  const auto of_hdf5 = kHdf5Kinds.find(kind);
+  if (of_json == nullptr && of_hdf5 == kHdf5Kinds.end()) RefuseKind(kind, file);
+  CheckArtefactHeader(header, kind, file.string());
+  Inspection inspection;
+  std::vector<Finding> findings;
+  if (of_json != nullptr) {
+    const json document = ReadArtefact(file, kind);
+    inspection = ContentsOf(of_json->schema(), document);
+    AddDerivedColumns(kind, document, &inspection);
+    findings = FindingsOf(document);
+  } else {
+    inspection = ContentsOf(OpenArtefact(file, kind));
+  }
+  if (sequence) {
+    for (ValueTable& table : inspection.tables) AddLabels(*sequence, &table);
+  }
+  inspection.title = fmt::format("{}: {} ({})", file.string(), kind,
+                                 of_json != nullptr ? of_json->title : of_hdf5->second);
   try {
     const std::vector<Fact> provenance = Provenance(header);
     inspection.facts.insert(inspection.facts.begin(), provenance.begin(), provenance.end());
-    std::ranges::move(FindingFacts(file), std::back_inserter(inspection.facts));
-  } catch (const nlohmann::json::exception& error) {
+  } catch (const json::exception& error) {
     throw InputError(
         fmt::format("{}: the artefact header is not as expected: {}", file.string(), error.what()));
+  }
+  for (const Finding& finding : findings) {
+    inspection.facts.push_back({NameOf(finding.severity), OneLine(InWords(finding))});
   }
   return inspection;
 }
 
 std::string FormatInspection(const Inspection& inspection, bool is_coloured) {
-  const auto styled = [&](fmt::emphasis emphasis, const std::string& text) {
-    return is_coloured ? fmt::format(fmt::text_style(emphasis), "{}", text) : text;
-  };
-  size_t width = 0;
-  for (const Fact& fact : inspection.facts) width = std::max(width, WidthOf(fact.name));
-  std::string text = styled(fmt::emphasis::bold, inspection.title) + "\n";
-  for (const Fact& fact : inspection.facts) {
-    const std::string name = fact.name + std::string(width - WidthOf(fact.name), ' ');
-    const size_t indent = 2 + width + 2;
-    text += fmt::format("  {}  {}\n", styled(fmt::emphasis::faint, name),
-                        Wrapped(fact.text, kLineWidth - indent, indent));
+  constexpr size_t kRows = 12;
+  std::string text = Styled(fmt::emphasis::bold, inspection.title, is_coloured) + "\n" +
+                     FormatFacts(inspection.facts, is_coloured);
+  for (const ValueTable& table : inspection.tables) {
+    text += TitleOf(table, is_coloured) + FormatTable(table, is_coloured, {kRows, kTableWidth});
+    if (table.rows.size() <= kRows) continue;
+    text += fmt::format("... and {} more (--table {})\n{}", table.rows.size() - kRows, table.name,
+                        CountsOf(table));
   }
-  if (inspection.table.rows.empty()) return text;
-  return text + "\n" + FormatTable(inspection.table, is_coloured);
+  return text;
+}
+
+const ValueTable& TableOf(const Inspection& inspection, const std::optional<std::string>& name) {
+  std::vector<std::string> known;
+  for (const ValueTable& table : inspection.tables) {
+    if (!name || table.name == *name) return table;
+    known.push_back(table.name);
+  }
+  throw SettingsError(fmt::format("--table {}: {} has no such table; expected one of {}",
+                                  name.value_or(""), inspection.title, fmt::join(known, ", ")));
+}
+
+std::string FormatWholeTable(const ValueTable& table, bool is_coloured) {
+  std::vector<Fact> columns;
+  for (const ValueColumn& column : table.columns) columns.push_back({column.name, "", column.doc});
+  return TitleOf(table, is_coloured) + FormatTable(table, is_coloured, {.width = kTableWidth}) +
+         "\n" + FormatFacts(columns, is_coloured);
 }
 
 std::map<std::string, int> CountsBy(const char* field, const json& rows) {

@@ -9,48 +9,59 @@
 #include <string_view>
 #include <vector>
 
+#include "artefact/hdf5_file.h"
 #include "model/sequence.h"
 
 namespace soslam {
 
-// A cell of a table of values: a number, a text, a truth value, or null for no value.
+// A value as a file has it; null for no value.
 using Value = nlohmann::json;
 
 struct ValueColumn {
-  std::string name;
-  std::string unit = {};   // "m", "deg", "px", "%"; empty without one
-  int decimals = 2;        // of numbers that are not whole, in text for people
-  std::string field = {};  // of the JSON objects of TableOf, "errors/iou"; empty: the name
+  std::string name;  // JSON pointer in a row, without the first slash: "errors/iou"
+  std::string doc = {};
 };
 
 // Rows have one cell per column.
 struct ValueTable {
   std::vector<ValueColumn> columns;
   std::vector<std::vector<Value>> rows;
+  std::string name = {};  // path in the file: "map_quality/landmarks"
+  std::string doc = {};
 };
 
-// The table with a row for each of these JSON objects; fields that are absent have no value.
-ValueTable TableOf(const std::vector<ValueColumn>& columns, const nlohmann::json& objects);
+// A value in words: of lists at most six items, of lists of records their number. Numbers have four
+// digits where they are as large as `largest`.
+std::string InWords(const Value& value, double largest);
+std::string InWords(const Value& value);
 
-// Text for a terminal: a line of names, one of units, and the rows, in aligned columns; columns
-// without any value are left out. `is_coloured`: with escape sequences.
-std::string FormatTable(const ValueTable& table, bool is_coloured);
+// The rows that are printed, and the width of a line; wider tables are printed in parts, each with
+// the first two columns.
+struct TableLimits {
+  size_t rows = std::numeric_limits<size_t>::max();
+  size_t width = std::numeric_limits<size_t>::max();
+};
 
-// RFC 4180 with lines that end in a line feed: the names of all columns, with their units
-// ("yaw_deg"), then the rows. Numbers round-trip exactly.
+// Text for a terminal: names and rows in aligned columns; columns without any value are left out.
+// `is_coloured`: with escape sequences.
+std::string FormatTable(const ValueTable& table, bool is_coloured, const TableLimits& limits = {});
+
+// RFC 4180 with lines that end in a line feed: the names of all columns, then the rows. Numbers
+// round-trip exactly. A column of vectors becomes one for each number, "half_axes/0".
 std::string FormatCsv(const ValueTable& table);
 
-// A statement about an artefact in words.
+// A statement about an artefact.
 struct Fact {
-  std::string name;  // "trajectory"
+  std::string name;  // "trajectory", or the path of a field: "solver/final_cost"
   std::string text;
+  std::string doc = {};  // what a field is
 };
 
-// A readable summary of an artefact.
+// What an artefact says, for a person.
 struct Inspection {
-  std::string title;  // file, kind and description
+  std::string title;  // file, kind and what that holds
   std::vector<Fact> facts;
-  ValueTable table;
+  std::vector<ValueTable> tables;
 };
 
 // Reads an artefact of any kind. `sequence`, if known, supplies the labels of objects. Throws
@@ -58,8 +69,29 @@ struct Inspection {
 // damaged.
 Inspection Inspect(const std::filesystem::path& file, const std::optional<Sequence>& sequence);
 
-// Text for a terminal: title, facts, table. `is_coloured`: with escape sequences.
+// Text for a terminal: title, facts, and the first rows of each table. `is_coloured`: with escape
+// sequences.
 std::string FormatInspection(const Inspection& inspection, bool is_coloured);
+
+// The table of this name, or the first one. Throws SettingsError, naming the known ones.
+const ValueTable& TableOf(const Inspection& inspection, const std::optional<std::string>& name);
+
+// Text for a terminal: all rows, and what the columns are.
+std::string FormatWholeTable(const ValueTable& table, bool is_coloured);
+
+// The contents of a document by the JSON schema of its kind, which follows from its description:
+// lists of records are tables, whose rows have the fields of a record and, of a list in it, the
+// number of items and the fields of the first one; all other fields are facts.
+Inspection ContentsOf(const nlohmann::ordered_json& schema, const nlohmann::json& document);
+
+// The contents of an HDF5 file: groups in a group of the root are rows of a table, and have
+// attributes and data sets; data sets of the root are facts. Throws InputError.
+Inspection ContentsOf(const Hdf5File& file);
+
+// Adds to the tables of landmarks.json or map.json what no field states: the yaws of landmarks, and
+// the standard deviations of their places, yaws and sizes.
+void AddDerivedColumns(const std::string& kind, const nlohmann::json& document,
+                       Inspection* inspection);
 
 // Number of rows for each value of a field, except empty ones.
 std::map<std::string, int> CountsBy(const char* field, const nlohmann::json& rows);
@@ -68,21 +100,5 @@ std::map<std::string, int> CountsBy(const char* field, const nlohmann::json& row
 // of parts are "part/field"; a number may have a format, "{field:.3f}". Throws json::exception for
 // a field that is missing.
 std::string FillIn(std::string_view text, const nlohmann::json& fields);
-
-// Contents of an artefact of each kind, by its file or document; Inspect adds title, provenance and
-// labels of objects. Errors as there; json::exception for a field that is missing.
-Inspection InspectAssociations(const nlohmann::json& document);
-Inspection InspectEdges(const std::filesystem::path& file);
-Inspection InspectFrames(const nlohmann::json& document);
-Inspection InspectLandmarks(const nlohmann::json& document);
-Inspection InspectMap(const nlohmann::json& document);
-Inspection InspectMetrics(const nlohmann::json& document);
-Inspection InspectPlanes(const nlohmann::json& document);
-Inspection InspectPoints(const std::filesystem::path& file);
-Inspection InspectReconstruction(const std::filesystem::path& file);
-Inspection InspectSemanticTable(const std::filesystem::path& file);
-Inspection InspectSequence(const std::filesystem::path& file);
-Inspection InspectSymmetry(const std::filesystem::path& file);
-Inspection InspectWorld(const std::filesystem::path& file);
 
 }  // namespace soslam

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <string>
@@ -201,6 +202,16 @@ void Describe(Visitor& visit, Associations& associations) {
   visit.Field("tracks", &associations.tracks, "in the order in which they were started");
   visit.Field("objects", &associations.objects, "of the sequence that was written, by id");
   visit.Field("agreement", &associations.agreement, "of the objects with the given ones");
+  visit.Check([&] {
+    const auto tracks = std::ssize(associations.tracks);
+    for (const Associations::ObjectRow& row : associations.objects) {
+      if (row.track >= tracks) {
+        return fmt::format("object {} is of track {} of {}; expected one in the list", row.object,
+                           row.track, tracks);
+      }
+    }
+    return std::string();
+  });
 }
 
 }  // namespace soslam

@@ -193,12 +193,14 @@ std::string RunInspect(const InspectRequest& request, bool is_coloured) {
     }
   }
   if (request.image) WritePng(*request.image, PictureOf(request));
-  if (request.image && !request.csv) return "";
+  if (request.image && !request.csv && !request.table) return "";
   std::optional<Sequence> sequence;
   if (request.sequence) sequence = ReadSequence(*request.sequence, PlaneNeed::kNotNeeded);
   const Inspection inspection = Inspect(request.file, sequence);
-  if (!request.csv) return FormatInspection(inspection, is_coloured);
-  std::string csv = FormatCsv(inspection.table);
+  if (!request.csv && !request.table) return FormatInspection(inspection, is_coloured);
+  const ValueTable& table = TableOf(inspection, request.table);
+  if (!request.csv) return FormatWholeTable(table, is_coloured);
+  std::string csv = FormatCsv(table);
   if (*request.csv == "-") return csv;
   WriteTextFile(*request.csv, csv);
   return "";

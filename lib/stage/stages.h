@@ -304,9 +304,10 @@ int RunReproduce(const NoOptions& options, const StageFiles& files, int threads)
 // Arguments of soslam-inspect.
 struct InspectRequest {
   std::filesystem::path file;
-  bool headline = false;                       // one line instead, of a map.json
-  std::optional<std::filesystem::path> csv;    // output path of the table; "-" is standard output
-  std::optional<std::filesystem::path> image;  // output path of the picture, a .png
+  bool headline = false;                     // one line instead, of a map.json
+  std::optional<std::string> table;          // the one that is wanted, whole; the first one as CSV
+  std::optional<std::filesystem::path> csv;  // output path of the table; "-" is standard output
+  std::optional<std::filesystem::path> image;     // output path of the picture, a .png
   std::optional<std::filesystem::path> sequence;  // the sequence that the artefact was made from
   std::optional<std::filesystem::path> dataset;   // folder with the images
   std::optional<int> frame_id;                    // frame of the picture
@@ -316,10 +317,10 @@ struct InspectRequest {
 
 // Writes the requested table and picture and returns the text for standard output: with `headline`
 // one line on a map.json, "9 objects, scale +- 18 %, 2 objects uncertain", whose sequence.json is
-// beside it unless another one is given; the table as CSV if requested there; nothing if files were
-// requested; otherwise a description of the artefact and its table, with escape sequences if
-// `is_coloured`. Throws InputError for a file that is no artefact, SettingsError for a picture that
-// this artefact cannot give.
+// beside it unless another one is given; a table as CSV if requested there; nothing if files were
+// requested; otherwise one table, or facts and tables of the artefact, with escape sequences if
+// `is_coloured`. Throws InputError for a file that is no artefact, SettingsError for a table or
+// picture that this artefact cannot give.
 std::string RunInspect(const InspectRequest& request, bool is_coloured);
 
 }  // namespace soslam
