@@ -22,7 +22,7 @@ const char* ReasonNotUsed(const Association& association, const DetectionDecisio
   while (association.tracks[track].fate == TrackFate::kMerged) {
     track = association.tracks[track].merge.into;
   }
-  return kTrackFateNames[static_cast<size_t>(association.tracks[static_cast<size_t>(track)].fate)];
+  return NameOf(association.tracks[track].fate);
 }
 
 }  // namespace

@@ -10,10 +10,12 @@
 
 #include "dataset/dataset_checks.h"
 #include "dataset/dataset_json.h"
+#include "dataset/gate.h"
 #include "dataset/image_path.h"
 #include "geometry/distortion.h"
 #include "geometry/image_size.h"
 #include "image/image_format.h"
+#include "model/reasons.h"
 
 namespace soslam {
 namespace {
@@ -115,6 +117,7 @@ std::vector<Finding> CheckLens(const Camera& camera, const Distortion& distortio
         (*undistorted[i] - centre).norm() >= kLeastRatio * (sides[i] - centre).norm()) {
       continue;
     }
+    const Reason advice = ReasonOf(NameOf(RejectReason::kBeyondLensModel));
     return {
         {"camera_lens", Severity::kWarning,
          fmt::format("lens model with coefficients {:g}, by which the pixel ({:.0f}, {:.0f}) {}",
@@ -122,8 +125,7 @@ std::vector<Finding> CheckLens(const Camera& camera, const Distortion& distortio
                      undistorted[i] ? fmt::format("is ({:.0f}, {:.0f}) without distortion",
                                                   undistorted[i]->x(), undistorted[i]->y())
                                     : "has no undistorted one"),
-         "a model that holds near the sides of the image", kAdviceOnLens.cause,
-         kAdviceOnLens.remedy}};
+         "a model that holds near the sides of the image", advice.cause, advice.remedy}};
   }
   return {};
 }

@@ -14,6 +14,7 @@
 
 #include "base/text.h"
 #include "dataset/gate.h"
+#include "model/reasons.h"
 
 namespace soslam {
 namespace {
@@ -210,32 +211,6 @@ std::vector<Finding> CheckTimestamps(const std::vector<ListedImage>& images,
   return findings;
 }
 
-namespace {
-
-// Gates that reject detections because of the data; the others apply what a setting asks for.
-const std::map<std::string, Advice> kGatesOfData = {
-    {RejectReasonName(RejectReason::kFrameWithoutPose),
-     {"a trajectory of a part of the images, or of another clock",
-      "compare the time stamps of images and trajectory; max_time_difference_s"}},
-    {RejectReasonName(RejectReason::kBeyondLensModel), kAdviceOnLens},
-    {RejectReasonName(RejectReason::kEmptyBox),
-     {"boxes of another convention, as x, y, width, height", "give corners x1, y1, x2, y2"}},
-    {RejectReasonName(RejectReason::kOutsideImage),
-     {"boxes of images of another size", "give boxes in pixels of the camera's image"}},
-    {RejectReasonName(RejectReason::kNearBorder),
-     {"objects that the image cuts, which the paper's protocol drops",
-      "a smaller border_px keeps them, with the cut edges as one-sided ones"}},
-    {RejectReasonName(RejectReason::kDuplicate),
-     {"several boxes of one object in one image, or one id for several objects",
-      "an id for each object, or no ids and estimated association"}},
-    {RejectReasonName(RejectReason::kTooFewObservations),
-     {"ids that change from image to image",
-      "ids that stay, or no ids and estimated association; min_observations"}},
-    {RejectReasonName(RejectReason::kWithoutObjectId),
-     {"a tracker that finds few tracks", "no object_id and estimated association"}}};
-
-}  // namespace
-
 std::vector<Finding> CheckLabels(const ImportView& view) {
   std::set<std::string> known;
   for (const DetectionRow& row : view.content.rows) known.insert(row.label);
@@ -260,17 +235,16 @@ std::vector<Finding> CheckRejections(const ImportView& view) {
   // Each image has its own world.
   if (view.options.format == DatasetFormat::kKittiObject) return {};
   auto all = static_cast<int>(view.sequence.detections.size());  // that reach the gates of data
-  for (const auto& [reason, count] : view.sequence.rejected_detections) {
-    if (kGatesOfData.contains(reason)) all += count;
+  for (const auto& [code, count] : view.sequence.rejected_detections) {
+    if (!ReasonOf(code).remedy.empty()) all += count;
   }
   std::vector<Finding> findings;
-  for (const auto& [reason, count] : view.sequence.rejected_detections) {
-    const auto gate = kGatesOfData.find(reason);
-    if (gate == kGatesOfData.end() || all < kFewest || 3 * count <= all) continue;
-    findings.push_back({"rejected_" + reason, Severity::kWarning,
-                        fmt::format("{} of {} detections are dropped as {}", count, all, reason),
-                        "at most a third dropped for one reason", gate->second.cause,
-                        gate->second.remedy});
+  for (const auto& [code, count] : view.sequence.rejected_detections) {
+    const Reason reason = ReasonOf(code);
+    if (reason.remedy.empty() || all < kFewest || 3 * count <= all) continue;
+    findings.push_back({"rejected_" + code, Severity::kWarning,
+                        fmt::format("{} of {} detections are dropped as {}", count, all, code),
+                        "at most a third dropped for one reason", reason.cause, reason.remedy});
   }
   return findings;
 }

@@ -28,10 +28,6 @@ struct Advice {
   std::string remedy;
 };
 
-inline const Advice kAdviceOnLens = {
-    "distortion of another camera, or with coefficients in another order",
-    "give k1, k2, p1, p2, k3 as OpenCV has them"};
-
 // Checks for common mistakes in datasets. They return their findings and throw nothing.
 
 // Plausibility of the intrinsics: normalised, in millimetres, of another image size; and of the

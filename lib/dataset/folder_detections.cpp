@@ -193,7 +193,7 @@ std::vector<DetectionRow> RowsOfBoxes(const std::vector<LabelledBox>& boxes,
         "{}: image '{}' is not listed, nor that of any other box; expected images of {}",
         boxes.front().place, std::get<std::string>(boxes.front().frame), list));
   }
-  (*rejected)[RejectReasonName(RejectReason::kFrameNotListed)] += static_cast<int>(unlisted);
+  (*rejected)[NameOf(RejectReason::kFrameNotListed)] += static_cast<int>(unlisted);
   fmt::print("{}: {} of {} detections are of listed images\n", files.detections.filename().string(),
              rows.size(), boxes.size());
   return rows;
@@ -205,7 +205,7 @@ std::vector<DetectionRow> Undistorted(std::vector<DetectionRow> rows, const Came
   for (DetectionRow& row : rows) {
     const auto box = UndistortBox(camera, distortion, row.box);
     if (!box) {
-      ++(*rejected)[RejectReasonName(RejectReason::kBeyondLensModel)];
+      ++(*rejected)[NameOf(RejectReason::kBeyondLensModel)];
       continue;
     }
     row.box_in_image_file = row.box;

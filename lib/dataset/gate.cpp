@@ -10,22 +10,12 @@
 #include "base/text.h"
 #include "dataset/class_names.h"
 #include "model/occlusion.h"
+#include "model/reasons.h"
 
 namespace soslam {
 
-const char* RejectReasonName(RejectReason reason) {
-  constexpr std::array kNames = {"frame_not_listed",   "frame_not_used",   "frame_without_image",
-                                 "frame_without_pose", "other_label",      "truncated",
-                                 "occluded",           "low_score",        "beyond_lens_model",
-                                 "empty_box",          "outside_image",    "low_box",
-                                 "near_border",        "duplicate",        "too_few_observations",
-                                 "without_object_id",  "matches_no_label", "crowd",
-                                 "out_of_view"};
-  return kNames.at(static_cast<size_t>(reason));
-}
-
 void Rejections::Add(const DetectionRow& row, RejectReason reason) {
-  ++counts[RejectReasonName(reason)];
+  ++counts[NameOf(reason)];
   rows.emplace_back(row, reason);
 }
 
@@ -33,7 +23,7 @@ std::string DescribeRejections(const RejectionCounts& rejected) {
   int total = 0;
   for (const auto& [reason, count] : rejected) total += count;
   return fmt::format("{} detections rejected{}", total,
-                     rejected.empty() ? "" : ": " + CountsInWords(rejected));
+                     rejected.empty() ? "" : ": " + CountsInWords(ReasonsInWords(rejected)));
 }
 
 bool IsInView(RejectReason reason) {

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/description.h"
 #include "dataset/import_options.h"
 #include "geometry/box.h"
 #include "geometry/camera.h"
@@ -70,7 +71,15 @@ enum class RejectReason {
   kCrowd,               // its annotation is of a crowd, or is to be ignored
   kOutOfView,           // its annotation says that the object is not in this image
 };
-const char* RejectReasonName(RejectReason reason);
+inline constexpr std::array kRejectReasonNames = {
+    "frame_not_listed",   "frame_not_used",   "frame_without_image",
+    "frame_without_pose", "other_label",      "truncated",
+    "occluded",           "low_score",        "beyond_lens_model",
+    "empty_box",          "outside_image",    "low_box",
+    "near_border",        "duplicate",        "too_few_observations",
+    "without_object_id",  "matches_no_label", "crowd",
+    "out_of_view"};
+inline constexpr const auto& NamesOf(RejectReason) { return kRejectReasonNames; }
 
 using RejectionCounts = std::map<std::string, int>;
 
@@ -82,7 +91,7 @@ struct Rejections {
   void Add(const DetectionRow& row, RejectReason reason);
 };
 
-// "12 detections rejected: 10 near_border, 2 duplicate".
+// "12 detections rejected: 10 too near the image border, 2 duplicate of another one".
 std::string DescribeRejections(const RejectionCounts& rejected);
 
 // True if the object of a rejected row is still in view and may occlude others.

@@ -146,7 +146,7 @@ class Importer {
       if (frame_index == nullptr) continue;
       sequence_->rejected.push_back({*frame_index, row.label, row.score, row.box,
                                      TrueObjectId(row.object_id), RejectingStage::kImport,
-                                     RejectReasonName(reason)});
+                                     NameOf(reason)});
     }
   }
 

@@ -227,7 +227,7 @@ class Recording {
           {found.place, Id(frame), kNoObject, LowerCase(found.label), found.score, found.box},
           RejectReason::kMatchesNoLabel);
     } else {
-      ++content_->rejected.counts[RejectReasonName(RejectReason::kMatchesNoLabel)];
+      ++content_->rejected.counts[NameOf(RejectReason::kMatchesNoLabel)];
     }
   }
 

@@ -336,7 +336,7 @@ void AddOwnNames(CocoNames own, const fs::path& results, const fs::path& dataset
 void ReadEntry(const JsonEntry& entry, const std::optional<CocoNames>& names, CocoBoxes* read) {
   const auto attributes = AttributesOf(entry);
   if (const auto reason = ReasonToLeaveOut(entry, attributes)) {
-    ++read->left_out[RejectReasonName(*reason)];
+    ++read->left_out[NameOf(*reason)];
     return;
   }
   LabelledBox box{entry.place(),           ParseFrame(entry, names), ParseLabel(entry, names),

@@ -96,8 +96,7 @@ void RejectBoxesOfNoTrack(const std::vector<LabelledBox>& boxes,
     rows = Undistorted(std::move(rows), camera.camera, *camera.distortion, &beyond_lens_model);
   }
   for (const DetectionRow& row : rows) rejected->Add(row, RejectReason::kWithoutObjectId);
-  rejected->counts[RejectReasonName(RejectReason::kWithoutObjectId)] =
-      static_cast<int>(boxes.size());
+  rejected->counts[NameOf(RejectReason::kWithoutObjectId)] = static_cast<int>(boxes.size());
 }
 
 std::vector<TrueObject> TrueObjects(const std::vector<ListedObject>& listed) {

@@ -5,12 +5,15 @@
 #include <functional>
 #include <iterator>
 #include <map>
+#include <set>
 
 #include "artefact/files.h"
 #include "artefact/json_file.h"
 #include "base/error.h"
 #include "base/paths.h"
 #include "inspection/doubts.h"
+#include "model/associations.h"
+#include "model/reasons.h"
 #include "report/page_html.h"
 #include "report/page_parts.h"
 
@@ -31,13 +34,16 @@ const json& AfterMerging(const json& tracks, const json& index) {
   return *row;
 }
 
-std::string InWords(const std::map<std::string, std::string>& words, const std::string& name) {
-  const auto found = words.find(name);
-  return found == words.end() ? WithBlanks(name) : found->second;
-}
-
 std::string MostFrequent(const std::map<std::string, int>& counts) {
   return std::ranges::max_element(counts, {}, [](const auto& pair) { return pair.second; })->first;
+}
+
+// Why association left out a track, by its row in associations.json.
+std::string FateInWords(const json& track) {
+  const auto fate = track.at("fate").get<std::string>();
+  if (fate != NameOf(TrackFate::kRarelyDetected)) return ReasonOf(fate).words;
+  return RarelyDetectedInWords(track.at("detections").get<int>(),
+                               track.at("frames_in_sight").get<int>());
 }
 
 // Rejected detections have no record of the edges that are cut off.
@@ -57,41 +63,6 @@ std::vector<SeenBox> BoxesOf(const Sequence& sequence, const std::vector<int>& d
     boxes.push_back({seen.frame_index, seen.box, std::ranges::count(seen.is_one_sided, true) == 0});
   }
   return boxes;
-}
-
-std::string FateInWords(const json& track, const json& settings) {
-  const auto fate = track.at("fate").get<std::string>();
-  if (fate == "too_few_detections") {
-    return fmt::format("seen too rarely: fewer than {} boxes show three of its edges",
-                       settings.value("min_observations", json()).dump());
-  }
-  if (fate == "rarely_detected") {
-    return RarelyDetectedInWords(track.at("detections").get<int>(),
-                                 track.at("frames_in_sight").get<int>());
-  }
-  return InWords(
-      {{"never_whole", "no image shows it whole"},
-       {"no_landmark", "its boxes do not agree on one body"},
-       {"no_support", "it fits better above or below all support planes: it may hang on a wall"},
-       {"moves", "things of this kind move"},
-       {"low_scores", "the detector was never sure of it"}},
-      fate);
-}
-
-std::string FailureInWords(const std::string& failure) {
-  constexpr const char* kNone = "no initial estimate";
-  return InWords(
-      {{"", kNone},
-       {"no_start", kNone},
-       {kMovingObject, "it moves, or may move"},
-       {"collapsed", "its size vanished in the optimisation"},
-       {"not_determined_by_its_views", "its views are too alike to tell how far away it is"},
-       {"fewer_than_three_views", "seen in fewer than three images"},
-       {"fewer_than_three_measured_edges", "too many of its edges are cut off"},
-       {"no_ratio_for_label", "the semantic table does not have its label"},
-       {"no_finite_quadric", "its boxes do not agree on one body"},
-       {"no_solution", "its boxes do not agree on one body"}},
-      failure);
 }
 
 std::vector<NotPlaced> TracksLeftOut(const json& associations, const Sequence& sequence) {
@@ -120,7 +91,7 @@ std::vector<NotPlaced> TracksLeftOut(const json& associations, const Sequence& s
   std::vector<NotPlaced> things;
   for (auto& [track, thing] : left_out) {
     thing.label = MostFrequent(labels[track]);
-    thing.reason = FateInWords(*track, associations.at("artefact").at("settings"));
+    thing.reason = FateInWords(*track);
     things.push_back(std::move(thing));
   }
   return things;
@@ -150,25 +121,20 @@ std::map<int, std::string> InitialFailures(const fs::path& folder, const Sequenc
 
 std::vector<NotPlaced> ObjectsLeftOut(const fs::path& folder, const MapEstimate& map,
                                       const Sequence& sequence) {
-  std::vector<std::string> failures(sequence.objects.size());
-  std::vector<bool> is_placed(sequence.objects.size());
+  constexpr const char* kNoStart = "no_start";  // the stages before know more
+  std::map<int, std::string> failures = InitialFailures(folder, sequence);
+  std::set<int> placed;
   for (const ObjectEstimate& estimate : map.objects) {
-    const auto index = static_cast<size_t>(estimate.object_index);
-    is_placed[index] = estimate.landmark_in_world.has_value();
-    failures[index] = estimate.failure;
+    if (estimate.landmark_in_world) placed.insert(estimate.object_index);
+    if (estimate.failure != kNoStart) failures[estimate.object_index] = estimate.failure;
   }
-  const std::map<int, std::string> initial = InitialFailures(folder, sequence);
   const auto detections = DetectionsByObject(sequence);
   std::vector<NotPlaced> things;
-  for (size_t i = 0; i < sequence.objects.size(); ++i) {
-    if (is_placed[i] || detections[i].empty()) continue;
-    NotPlaced thing{sequence.objects[i].label, {}, {}};
-    const auto found = initial.find(static_cast<int>(i));
-    const bool is_initial =
-        found != initial.end() && (failures[i].empty() || failures[i] == "no_start");
-    thing.reason = FailureInWords(is_initial ? found->second : failures[i]);
-    thing.boxes = BoxesOf(sequence, detections[i]);
-    things.push_back(std::move(thing));
+  for (int i = 0; i < std::ssize(sequence.objects); ++i) {
+    if (placed.contains(i) || detections[i].empty()) continue;
+    const std::string& failure = failures.try_emplace(i, kNoStart).first->second;
+    things.push_back(
+        {sequence.objects[i].label, BoxesOf(sequence, detections[i]), ReasonOf(failure).words});
   }
   return things;
 }
@@ -180,7 +146,7 @@ std::vector<NotPlaced> LeftOutByPlanes(const Sequence& sequence) {
     if (rejected.stage != RejectingStage::kPlanes) continue;
     NotPlaced& thing = left_out[rejected.label];
     thing.label = rejected.label;
-    thing.reason = "no plane was found that it stands on or hangs from";
+    thing.reason = ReasonOf(rejected.reason).words;
     thing.boxes.push_back(BoxOf(sequence, rejected));
   }
   std::vector<NotPlaced> things;

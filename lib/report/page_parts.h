@@ -100,12 +100,6 @@ struct NotPlaced {
   std::string reason;  // in words
 };
 
-// Why association left out a track, by its row in associations.json and the stage's settings.
-std::string FateInWords(const nlohmann::json& track, const nlohmann::json& settings);
-
-// Why an object has no landmark, by the failure in an artefact.
-std::string FailureInWords(const std::string& failure);
-
 // The tracks that association left out, by associations.json. `sequence` is the one that it wrote,
 // or one that later stages made of it; InputError if it is not. None where the sequence is of a
 // version before 1.7, which does not have their boxes.
@@ -150,7 +144,7 @@ PageSelection SelectForPage(const Sequence& sequence, const std::set<int>& shown
 //     around the object, with which estimates are compared
 //   planes: see PageGrids
 //   segments: up, a direction of the world. Frames and objects have the index of theirs
-//   rejected: reason -> detections that were not used
+//   rejected: reason in words -> detections that were not used
 nlohmann::json PageSequence(const Sequence& sequence, const PageSelection& selection);
 
 // Short forms for pages, to keep them small. Lengths are rounded to a tenth of a millimetre, pixels
@@ -196,7 +190,8 @@ Rigid3d CameraAbovePlane(const Sequence& sequence, const Detection& detection);
 //     for each observation), by the stages that produced it
 //   metrics: metrics.json without its header and findings
 //   objects, one per object of the sequence: landmark in the world (of kind "frames" that of its
-//     first observation) or null, failure, observations; with a covariance also centre_covariance
+//     first observation) or null, failure in words, observations; with a covariance also
+//     centre_covariance
 //     (3 x 3, m^2), sigma_centre (m), sigma_log_half_axes, sigma_yaw_deg (about the landmark's z);
 //     quarter_turn: ObjectEstimate::quarter_turn, where known
 //   outlines, one per detection that is selected: see PageOutline, or null

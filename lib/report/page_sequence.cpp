@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "model/label_groups.h"
+#include "model/reasons.h"
 #include "model/segments.h"
 #include "report/page_parts.h"
 
@@ -169,7 +170,7 @@ json PageSequence(const Sequence& sequence, const PageSelection& selection) {
           {"detections", PageDetections(sequence, selection)},
           {"planes", PageGrids(grids)},
           {"segments", PageSegments(sequence)},
-          {"rejected", sequence.rejected_detections}};
+          {"rejected", ReasonsInWords(sequence.rejected_detections)}};
 }
 
 }  // namespace soslam

@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "geometry/angles.h"
 #include "model/map_points.h"
+#include "model/reasons.h"
 #include "report/page_parts.h"
 
 namespace soslam {
@@ -44,7 +45,7 @@ json PagePointCounts(const ObjectEstimate& estimate) {
 
 json PageObjectEstimate(const ObjectEstimate& estimate) {
   json object = {{"landmark", nullptr},
-                 {"failure", estimate.failure},
+                 {"failure", ReasonOf(estimate.failure).words},
                  {"observations", estimate.observations}};
   if (!estimate.landmark_in_world) return object;
   object["landmark"] = PageLandmark(*estimate.landmark_in_world);

@@ -22,6 +22,7 @@
 #include "initialisation/object_points.h"
 #include "initialisation/options.h"
 #include "model/describe_estimates.h"
+#include "model/reasons.h"
 #include "orientation/options.h"
 #include "orientation/refine_by_profile.h"
 #include "orientation/refine_by_turning.h"
@@ -123,7 +124,7 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
   if (failed == tried) {
     throw NothingUsableError(fmt::format("{}: no landmark from {} tries: {}",
                                          files.at("sequence").string(), tried,
-                                         CountsInWords(failures)));
+                                         CountsInWords(ReasonsInWords(failures))));
   }
   std::vector<Finding> findings = CheckObjectIds(sequence);
   std::ranges::move(CheckFailures(estimates), std::back_inserter(findings));
@@ -140,7 +141,8 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
   WriteLandmarks(files.at("output"), estimates, sequence,
                  {OptionsToJson(options), inputs, findings});
   fmt::print("{} landmarks{}{}{}\n", tried - failed, failed > 0 ? ", without one: " : "",
-             failed > 0 ? CountsInWords(failures) : "", CountWithPoints(points, estimates));
+             failed > 0 ? CountsInWords(ReasonsInWords(failures)) : "",
+             CountWithPoints(points, estimates));
 }
 
 namespace {

@@ -24,6 +24,7 @@
 #include "image/tiff_file.h"
 #include "image/video_file.h"
 #include "model/finding.h"
+#include "model/reasons.h"
 #include "stage/choose_frames.h"
 #include "stage/stages.h"
 
@@ -32,28 +33,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The likely cause and the remedy where much is left out for one reason.
-struct FrameAdvice {
-  FrameRejection reason;
-  const char* cause;
-  const char* remedy;
-};
-constexpr std::array kAdvice = {
-    FrameAdvice{FrameRejection::kUnreadable, "files of another format, or copied incompletely",
-                "convert them to JPEG, or copy them again"},
-    FrameAdvice{FrameRejection::kOtherSize,
-                "photos of several cameras, or upright ones among others",
-                "take all photos with one camera that is held in one way"},
-    FrameAdvice{FrameRejection::kOtherFocalLength, "a zoom, or several lenses of one telephone",
-                "take all photos with one lens, without zoom"},
-    FrameAdvice{FrameRejection::kBlurred, "a camera that moved while the image was taken",
-                "move more slowly, with more light; or lower min_sharpness"}};
-
 // Number of frames that were left out, by reason.
 std::map<std::string, int> CountLeftOut(const std::vector<SourceFrame>& frames) {
   std::map<std::string, int> counts;
   for (const SourceFrame& frame : frames) {
-    if (frame.rejection) ++counts[kFrameRejectionNames[static_cast<size_t>(*frame.rejection)]];
+    if (frame.rejection) ++counts[NameOf(*frame.rejection)];
   }
   return counts;
 }
@@ -69,18 +53,20 @@ std::vector<Finding> CheckFrames(const ChosenFrames& chosen, const std::vector<P
   std::vector<Finding> findings = chosen.findings;
   const int all = static_cast<int>(record.frames.size());
   const auto counts = CountLeftOut(record.frames);
-  for (const FrameAdvice& advice : kAdvice) {
-    const std::string name = kFrameRejectionNames[static_cast<size_t>(advice.reason)];
+  for (const auto rejection : {FrameRejection::kUnreadable, FrameRejection::kOtherSize,
+                               FrameRejection::kOtherFocalLength, FrameRejection::kBlurred}) {
+    const std::string name = NameOf(rejection);
+    const Reason reason = ReasonOf(name);
     const auto found = counts.find(name);
     if (found == counts.end() || !IsMoreThanAThird(found->second, all)) continue;
-    const bool are_raw = advice.reason == FrameRejection::kUnreadable &&
+    const bool are_raw = rejection == FrameRejection::kUnreadable &&
                          2 * std::ranges::count_if(photos, &Photo::is_raw) > found->second;
     findings.push_back(
         {"frames_" + name, Severity::kWarning,
          fmt::format("{} of {} images are left out as {}", found->second, all, name),
          "at most a third left out for one reason",
-         are_raw ? "RAW photos, which are not read" : advice.cause,
-         are_raw ? fmt::format("{}; nothing if these are here", kRawRemedy) : advice.remedy});
+         are_raw ? "RAW photos, which are not read" : reason.cause,
+         are_raw ? fmt::format("{}; nothing if these are here", kRawRemedy) : reason.remedy});
   }
   const PhotoOrder& order = chosen.order;
   if (!order.is_by_time && IsMoreThanAThird(order.steps_back, order.usable)) {
@@ -118,7 +104,7 @@ void CheckEnough(const FramesRecord& record, const fs::path& images) {
       "{}: {} of {} images can be used ({}); expected at least 2 from different places: move the "
       "camera sideways, not only turn it",
       images.string(), std::ssize(record.frames) - left_out, record.frames.size(),
-      CountsInWords(CountLeftOut(record.frames))));
+      CountsInWords(ReasonsInWords(CountLeftOut(record.frames)))));
 }
 
 void WriteVideoFrames(const FramesRecord& record, const fs::path& path, int max_image_px,
@@ -188,7 +174,7 @@ void RunFrames(const FrameOptions& options, const StageFiles& files, int threads
   fmt::print(
       "{}: {} of {} images chosen, {} x {} px; left out: {}{}\n", record.name,
       std::ssize(record.frames) - left_out, record.frames.size(), record.width, record.height,
-      CountsInWords(CountLeftOut(record.frames)),
+      CountsInWords(ReasonsInWords(CountLeftOut(record.frames))),
       chosen.order.is_by_time ? "; in the order of their EXIF times, not of their names" : "");
 }
 

@@ -22,6 +22,7 @@
 #include "mapping/back_end.h"
 #include "mapping/initial_landmarks.h"
 #include "mapping/options.h"
+#include "model/reasons.h"
 #include "planes/options.h"
 #include "planes/planes_and_holding.h"
 #include "planes/planes_estimate.h"
@@ -36,9 +37,9 @@ namespace {
 std::string DescribeTracks(const Association& association) {
   std::map<std::string, int> counts;
   for (const Track& track : association.tracks) {
-    ++counts[kTrackFateNames.at(static_cast<size_t>(track.fate))];
+    ++counts[NameOf(track.fate)];
   }
-  return CountsInWords(counts);
+  return CountsInWords(ReasonsInWords(counts));
 }
 
 }  // namespace

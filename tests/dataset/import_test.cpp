@@ -303,7 +303,7 @@ TEST_F(ImportTest, TheWorldOfTheOdometryIsWhatTheSettingsSay) {
 TEST_F(ImportTest, NothingUsableSaysWhy) {
   options_.border_px = 150.0;
   ExpectRefused<NothingUsableError>(
-      {"no usable detection left; 7 detections rejected: 7 near_border"});
+      {"no usable detection left; 7 detections rejected: 7 too near the image border"});
   EXPECT_EQ(DescribeRejections({}), "0 detections rejected");
 }
 

@@ -2,8 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <set>
-
 #include "association/association.h"
 #include "report/page_parts.h"
 #include "support/expect_error.h"
@@ -176,26 +174,11 @@ json Track(const std::string& fate, const json& merged_into = {}) {
   return {{"fate", fate}, {"merge", merge}, {"detections", 3}, {"frames_in_sight", 58}};
 }
 
-TEST(FateInWords, IsASentenceOfItsOwnForEachFate) {
-  std::set<std::string> reasons;
-  for (const char* fate : kTrackFateNames) {
-    if (fate == std::string("object") || fate == std::string("merged")) continue;
-    const std::string reason = FateInWords(Track(fate), {{"min_observations", 3}});
-    EXPECT_EQ(reason.find('_'), reason.npos) << reason;
-    std::string name = fate;
-    std::ranges::replace(name, '_', ' ');
-    EXPECT_NE(reason, name);
-    EXPECT_TRUE(reasons.insert(reason).second) << reason;
-  }
-  EXPECT_EQ(reasons.size(), kTrackFateNames.size() - 2);
-}
-
 // Associations of seven detections, and the sequence that has those that were not used.
 class TracksLeftOutTest : public testing::Test {
  protected:
   TracksLeftOutTest() {
-    associations_ = {{"artefact", {{"settings", {{"min_observations", 3}}}}},
-                     {"tracks",
+    associations_ = {{"tracks",
                       {Track("object"), Track("never_whole"), Track("merged", 1),
                        Track("merged", 0), Track("moves")}},
                      {"detections", json::array()}};
@@ -226,7 +209,7 @@ TEST_F(TracksLeftOutTest, HaveTheBoxesOfAllThatWasMergedIntoThem) {
   const std::vector<NotPlaced> things = TracksLeftOut(associations_, sequence_);
   ASSERT_EQ(things.size(), 2u);
   EXPECT_EQ(things[0].label, "mug");  // two of three boxes
-  EXPECT_EQ(things[0].reason, "no image shows it whole");
+  EXPECT_EQ(things[0].reason, "shown whole by no image");
   ASSERT_EQ(things[0].boxes.size(), 3u);
   EXPECT_EQ(things[0].boxes[1].frame_index, 2);
   EXPECT_EQ(things[0].boxes[1].box, (Box{20.0, 10.0, 40.0, 40.0}));

@@ -35,7 +35,7 @@ TEST_F(RunImportTest, WritesTheSequenceAndSaysHowMuchIsUsed) {
   EXPECT_THAT(PrintedBy([&] { Run(); }).output,
               testing::EndsWith("small: 4 of 4 image files are not there\n"
                                 "small: 4 frames, 2 objects, 4 detections used, 3 detections "
-                                "rejected: 3 too_few_observations\n"));
+                                "rejected: 3 of an object with too few boxes\n"));
   const Sequence sequence = ReadSequence(files.at("output"));
   EXPECT_EQ(sequence.detections.size(), 4u);
   EXPECT_EQ(sequence.rejected_detections.at("too_few_observations"), 3);

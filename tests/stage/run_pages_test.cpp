@@ -184,7 +184,7 @@ TEST_F(RunPagesTest, ObjectsWithoutALandmarkAreSeenButNotPlaced) {
   const std::string list = html.substr(begin, html.find("</section>", begin) - begin);
   EXPECT_EQ(CountOf("<li>", list), 1u);
   EXPECT_THAT(list, AllOf(HasSubstr("<strong>" + sequence_.objects.back().label + "</strong>"),
-                          HasSubstr(" boxes"), HasSubstr("its views are too alike")));
+                          HasSubstr(" boxes"), HasSubstr("seen from too few sides")));
 }
 
 TEST_F(RunPagesTest, PhotosWithoutAPoseAreListed) {
