@@ -77,7 +77,7 @@ TEST_F(RunAssociateTest, PagesFindTheBoxesOfWhatItLeftOut) {
   const auto detections = DetectionsByObject(sequence_);
   for (size_t i = 0; i < things.size(); ++i) {
     EXPECT_EQ(things[i].label, "other");
-    EXPECT_EQ(things[i].reason, "things of this kind move");
+    EXPECT_EQ(things[i].reason, "of a kind that moves");
     const auto is_of = [&](const std::vector<int>& of_object) {
       return std::ranges::equal(of_object, things[i].boxes, [&](int index, const SeenBox& seen) {
         const Detection& detection = sequence_.detections[index];
@@ -119,7 +119,7 @@ TEST_F(RunAssociateTest, ThereIsNothingToDoForGivenObjects) {
 TEST_F(RunAssociateTest, NoObjectIsNothingUsable) {
   options_.min_observations = 1000;
   ExpectError<NothingUsableError>([&] { Run(); },
-                                  {"sequence.json", "no object", "too_few_detections"});
+                                  {"sequence.json", "no object", "seen too rarely"});
   EXPECT_FALSE(std::filesystem::exists(File("output")));
   EXPECT_FALSE(std::filesystem::exists(File("associations")));
 }

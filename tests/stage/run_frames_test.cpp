@@ -296,7 +296,7 @@ TEST_F(RunFramesTest, RefusesWhatMakesNoDataset) {
                                   {photos_.string(), "1 of 2 images", "1 duplicate"});
   WritePhoto(photos_ / "2.jpg", DrawnView(0), ExifOf(1));
   ExpectError<NothingUsableError>([&] { Run(photos_); },
-                                  {photos_.string(), "1 of 2 images", "1 no_motion"});
+                                  {photos_.string(), "1 of 2 images", "1 no motion"});
   ExpectError<InputError>([&] { Run(photos_ / "1.jpg"); },
                           {"1.jpg: is one image; expected a folder of several"});
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 1) << "nothing is left";
