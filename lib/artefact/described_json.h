@@ -147,13 +147,13 @@ class JsonWriter {
   }
   template <typename Item>
   void Id(const char* name, const int* index, std::vector<Item> Sequence::*items, const char* doc) {
-    Field(name, &(sequence_->*items).at(*index).id, doc);
+    Field(name, sequence_ == nullptr ? index : &(sequence_->*items).at(*index).id, doc);
   }
   template <typename Item>
   void Id(const char* name, const std::optional<int>* index, std::vector<Item> Sequence::*items,
           const char* doc) {
-    std::optional<int> id;
-    if (*index) id = (sequence_->*items).at(**index).id;
+    std::optional<int> id = *index;
+    if (id && sequence_ != nullptr) id = (sequence_->*items).at(*id).id;
     Field(name, &id, doc);
   }
   void FrameIdItem(const int* index, const char* doc) {

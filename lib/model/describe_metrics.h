@@ -74,18 +74,25 @@ void Describe(Visitor& visit, TrajectoryMetrics& trajectory) {
               kNotNegative);
 }
 
-// Id and label of an object as its fields, whose index is read as the id.
-template <typename Visitor>
-void DescribeObject(Visitor& visit, int& object_index) {
-  visit.Id("object", &object_index, &Sequence::objects, "id in the sequence");
+// The label of a row: that of its object in the sequence or, without one, that which was read.
+template <typename Visitor, typename Row, typename Item>
+void DescribeLabel(Visitor& visit, Row& row, std::vector<Item> Sequence::*items, int index) {
   const Sequence* sequence = visit.sequence();
-  std::string label = sequence == nullptr ? "" : sequence->objects.at(object_index).label;
+  std::string label = sequence == nullptr ? row.label : (sequence->*items).at(index).label;
   visit.Field("label", &label, "category");
+  visit.AfterReading([&] { row.label = label; });
+}
+
+// Id and label of a row's object.
+template <typename Visitor, typename Row>
+void DescribeObject(Visitor& visit, Row& row) {
+  visit.Id("object", &row.object_index, &Sequence::objects, "id in the sequence");
+  DescribeLabel(visit, row, &Sequence::objects, row.object_index);
 }
 
 template <typename Visitor>
 void Describe(Visitor& visit, ObjectMetrics& metrics) {
-  DescribeObject(visit, metrics.object_index);
+  DescribeObject(visit, metrics);
   visit.Field("observations", &metrics.observations, "detections of the object", kNotNegative);
   visit.Field("estimates", &metrics.estimates, "landmarks that were compared", kNotNegative);
   std::optional<double> iou;
@@ -105,7 +112,7 @@ void Describe(Visitor& visit, ObjectMetrics& metrics) {
 
 template <typename Visitor>
 void Describe(Visitor& visit, HeldOutObject& object) {
-  DescribeObject(visit, object.object_index);
+  DescribeObject(visit, object);
   visit.Field("in_sight", &object.in_sight, "frames with its whole outline", kNotNegative);
   visit.Field("in_sight_matched", &object.in_sight_matched, "matched ones", kNotNegative);
   visit.Field("matched", &object.matched, "in sight or not", kNotNegative);
@@ -236,10 +243,8 @@ void DescribeReason(Visitor& visit, std::optional<Explanation>& explanation) {
 
 template <typename Visitor>
 void Describe(Visitor& visit, TrueObjectRow& row) {
-  const Sequence* sequence = visit.sequence();
   visit.Id("true_object", &row.true_index, &Sequence::true_objects, "id of the true object");
-  std::string label = sequence == nullptr ? "" : sequence->true_objects.at(row.true_index).label;
-  visit.Field("label", &label, "category");
+  DescribeLabel(visit, row, &Sequence::true_objects, row.true_index);
   visit.Field("detected_frames", &row.detected_frames, "with a raw detection that overlaps it",
               kNotNegative);
   visit.Field("detectable", &row.is_detectable, "enough of these");
@@ -250,7 +255,7 @@ void Describe(Visitor& visit, TrueObjectRow& row) {
 
 template <typename Visitor>
 void Describe(Visitor& visit, LandmarkRow& row) {
-  DescribeObject(visit, row.object_index);
+  DescribeObject(visit, row);
   visit.Field("fate", &row.fate, "found: right; ignored: neither right nor wrong");
   visit.Id("true_object", &row.true_index, &Sequence::true_objects,
            "what it matches; of a false one what its reason is about");
@@ -297,11 +302,13 @@ void Describe(Visitor& visit, MapQuality& quality) {
 template <typename Visitor>
 void Describe(Visitor& visit, Metrics& metrics) {
   const Sequence* sequence = visit.sequence();
-  std::string dataset = sequence == nullptr ? "" : sequence->name;
-  std::string odometry_source = sequence == nullptr ? "" : sequence->odometry_source;
+  std::string dataset = sequence == nullptr ? metrics.dataset : sequence->name;
+  std::string odometry_source =
+      sequence == nullptr ? metrics.odometry_source : sequence->odometry_source;
   visit.Field("dataset", &dataset, "name of the dataset");
   visit.OrAbsent("odometry_source", &odometry_source,
                  "whose the pose estimates are, such as ORB-SLAM2; absent: unknown");
+  visit.AfterReading([&] { metrics.dataset = dataset, metrics.odometry_source = odometry_source; });
   visit.Field("summary", &metrics.summary, "per object over its observations, then over objects");
   visit.Field("first_observation", &metrics.first_observation,
               "of single-frame estimates: the same over the first observation of each object");

@@ -15,7 +15,8 @@
 
 namespace soslam {
 
-// The results of evaluation: the content of metrics.json.
+// The results of evaluation: the content of metrics.json. Read without the sequence, its indices of
+// objects are ids, and rows have the labels of their objects.
 
 // kAuto is a choice of the user; no alignment is of this kind.
 enum class AlignmentKind { kAuto, kNone, kRigid, kSimilarity };
@@ -140,6 +141,7 @@ struct TrueObjectRow {
   bool is_detectable = false;
   std::optional<int> object_index = std::nullopt;  // of its landmark, into Sequence::objects
   std::optional<Explanation> miss = std::nullopt;  // reason for a missing landmark
+  std::string label = {};                          // of the object, where the row was read
 };
 
 enum class LandmarkFate { kFound, kIgnored, kFalse };
@@ -158,6 +160,7 @@ struct LandmarkRow {
   std::optional<bool> id_agrees = std::nullopt;  // by most of its boxes; none if they have no ids
   std::optional<InFrames> in_frames = std::nullopt;
   std::optional<Explanation> why_false = std::nullopt;
+  std::string label = {};  // of the object, where the row was read
 };
 
 // Summary over the found landmarks for one IoU threshold.
@@ -219,6 +222,7 @@ struct HeldOutObject {
   int in_sight_matched = 0;
   int matched = 0;                 // whether in sight or not
   std::optional<double> iou_mean;  // over `matched`
+  std::string label = {};          // of the object, where the row was read
 };
 
 struct HeldOutMetrics {
@@ -244,6 +248,7 @@ struct ObjectMetrics {
   std::optional<double> yaw_deg;
   std::optional<double> attitude_deg = {};
   std::optional<WhatIf> what_if = {};  // of single-frame estimates only; 0 without estimate
+  std::string label = {};              // of the object, where the row was read
 };
 
 // Summary over objects. Angles: over the objects that have them.
@@ -268,6 +273,8 @@ struct Metrics {
   std::optional<TrajectoryMetrics> trajectory;      // for maps only, if the true poses are known
   std::optional<HeldOutMetrics> held_out;           // if frames were held out
   std::optional<MapQuality> map_quality;            // for maps only, with true objects
+  // Those of the sequence, where metrics were read.
+  std::string dataset = {}, odometry_source = {};
 };
 
 }  // namespace soslam
