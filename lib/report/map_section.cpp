@@ -53,19 +53,14 @@ cv::Rect Around(const Box& box, const Camera& camera) {
 }
 
 // The largest box that is whole, or else the largest, among the frames with an image.
-const SeenBox* BestBox(const std::vector<SeenBox>& boxes, const ImageSource& images) {
+Picture PictureOf(const std::vector<SeenBox>& boxes, const ImageSource& images,
+                  const Sequence& sequence) {
   const auto rank = [](const SeenBox& seen) { return std::pair(seen.is_whole, seen.box.Area()); };
   const SeenBox* best = nullptr;
   for (const SeenBox& seen : boxes) {
     if (!images.has(seen.frame_index)) continue;
     if (best == nullptr || rank(seen) > rank(*best)) best = &seen;
   }
-  return best;
-}
-
-Picture PictureOf(const std::vector<SeenBox>& boxes, const ImageSource& images,
-                  const Sequence& sequence) {
-  const SeenBox* best = BestBox(boxes, images);
   if (best == nullptr) return {};
   const Camera& camera = sequence.CameraOf(sequence.frames[best->frame_index]);
   return {best->frame_index, Around(best->box, camera), CornersOf(best->box)};
@@ -202,32 +197,35 @@ class MapOfVariant {
                                Counted(static_cast<size_t>(estimate->observations), "view"))},
                   PictureOf(BoxesOf(sequence_, detections[index]), images_, sequence_),
                   doubts_[entries.size()]};
-      DrawBody(*estimate, &entry.picture);
+      // The outline of the body in place of the box, if the camera sees all of it.
+      const int frame = entry.picture.frame_index;
+      Polygon outline;
+      if (!entry.picture.part.empty()) {
+        outline = OutlinePolygon(
+            sequence_.CameraOf(sequence_.frames[frame]),
+            Transform(map_.world_from_camera[frame].Inverse(), *estimate->landmark_in_world));
+      }
+      entry.picture.is_body = !outline.empty();
+      if (entry.picture.is_body) entry.picture.outline = std::move(outline);
       entries.push_back(std::move(entry));
     }
     return entries;
   }
 
-  // The outline of the body in place of the box, if the camera sees all of it.
-  void DrawBody(const ObjectEstimate& estimate, Picture* picture) const {
-    if (picture->part.empty()) return;
-    const int frame = picture->frame_index;
-    Polygon outline = OutlinePolygon(
-        sequence_.CameraOf(sequence_.frames[frame]),
-        Transform(map_.world_from_camera[frame].Inverse(), *estimate.landmark_in_world));
-    if (outline.empty()) return;
-    picture->outline = std::move(outline);
-    picture->is_body = true;
-  }
-
   // The plan of the segment of the first object.
   std::string PlanHtml(const std::vector<Entry>& entries) const {
-    const auto segments = SegmentsOfObjects(sequence_);
+    const auto segment_of_object = SegmentsOfObjects(sequence_);
     const auto segment_of = [&](const ObjectEstimate* estimate) {
-      return segments[estimate->object_index].value_or(0);
+      return segment_of_object[estimate->object_index].value_or(0);
     };
     const int segment = segment_of(placed_.front());
     const Eigen::Vector3d up = UpOfSegment(sequence_, segment);
+    std::optional<Eigen::Vector3d> scene_axis;
+    for (const SupportPlane& plane : sequence_.planes) {
+      if (!scene_axis && plane.plane_in_world.normal.dot(up) > kLevel) {
+        scene_axis = plane.scene_axis_in_world;
+      }
+    }
     std::vector<Eigen::Vector3d> centres, cameras;
     std::vector<size_t> shown;
     for (size_t i = 0; i < entries.size(); ++i) {
@@ -242,38 +240,28 @@ class MapOfVariant {
     for (const int frame : SpreadOver(frames, kMaxWayFrames)) {
       cameras.push_back(map_.world_from_camera[frame].translation);
     }
-    const PlanAxes axes = AxesOfPlan(up, SceneAxis(up), centres, cameras);
+    const PlanAxes axes = AxesOfPlan(up, scene_axis, centres, cameras);
     PlanView plan;
     plan.in_metres = scale_.in_metres;
     for (const Eigen::Vector3d& camera : cameras) plan.cameras.push_back(axes.Place(camera));
-    for (const size_t i : shown) plan.objects.push_back(OnPlan(entries[i], *placed_[i], axes, up));
-    std::ranges::stable_sort(plan.objects, {}, &PlanObject::top);
-    return PlanFigure(plan, segment);
-  }
-
-  std::optional<Eigen::Vector3d> SceneAxis(const Eigen::Vector3d& up) const {
-    for (const SupportPlane& plane : sequence_.planes) {
-      if (plane.scene_axis_in_world && plane.plane_in_world.normal.dot(up) > kLevel) {
-        return plane.scene_axis_in_world;
+    for (const size_t i : shown) {
+      const Entry& entry = entries[i];
+      const Landmark& landmark = *placed_[i]->landmark_in_world;
+      PlanObject object{entry.name, Footprint(landmark, axes),
+                        up.dot(FindSupportPoint(landmark, up).point)};
+      object.is_uncertain = !entry.doubts.empty();
+      if (!entry.picture.jpeg.empty()) {
+        object.picture = entry.id;
+        object.picture_aspect = entry.picture.part.size().aspectRatio();
       }
+      plan.objects.push_back(std::move(object));
     }
-    return std::nullopt;
+    std::ranges::stable_sort(plan.objects, {}, &PlanObject::top);
+    return "<figure>\n" + PlanSvg(plan, kWidePlan) + PlanSvg(plan, kNarrowPlan) + "<figcaption>" +
+           Caption(plan, segment) + "</figcaption>\n</figure>\n";
   }
 
-  static PlanObject OnPlan(const Entry& entry, const ObjectEstimate& estimate, const PlanAxes& axes,
-                           const Eigen::Vector3d& up) {
-    const Landmark& landmark = *estimate.landmark_in_world;
-    PlanObject object{entry.name, Footprint(landmark, axes),
-                      up.dot(FindSupportPoint(landmark, up).point)};
-    object.is_uncertain = !entry.doubts.empty();
-    if (entry.picture.jpeg.empty()) return object;
-    object.picture = entry.id;
-    object.picture_aspect = entry.picture.part.size().aspectRatio();
-    return object;
-  }
-
-  std::string PlanFigure(const PlanView& plan, int segment) const {
-    const std::vector<int> segments = SegmentsOf(sequence_);
+  std::string Caption(const PlanView& plan, int segment) const {
     const auto key = [](const char* colour, const char* text) {
       return fmt::format("<span class=\"key\" style=\"background: var(--{})\"></span> {}", colour,
                          text);
@@ -286,12 +274,12 @@ class MapOfVariant {
           " Dashed objects are uncertain: most images that should show them do not, or by their "
           "95\u00a0% intervals they may stand beside their outline, or be half or twice as large.";
     }
+    const std::vector<int> segments = SegmentsOf(sequence_);
     if (segments.size() > 1) {
       const auto place = std::ranges::find(segments, segment) - segments.begin();
       caption += fmt::format(" Part {} of {}.", place + 1, segments.size());
     }
-    return "<figure>\n" + PlanSvg(plan, kWidePlan) + PlanSvg(plan, kNarrowPlan) + "<figcaption>" +
-           caption + "</figcaption>\n</figure>\n";
+    return caption;
   }
 
   NotPlacedEntries EntriesNotPlaced() const {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "evaluation/statistics.h"
@@ -16,22 +16,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kNearDeg = 10.0;
-
-json Degrees(double radians) { return PageNumber(kDegPerRad * radians); }
-
-json Degrees(const std::optional<double>& radians) { return radians ? Degrees(*radians) : json(); }
-
-json PagePairs(const SymmetryRecord& record) {
-  json pairs = json::array();
-  const size_t all = record.samples.size();
-  const size_t shown = std::min(all, kPairsOfCurve);
-  for (size_t i = 0; i < shown; ++i) {
-    const size_t k = i * all / shown;
-    pairs.push_back(
-        PagePixels({record.samples[k].cast<double>(), record.mirrored[k].cast<double>()}));
-  }
-  return pairs;
+json Degrees(const std::optional<double>& radians) {
+  return radians ? PageNumber(kDegPerRad * *radians) : json();
 }
 
 json PageCurve(const SymmetryRecord& record, int detection_index) {
@@ -44,58 +30,45 @@ json PageCurve(const SymmetryRecord& record, int detection_index) {
                 {"initial_yaw_deg", Degrees(record.initial_yaw)},
                 {"refined_yaw_deg", Degrees(record.refined_yaw)},
                 {"yaw_sigma_deg", Degrees(record.yaw_sigma)},
-                {"pairs", PagePairs(record)},
+                {"pairs", json::array()},
                 {"pairs_in_all", record.samples.size()}};
   for (const auto& [name, cost] : record.cost) curve["cost"][name] = PageNumbers(cost);
+  const size_t all = record.samples.size(), shown = std::min(all, kPairsOfCurve);
+  for (size_t i = 0; i < shown; ++i) {
+    const size_t k = i * all / shown;
+    curve["pairs"].push_back(
+        PagePixels({record.samples[k].cast<double>(), record.mirrored[k].cast<double>()}));
+  }
   return curve;
 }
 
-// Statistics of one cost over all observations.
+// Accuracy of one cost over all observations.
 struct DescriptorFacts {
   std::vector<double> errors_deg;
   std::vector<double> errors_where_known_deg;  // only those with a cost at the true yaw
   double minima = 0.0;
-};
 
-// Number of local minima of a curve over a whole turn, whose ends are neighbours; gaps contain
-// none.
-int LocalMinima(const std::vector<double>& cost) {
-  int minima = 0;
-  const size_t n = cost.size();
-  for (size_t i = 0; i < n; ++i) {
-    minima += cost[i] < cost[(i + 1) % n] && cost[i] <= cost[(i + n - 1) % n] ? 1 : 0;
-  }
-  return minima;
-}
-
-double ErrorDeg(const SymmetryRecord& record, size_t index) {
-  return kDegPerRad * std::abs(YawDifferenceModuloPi(record.yaw[index], *record.true_yaw));
-}
-
-bool IsKnownAtTruth(const SymmetryRecord& record, const std::vector<double>& cost) {
-  size_t nearest = 0;
-  for (size_t i = 1; i < cost.size(); ++i) {
-    if (ErrorDeg(record, i) < ErrorDeg(record, nearest)) nearest = i;
-  }
-  return std::isfinite(cost[nearest]);
-}
-
-void AddRecord(const SymmetryRecord& record, std::map<std::string, DescriptorFacts>* facts) {
-  for (const auto& [name, cost] : record.cost) {
-    const auto known = [](double value) {
-      return std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
+  // `cost` is NaN in gaps. It is over whole turns, whose ends are neighbours.
+  void Add(const std::vector<double>& cost, const SymmetryRecord& record) {
+    const auto error_deg = [&](size_t i) {
+      return kDegPerRad * std::abs(YawDifferenceModuloPi(record.yaw[i], *record.true_yaw));
     };
-    const auto lowest = std::ranges::min_element(cost, {}, known);
-    if (lowest == cost.end() || !std::isfinite(*lowest)) continue;
-    DescriptorFacts& of_name = (*facts)[name];
-    of_name.errors_deg.push_back(ErrorDeg(record, static_cast<size_t>(lowest - cost.begin())));
-    if (IsKnownAtTruth(record, cost)) {
-      of_name.errors_where_known_deg.push_back(of_name.errors_deg.back());
+    const size_t n = cost.size();
+    std::optional<size_t> lowest;
+    size_t nearest = 0;  // to the true yaw
+    int local_minima = 0;
+    for (size_t i = 0; i < n; ++i) {
+      if (std::isfinite(cost[i]) && (!lowest || cost[i] < cost[*lowest])) lowest = i;
+      if (error_deg(i) < error_deg(nearest)) nearest = i;
+      if (cost[i] < cost[(i + 1) % n] && cost[i] <= cost[(i + n - 1) % n]) ++local_minima;
     }
+    if (!lowest) return;
+    errors_deg.push_back(error_deg(*lowest));
+    if (std::isfinite(cost[nearest])) errors_where_known_deg.push_back(errors_deg.back());
     const double turns = (record.yaw.back() - record.yaw.front()) / std::numbers::pi;
-    of_name.minima += LocalMinima(cost) / std::max(1.0, std::round(turns));
+    minima += local_minima / std::max(1.0, std::round(turns));
   }
-}
+};
 
 // Fraction of the errors within the limit; NaN if there are none.
 double ShareWithin(const std::vector<double>& errors_deg, double limit_deg) {
@@ -107,12 +80,15 @@ double ShareWithin(const std::vector<double>& errors_deg, double limit_deg) {
 }  // namespace
 
 json PageDescriptors(const std::vector<SymmetryRecord>& records) {
+  constexpr double kNearDeg = 10.0;
   std::map<std::string, DescriptorFacts> facts;
   for (const SymmetryRecord& record : records) {
-    if (record.true_yaw) AddRecord(record, &facts);
+    if (!record.true_yaw) continue;
+    for (const auto& [name, cost] : record.cost) facts[name].Add(cost, record);
   }
   json descriptors = json::object();
   for (const auto& [name, of_name] : facts) {
+    if (of_name.errors_deg.empty()) continue;
     const auto count = static_cast<double>(of_name.errors_deg.size());
     std::vector<double> within;
     for (int limit_deg = 0; limit_deg <= 90; limit_deg += kErrorStepDeg) {

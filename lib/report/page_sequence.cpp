@@ -67,110 +67,69 @@ PageSelection SelectForPage(const Sequence& sequence, const std::set<int>& shown
   return selection;
 }
 
-namespace {
-
-using nlohmann::json;
-
-// The cuboid around the object, as for the comparison of landmarks.
-Landmark AsCuboid(Landmark landmark) {
-  landmark.shape_exponents = kCuboidExponent;
-  return landmark;
-}
-
-// Places of segments in the order of their frames; pages know them by these.
-std::map<int, int> PlacesOfSegments(const Sequence& sequence) {
-  std::map<int, int> places;
+nlohmann::json PageSequence(const Sequence& sequence, const PageSelection& selection) {
+  using nlohmann::json;
+  const PlaneGrids grids = GridsOfSequence(sequence);
+  json page = {{"counts",
+                {{"frames", sequence.frames.size()},
+                 {"objects", sequence.objects.size()},
+                 {"detections", sequence.detections.size()}}},
+               {"planes", PageGrids(grids)},
+               {"rejected", ReasonsInWords(sequence.rejected_detections)}};
+  for (const char* list : {"frames", "objects", "detections", "segments"}) {
+    page[list] = json::array();
+  }
+  // Pages know segments by their places in the order of their frames.
+  std::map<int, size_t> place_of_segment;
   for (const int segment : SegmentsOf(sequence)) {
-    places.emplace(segment, static_cast<int>(places.size()));
+    place_of_segment.emplace(segment, page["segments"].size());
+    page["segments"].push_back({{"up", PageVector(UpOfSegment(sequence, segment))}});
   }
-  return places;
-}
-
-json PageFrame(const Sequence& sequence, const Frame& frame, int segment, bool is_shown) {
-  const Camera& camera = sequence.CameraOf(frame);
-  return {{"id", frame.id},
-          {"timestamp", frame.timestamp},
-          {"segment", segment},
-          {"width", camera.width},
-          {"height", camera.height},
-          {"pose", PagePose(frame.world_from_camera)},
-          {"true_pose",
-           frame.true_world_from_camera ? PagePose(*frame.true_world_from_camera) : json()},
-          {"shown", is_shown}};
-}
-
-json PageFrames(const Sequence& sequence, const PageSelection& selection, const PlaneGrids& grids) {
-  const std::map<int, int> places = PlacesOfSegments(sequence);
-  json frames = json::array();
   for (const int index : selection.frames) {
-    const bool is_shown = selection.Shows(index);
     const Frame& frame = sequence.frames[index];
-    json page = PageFrame(sequence, frame, places.at(frame.segment), is_shown);
-    if (is_shown) {
-      page["grid"] = PageGridInFrame(sequence, index, grids, [&](const Detection& detection) {
-        return CameraAbovePlane(sequence, detection);
-      });
-    }
-    frames.push_back(std::move(page));
+    const Camera& camera = sequence.CameraOf(frame);
+    const auto& true_pose = frame.true_world_from_camera;
+    page["frames"].push_back({{"id", frame.id},
+                              {"timestamp", frame.timestamp},
+                              {"segment", place_of_segment.at(frame.segment)},
+                              {"width", camera.width},
+                              {"height", camera.height},
+                              {"pose", PagePose(frame.world_from_camera)},
+                              {"true_pose", true_pose ? PagePose(*true_pose) : json()},
+                              {"shown", selection.Shows(index)}});
+    if (!selection.Shows(index)) continue;
+    page["frames"].back()["grid"] = PageGridInFrame(
+        sequence, index, grids,
+        [&](const Detection& detection) { return CameraAbovePlane(sequence, detection); });
   }
-  return frames;
-}
-
-json PageObjects(const Sequence& sequence) {
+  // Estimates are compared with the cuboid around the object.
+  const auto as_cuboid = [](Landmark landmark) {
+    landmark.shape_exponents = kCuboidExponent;
+    return landmark;
+  };
   const std::vector<std::optional<int>> segments = SegmentsOfObjects(sequence);
-  const std::map<int, int> places = PlacesOfSegments(sequence);
-  json objects = json::array();
   for (size_t i = 0; i < segments.size(); ++i) {
     const Object& object = sequence.objects[i];
     const auto& truth = object.ground_truth;
-    objects.push_back(
+    page["objects"].push_back(
         {{"id", object.id},
          {"label", object.label},
          {"labels", LabelInWords(object)},
-         {"segment", segments[i] ? json(places.at(*segments[i])) : json()},
+         {"segment", segments[i] ? json(place_of_segment.at(*segments[i])) : json()},
          {"plane", object.plane_index == kNoPlane ? json() : json(object.plane_index)},
-         {"truth", truth ? PageLandmark(AsCuboid(truth->landmark_in_world)) : json()}});
+         {"truth", truth ? PageLandmark(as_cuboid(truth->landmark_in_world)) : json()}});
   }
-  return objects;
-}
-
-json PageDetections(const Sequence& sequence, const PageSelection& selection) {
-  json detections = json::array();
   for (const int index : selection.detections) {
     const Detection& detection = sequence.detections[index];
     const auto truth = TrueLandmarkInCamera(sequence, detection);
     const Box& box = detection.box;
-    detections.push_back(
+    page["detections"].push_back(
         {{"frame", selection.PlaceOfFrame(detection.frame_index)},
          {"object", detection.object_index},
          {"box", PagePixels({{box.x_min, box.y_min}, {box.x_max, box.y_max}})},
-         {"truth", truth ? PageOutline(sequence.CameraOf(detection), AsCuboid(*truth)) : json()}});
+         {"truth", truth ? PageOutline(sequence.CameraOf(detection), as_cuboid(*truth)) : json()}});
   }
-  return detections;
-}
-
-json PageSegments(const Sequence& sequence) {
-  json segments = json::array();
-  for (const int segment : SegmentsOf(sequence)) {
-    segments.push_back({{"up", PageVector(UpOfSegment(sequence, segment))}});
-  }
-  return segments;
-}
-
-}  // namespace
-
-json PageSequence(const Sequence& sequence, const PageSelection& selection) {
-  const PlaneGrids grids = GridsOfSequence(sequence);
-  return {{"counts",
-           {{"frames", sequence.frames.size()},
-            {"objects", sequence.objects.size()},
-            {"detections", sequence.detections.size()}}},
-          {"frames", PageFrames(sequence, selection, grids)},
-          {"objects", PageObjects(sequence)},
-          {"detections", PageDetections(sequence, selection)},
-          {"planes", PageGrids(grids)},
-          {"segments", PageSegments(sequence)},
-          {"rejected", ReasonsInWords(sequence.rejected_detections)}};
+  return page;
 }
 
 }  // namespace soslam
