@@ -71,8 +71,8 @@ std::vector<Finding> CheckScale(const std::vector<RelativeHeight>& relative) {
            fmt::format("{} objects are {:.3g} times as high as their labels' things (median)",
                        relative.size(), std::exp(log_factor)),
            fmt::format("a factor of {:.2f} to {:.2f}", std::exp(-least), std::exp(least)),
-           "a trajectory whose unit is not the metre, as of a single camera, or poses and planes "
-           "that contradict the boxes",
+           "a trajectory whose unit is not the metre, as of a single camera, poses and planes that "
+           "contradict the boxes, or names of classes that are not those of the boxes",
            fmt::format("multiply the translations of the trajectory by about {:.3g}; all sizes and "
                        "distances of the map are of the trajectory's unit",
                        std::exp(-log_factor))}};
@@ -95,8 +95,8 @@ std::vector<Finding> CheckSingleSizes(const std::vector<RelativeHeight>& relativ
            fmt::format("{} of {} objects are not as high as their label's things: {}{}", count,
                        relative.size(), fmt::join(odd, ", "), count > kMostNames ? ", ..." : ""),
            "at most three times as high or low, or three standard deviations of the label",
-           "boxes of several things under one id, a wrong label, a wrong plane, or views that do "
-           "not tell the size",
+           "boxes of several things under one id, a wrong label, a wrong plane, a thing on its "
+           "edge (a standing book), or views that do not tell the size",
            "look at these objects' boxes: soslam-inspect, or the report page"}};
 }
 
