@@ -31,63 +31,47 @@ std::string EncodeJpeg(const cv::Mat& image) {
   return Base64({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-// The image of a frame, of the largest width that is tried, or why it cannot be read.
-struct LoadedImage {
-  int frame_index = 0;
-  cv::Mat pixels = {};
-  std::string failure = {};
-};
+}  // namespace
 
-std::vector<LoadedImage> LoadAll(const std::vector<int>& frames, const ImageSource& source,
-                                 int threads) {
+EncodedImages EncodeImages(const std::vector<int>& frames, const ImageSource& source,
+                           size_t max_bytes, int threads) {
+  struct LoadedImage {
+    int frame_index;
+    cv::Mat pixels = {};  // of the largest width that is tried
+    std::string failure = {};
+  };
   std::vector<LoadedImage> images;
   for (const int frame : frames) {
     if (source.has(frame)) images.push_back({frame});
   }
   ParallelFor(images.size(), threads, [&](size_t i) {
-    LoadedImage& image = images[i];
     try {
-      const cv::Mat pixels = source.read(image.frame_index);
-      image.pixels = Scaled(pixels, pixels.cols, kWidthsPx.front());
+      const cv::Mat pixels = source.read(images[i].frame_index);
+      images[i].pixels = Scaled(pixels, pixels.cols, kWidthsPx.front());
     } catch (const InputError& error) {
-      image.failure = error.what();
+      images[i].failure = error.what();
     }
   });
-  return images;
-}
-
-std::vector<EncodedImages::Image> EncodeAll(const std::vector<LoadedImage>& images, int width,
-                                            int threads) {
-  std::vector<EncodedImages::Image> encoded(images.size());
-  ParallelFor(images.size(), threads, [&](size_t i) {
-    const auto& [frame_index, pixels, failure] = images[i];
-    encoded[i] = {frame_index, EncodeJpeg(Scaled(pixels, pixels.cols, width))};
-  });
-  return encoded;
-}
-
-size_t TotalBytes(const std::vector<EncodedImages::Image>& images) {
-  size_t bytes = 0;
-  for (const auto& image : images) bytes += image.base64.size() + kBytesAround;
-  return bytes;
-}
-
-}  // namespace
-
-EncodedImages EncodeImages(const std::vector<int>& frames, const ImageSource& source,
-                           size_t max_bytes, int threads) {
-  std::vector<LoadedImage> images = LoadAll(frames, source, threads);
   EncodedImages encoded;
   for (const LoadedImage& image : images) {
     if (!image.failure.empty()) encoded.failures.push_back(image.failure);
   }
   std::erase_if(images, [](const LoadedImage& image) { return !image.failure.empty(); });
+  const auto bytes = [&] {
+    size_t sum = 0;
+    for (const auto& image : encoded.images) sum += image.base64.size() + kBytesAround;
+    return sum;
+  };
   for (const int width : kWidthsPx) {
-    encoded.images = EncodeAll(images, width, threads);
+    encoded.images.resize(images.size());
+    ParallelFor(images.size(), threads, [&](size_t i) {
+      const cv::Mat& pixels = images[i].pixels;
+      encoded.images[i] = {images[i].frame_index, EncodeJpeg(Scaled(pixels, pixels.cols, width))};
+    });
     if (width < kWidthsPx.front()) encoded.scaled_to_px = width;
-    if (TotalBytes(encoded.images) <= max_bytes) break;
+    if (bytes() <= max_bytes) break;
   }
-  while (TotalBytes(encoded.images) > max_bytes) {  // keep every other image
+  while (bytes() > max_bytes) {  // keep every other image
     size_t i = 0;
     std::erase_if(encoded.images, [&](const auto&) { return i++ % 2 == 0; });
   }

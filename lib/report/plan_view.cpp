@@ -89,10 +89,9 @@ struct Screen {
   Eigen::Vector2d Place(const Eigen::Vector2d& point) const {
     return {scale * (point.x() - top_left.x()), scale * (top_left.y() - point.y())};
   }
-  Points Place(const Points& points) const {
-    Points placed;
-    for (const Eigen::Vector2d& point : points) placed.push_back(Place(point));
-    return placed;
+  Points Place(Points points) const {
+    for (Eigen::Vector2d& point : points) point = Place(point);
+    return points;
   }
 };
 
@@ -275,29 +274,6 @@ CardLayout LayOut(const PlanView& plan, const Screen& screen, const PlanFormat& 
   return layout;
 }
 
-std::string LeaderSvg(const Leader& leader) {
-  const auto& [from, to] = leader;
-  if (cv::norm(to - from) < 1.0) return "";
-  return fmt::format(
-      "<path class=\"leader\" d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\"/>\n"
-      "<circle class=\"leader\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2\"/>\n",
-      from.x, from.y, to.x, to.y, from.x, from.y);
-}
-
-std::string CardSvg(const PlanObject& object, const Rectangle& card, double picture_height,
-                    double font) {
-  const double middle = card.x + 0.5 * card.width;
-  std::string svg;
-  if (picture_height > 0.0) {
-    const double width = picture_height * AspectOf(object);
-    svg += fmt::format(
-        "<use href=\"#{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n",
-        object.picture, middle - 0.5 * width, card.y, width, picture_height);
-  }
-  return svg + fmt::format("<text class=\"name\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", middle,
-                           card.y + picture_height + font, HtmlText(Shortened(object.name)));
-}
-
 }  // namespace
 
 std::string PlanSvg(const PlanView& plan, const PlanFormat& format) {
@@ -315,8 +291,23 @@ std::string PlanSvg(const PlanView& plan, const PlanFormat& format) {
     const Points footprint = screen.Place(object.footprint);
     shapes += fmt::format("<polygon{} points=\"{}\"/>\n",
                           object.is_uncertain ? " class=\"uncertain\"" : "", PointsText(footprint));
-    leaders += LeaderSvg(LeaderOf(AsRectangle(BoundsOf(footprint)), layout.cards[i]));
-    cards += CardSvg(object, layout.cards[i], layout.HeightOn(object), format.font);
+    const Rectangle& card = layout.cards[i];
+    const auto& [from, to] = LeaderOf(AsRectangle(BoundsOf(footprint)), card);
+    if (cv::norm(to - from) >= 1.0) {
+      leaders += fmt::format(
+          "<path class=\"leader\" d=\"M{0:.1f} {1:.1f}L{2:.1f} {3:.1f}\"/>\n"
+          "<circle class=\"leader\" cx=\"{0:.1f}\" cy=\"{1:.1f}\" r=\"2\"/>\n",
+          from.x, from.y, to.x, to.y);
+    }
+    const double middle = card.x + 0.5 * card.width, height = layout.HeightOn(object);
+    if (height > 0.0) {
+      const double width = height * AspectOf(object);
+      cards += fmt::format(
+          "<use href=\"#{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n",
+          object.picture, middle - 0.5 * width, card.y, width, height);
+    }
+    cards += fmt::format("<text class=\"name\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", middle,
+                         card.y + height + format.font, HtmlText(Shortened(object.name)));
   }
   return fmt::format(
              "<svg class=\"plan {}\" viewBox=\"0 0 {:.0f} {:.0f}\" font-size=\"{:.0f}\" "
