@@ -1,22 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <utility>
 
 #include "base/text.h"
-#include "inspection/inspection.h"
 #include "report/page_html.h"
 #include "report/tables.h"
 
 namespace soslam {
 namespace {
 
-using nlohmann::json;
-
 struct EvaluatedMap {
   std::string dataset;
   const VariantResult& variant;
-  const json& quality;  // map_quality of its metrics
+  const MapQuality& quality;  // that of its metrics
 };
 
 // The maps of these variants, by dataset.
@@ -26,8 +24,8 @@ std::vector<EvaluatedMap> MapsOf(const std::vector<DatasetResult>& datasets,
   for (const DatasetResult& dataset : datasets) {
     for (const std::string& name : variants) {
       const VariantResult* const variant = dataset.Evaluated(name);
-      if (!variant || !variant->metrics.contains("map_quality")) continue;
-      maps.push_back({dataset.name, *variant, variant->metrics["map_quality"]});
+      if (!variant || !variant->metrics->map_quality) continue;
+      maps.push_back({dataset.name, *variant, *variant->metrics->map_quality});
     }
   }
   return maps;
@@ -63,32 +61,22 @@ void AddOrJoin(const std::vector<Cell>& row, Table* table) {
   }
 }
 
-const std::vector<std::string> kWhatIfHeader = {"IoU in frames", "true yaw", "quarter turn",
-                                                "true place", "true size"};
 constexpr const char* kWhatIfNote =
     "IoU in the frames of the cameras, and what it would be with one thing of each landmark "
     "replaced by the true one. Yaw: of the object or of the body, whichever fits better. Quarter "
     "turn: the best of four about the landmark's own vertical axis.";
 
-// The cells of kWhatIfHeader. `in_frames`: what has iou_mean and what_if, or null.
-std::vector<Cell> WhatIfCells(const json& in_frames) {
-  std::vector<Cell> cells;
-  for (const char* text : {"{iou_mean:.3f}", "{what_if/yaw:.3f}", "{what_if/quarter_turn:.3f}",
-                           "{what_if/place:.3f}", "{what_if/size:.3f}"}) {
-    cells.emplace_back(in_frames.is_null() ? kNoValue : FillIn(text, in_frames));
-  }
-  return cells;
+void AddWhatIfHeader(Table* table) {
+  table->header.emplace_back(kIouInFrames.Header());
+  for (const auto& metric : kWhatIfMetrics) table->header.push_back(metric.Header());
 }
 
-std::vector<Cell> LimitsRow(const json& landmark) {
-  const json& errors = landmark.at("errors");
-  std::vector<Cell> row = WhatIfCells(landmark.at("in_frames"));
-  row.insert(row.begin(), {ObjectName(landmark, "true_object"), FillIn("{iou:.3f}", errors)});
-  for (const char* text : {"{centre_m:.3f}", "{log_size/0:.2f}, {log_size/1:.2f}, {log_size/2:.2f}",
-                           "{yaw_error_deg:.1f}"}) {
-    row.emplace_back(FillIn(text, errors));
+void AddWhatIfCells(const MetricValues& iou, const std::optional<WhatIf>& what_if,
+                    std::vector<Cell>* row) {
+  row->emplace_back(kIouInFrames.Text(iou));
+  for (const auto& metric : kWhatIfMetrics) {
+    row->emplace_back(what_if ? metric.TextOf(*what_if) : kNoValue);
   }
-  return row;
 }
 
 }  // namespace
@@ -123,16 +111,16 @@ Table LostTable(const std::vector<DatasetResult>& datasets,
        "object is not listed again. soslam-inspect metrics.json says more of each."}};
   for (const EvaluatedMap& map : MapsOf(datasets, variants)) {
     NamesByKey missed, false_ones;  // by reason
-    std::set<json> missed_ids;
-    for (const json& object : map.quality.at("objects")) {
-      if (object.at("reason").is_null()) continue;
-      missed[WithBlanks(object.at("reason"))].push_back(ObjectName(object, "true_object"));
-      missed_ids.insert(object.at("true_object"));
+    std::set<std::optional<int>> missed_ids;
+    for (const TrueObjectRow& row : map.quality.objects) {
+      if (!row.miss) continue;
+      missed[WithBlanks(NameOf(row.miss->reason))].push_back(ObjectName(row.label, row.true_index));
+      missed_ids.insert(row.true_index);
     }
-    for (const json& landmark : map.quality.at("landmarks")) {
-      const bool is_of_missed = missed_ids.contains(landmark.at("true_object"));
-      if (landmark.at("reason").is_null() || is_of_missed) continue;
-      false_ones[WithBlanks(landmark.at("reason"))].push_back(ObjectName(landmark, "object"));
+    for (const LandmarkRow& row : map.quality.landmarks) {
+      if (!row.why_false || missed_ids.contains(row.true_index)) continue;
+      false_ones[WithBlanks(NameOf(row.why_false->reason))].push_back(
+          ObjectName(row.label, row.object_index));
     }
     const auto add_rows = [&](const char* mistake, const NamesByKey& names) {
       for (const auto& [reason, objects] : names) {
@@ -149,17 +137,24 @@ Table LimitsTable(const std::vector<DatasetResult>& datasets,
                   const std::vector<std::string>& variants) {
   Table table = {"limits",
                  "What limits the found objects",
-                 {"dataset", "variant", "object", "IoU"},
+                 {"dataset", "variant", "object", kBodyIou.Header()},
                  {},
                  3,
                  {kWhatIfNote,
                   "Logarithms are of estimate over truth, along the true axes. Yaw of body: modulo "
                   "a quarter turn."}};
-  table.header.insert(table.header.end(), kWhatIfHeader.begin(), kWhatIfHeader.end());
-  table.header.insert(table.header.end(), {"centre m", "log size x, y, z", "yaw of body deg"});
+  AddWhatIfHeader(&table);
+  for (const auto& metric : kBodyMetrics) table.header.push_back(metric.Header());
   for (const EvaluatedMap& map : MapsOf(datasets, variants)) {
-    for (const json& landmark : map.quality.at("landmarks")) {
-      if (landmark.at("fate") == "found") table.rows.push_back(WithMap(map, LimitsRow(landmark)));
+    for (const LandmarkRow& landmark : map.quality.landmarks) {
+      if (landmark.fate != LandmarkFate::kFound || !landmark.errors) continue;
+      std::vector<Cell> row = {ObjectName(landmark.label, landmark.true_index.value_or(0)),
+                               kBodyIou.TextOf(*landmark.errors)};
+      const auto& in_frames = landmark.in_frames;
+      AddWhatIfCells(in_frames ? kIouInFrames.of(*in_frames) : MetricValues{std::nullopt},
+                     in_frames ? std::optional(in_frames->what_if) : std::nullopt, &row);
+      for (const auto& metric : kBodyMetrics) row.emplace_back(metric.TextOf(*landmark.errors));
+      table.rows.push_back(WithMap(map, row));
     }
   }
   return table;
@@ -173,18 +168,20 @@ Table WhatIfTable(const std::vector<DatasetResult>& datasets,
                  {},
                  2,
                  {kWhatIfNote, "Single frames: means over the observations of each object first."}};
-  table.header.insert(table.header.end(), kWhatIfHeader.begin(), kWhatIfHeader.end());
+  AddWhatIfHeader(&table);
   for (const DatasetResult& dataset : datasets) {
     for (const std::string& name : variants) {
       const VariantResult* const variant = dataset.Evaluated(name);
       if (!variant) continue;
-      const bool is_map = variant->metrics.contains("map_quality");
-      const json& in_frames =
-          is_map ? variant->metrics["map_quality"].at("in_frames") : variant->metrics.at("summary");
-      if (in_frames.at("what_if").is_null()) continue;
-      std::vector<Cell> row = WhatIfCells(in_frames);
-      row.insert(row.begin(), {dataset.name, variant->name,
-                               FillIn(is_map ? "{landmarks}" : "{objects}", in_frames)});
+      const MetricsSummary& summary = variant->metrics->summary;
+      const auto& quality = variant->metrics->map_quality;
+      const auto& what_if = quality ? quality->in_frames.what_if : summary.what_if;
+      if (!what_if) continue;
+      std::vector<Cell> row = {
+          dataset.name, variant->name,
+          std::to_string(quality ? quality->in_frames.landmarks : summary.objects)};
+      AddWhatIfCells(quality ? kDriftIou.of(quality->in_frames) : MetricValues{summary.*kIou.mean},
+                     what_if, &row);
       table.rows.push_back(std::move(row));
     }
   }

@@ -21,8 +21,14 @@ json PageCoordinate(double pixels) { return Rounded(pixels, 10.0); }
 
 }  // namespace
 
+std::optional<double> OnPage(double value) {
+  if (!std::isfinite(value)) return std::nullopt;
+  return std::stod(fmt::format("{:.5g}", value));
+}
+
 json PageNumber(double value) {
-  return std::isfinite(value) ? json(std::stod(fmt::format("{:.5g}", value))) : json();
+  const std::optional<double> number = OnPage(value);
+  return number ? json(*number) : json();
 }
 
 json PageNumbers(const std::vector<double>& values) {

@@ -66,9 +66,7 @@ std::string WithBlanks(std::string name) {
   return name;
 }
 
-std::string ObjectName(const json& row, const char* id) {
-  return fmt::format("{} {}", row.at("label").get<std::string>(), row.at(id).get<int>());
-}
+std::string ObjectName(const std::string& label, int id) { return fmt::format("{} {}", label, id); }
 
 std::string HtmlText(const std::string& text) {
   std::string escaped = Escaped(Escaped(Utf8(text), '&', "&amp;"), '<', "&lt;");
@@ -119,65 +117,51 @@ namespace fs = std::filesystem;
 constexpr std::array kArtefacts = {"sequence.json", "world.json",   "associations.json",
                                    "planes.json",   "initial.json", "refined.json",
                                    "map.json",      "metrics.json"};
-constexpr std::array kTexts = {"severity", "check", "found", "expected", "cause", "remedy"};
 
 // Empty for a file that cannot be read; the page lists such files elsewhere.
-json FindingsIn(const fs::path& file) {
+std::vector<Finding> FindingsIn(const fs::path& file) {
   try {
-    const json document = ParseJsonFile(file);
-    return document.is_object() ? document.value("findings", json::array()) : json::array();
+    return FindingsOf(ParseJsonFile(file));
   } catch (const InputError&) {
-    return json::array();
+    return {};
   }
-}
-
-json TextsOf(const json& finding) {
-  json texts;
-  for (const char* key : kTexts) {
-    const json text = finding.is_object() ? finding.value(key, json()) : json();
-    texts[key] = text.is_string() ? Utf8(text.get<std::string>()) : "";
-  }
-  return texts;
 }
 
 }  // namespace
 
-json PageFindings(const DatasetResult& dataset) {
-  std::map<fs::path, json> findings_of;  // by resolved path
-  json findings = json::array();
+std::vector<PageFinding> PageFindings(const DatasetResult& dataset) {
+  std::map<fs::path, std::vector<Finding>> findings_of;  // by resolved path
+  std::vector<PageFinding> findings;
   for (const char* artefact : kArtefacts) {
-    nlohmann::ordered_map<json, std::vector<std::string>> found;  // with the variants' names
+    nlohmann::ordered_map<Finding, std::vector<std::string>> found;  // with the variants' names
     for (const VariantResult& variant : dataset.variants) {
       const fs::path file = fs::weakly_canonical(variant.folder / artefact);
       if (!findings_of.contains(file)) findings_of[file] = FindingsIn(file);
-      for (const json& finding : findings_of[file]) {
-        found[TextsOf(finding)].push_back(Utf8(variant.name));
-      }
+      for (const Finding& finding : findings_of[file]) found[finding].push_back(variant.name);
     }
-    for (const auto& [texts, variants] : found) {
+    for (const auto& [finding, variants] : found) {
       const bool in_all = variants.size() == dataset.variants.size();
-      json finding = texts;
-      finding["where"] =
-          fmt::format("{} of {}", artefact,
-                      in_all ? "all variants" : fmt::to_string(fmt::join(variants, ", ")));
-      findings.push_back(std::move(finding));
+      findings.push_back(
+          {finding,
+           fmt::format("{} of {}", artefact,
+                       in_all ? "all variants" : fmt::to_string(fmt::join(variants, ", ")))});
     }
   }
-  std::stable_partition(findings.begin(), findings.end(),
-                        [](const json& finding) { return finding["severity"] == "error"; });
+  std::stable_partition(findings.begin(), findings.end(), [](const PageFinding& of) {
+    return of.finding.severity == Severity::kError;
+  });
   return findings;
 }
 
-std::string FindingsHtml(const json& findings) {
+std::string FindingsHtml(const std::vector<PageFinding>& findings) {
   if (findings.empty()) return "";
   std::string items;
-  for (const json& finding : findings) {
-    const auto text = [&](const char* key) { return HtmlText(finding.at(key).get<std::string>()); };
+  for (const auto& [finding, where] : findings) {
     items += fmt::format(
-        "<li class=\"{}\"><strong>{}: {}</strong> <span class=\"faint\">({}, "
-        "{})</span><br>expected: {}<br>likely cause: {}<br>remedy: {}</li>\n",
-        text("severity"), text("severity"), text("found"), text("check"), text("where"),
-        text("expected"), text("cause"), text("remedy"));
+        "<li class=\"{0}\"><strong>{0}: {1}</strong> <span class=\"faint\">({2}, "
+        "{3})</span><br>expected: {4}<br>likely cause: {5}<br>remedy: {6}</li>\n",
+        NameOf(finding.severity), HtmlText(finding.found), HtmlText(finding.check), HtmlText(where),
+        HtmlText(finding.expected), HtmlText(finding.cause), HtmlText(finding.remedy));
   }
   return "<h3>Findings</h3>\n<ul class=\"findings\">\n" + items + "</ul>\n";
 }

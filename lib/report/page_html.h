@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/table.h"
+#include "model/finding.h"
 #include "report/results_tree.h"
 
 namespace soslam {
@@ -30,8 +31,8 @@ std::string PageText(const nlohmann::json& data);
 // A name of the artefacts as words: "no_support" is "no support".
 std::string WithBlanks(std::string name);
 
-// "cup 7": the label and this id of a row of an artefact.
-std::string ObjectName(const nlohmann::json& row, const char* id);
+// "cup 7"
+std::string ObjectName(const std::string& label, int id);
 
 // Names by what they have in common, in the order in which they came.
 using NamesByKey = nlohmann::ordered_map<std::string, std::vector<std::string>>;
@@ -49,12 +50,16 @@ enum class PageScripts { kNone, kDataset };
 std::string PageHtml(const std::string& title, const std::string& content,
                      const nlohmann::json& data, PageScripts scripts);
 
-// The findings in all artefacts of a dataset's variants, errors first, each once:
-//   severity ("error" or "warning"), check, found, expected, cause, remedy: as in the artefact;
-//   where: "sequence.json of all variants", "map.json of OursP, OursPT"
-nlohmann::json PageFindings(const DatasetResult& dataset);
+// A finding of some variants: "sequence.json of all variants", "map.json of OursP, OursPT".
+struct PageFinding {
+  Finding finding;
+  std::string where;
+};
+
+// The findings in all artefacts of a dataset's variants, errors first, each once.
+std::vector<PageFinding> PageFindings(const DatasetResult& dataset);
 
 // The same as HTML, escaped; empty if there are none.
-std::string FindingsHtml(const nlohmann::json& findings);
+std::string FindingsHtml(const std::vector<PageFinding>& findings);
 
 }  // namespace soslam

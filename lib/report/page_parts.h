@@ -2,11 +2,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <opencv2/core/mat.hpp>
 #include <opencv2/core/types.hpp>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -150,6 +152,7 @@ nlohmann::json PageSequence(const Sequence& sequence, const PageSelection& selec
 // Short forms for pages, to keep them small. Lengths are rounded to a tenth of a millimetre, pixels
 // to a tenth, other numbers to five significant digits. Numbers that are not finite become null.
 
+std::optional<double> OnPage(double value);
 nlohmann::json PageNumber(double value);
 nlohmann::json PageNumbers(const std::vector<double>& values);
 nlohmann::json PageVector(const Eigen::Vector3d& metres);
@@ -185,31 +188,42 @@ nlohmann::json PageGridInFrame(
 // moves the plane to the detection's plane_in_camera, with which odometry need not agree.
 Rigid3d CameraAbovePlane(const Sequence& sequence, const Detection& detection);
 
-// The data of one variant with metrics on a page; `sequence` is the variant's own.
-//   name; kind: "map", "views" (one landmark from all frames, without a back end) or "frames" (one
-//     for each observation), by the stages that produced it
-//   metrics: metrics.json without its header and findings
-//   objects, one per object of the sequence: landmark in the world (of kind "frames" that of its
-//     first observation) or null, failure in words, observations; with a covariance also
-//     centre_covariance
-//     (3 x 3, m^2), sigma_centre (m), sigma_log_half_axes, sigma_yaw_deg (about the landmark's z);
-//     quarter_turn: ObjectEstimate::quarter_turn, where known
-//   outlines, one per detection that is selected: see PageOutline, or null
-//   trajectory: poses of the map for the selected frames; solver: iterations, costs, and the counts
-//     of residuals used and left out
-//   planes: those of the map, see PageGrids, and grids, by selected frame, see PageGridInFrame;
-//     both null if they are the sequence's
-//   points: by selected detection the image points of the object's points, [x, y, responsibility in
-//     %, ...], or null; null without any. Of objects that have some: their count, and of_object,
-//     the sum of their responsibilities
-// Throws InputError when a file that the variant should have is missing or not valid.
-nlohmann::json PageVariant(const VariantResult& result, const Sequence& sequence,
-                           const PageSelection& selection);
+// What produced a variant's landmarks: a back end, all frames without one, or each observation.
+enum class VariantKind { kMap, kViews, kFrames };
+inline constexpr std::array kVariantKindNames = {"map", "views", "frames"};
+inline constexpr const auto& NamesOf(VariantKind) { return kVariantKindNames; }
 
-// Variants of a dataset's page that have more than numbers, as indices into its "variants", in the
-// order of interest: maps before views before single frames, and of each kind the variant with the
-// most parts first.
-std::vector<size_t> DetailedVariants(const nlohmann::json& page);
+// A variant with metrics on a page.
+struct PageVariant {
+  std::string name;
+  Metrics metrics;  // with ids for indices
+  VariantKind kind = VariantKind::kMap;
+  size_t sequence = 0;                  // index of the variant's own
+  std::optional<size_t> symmetry = {};  // index of its curves
+  // One for each object; of single frames the first observations.
+  std::vector<ObjectEstimate> objects = {};
+  std::optional<SolverSummary> solver = {};
+  bool numbers_only = false;  // there was no room for objects, solver and data
+  // For scripts:
+  //   objects: landmark in the world or null, failure in words, observations; with a covariance
+  //   also
+  //     centre_covariance (3 x 3, m^2), sigma_centre (m), sigma_log_half_axes, sigma_yaw_deg;
+  //     quarter_turn: ObjectEstimate::quarter_turn, where known
+  //   outlines, one per detection that is selected: see PageOutline, or null
+  //   trajectory: poses of the map for the selected frames; solver: iterations, costs, and the
+  //     counts of residuals used and left out
+  //   planes: those of the map, see PageGrids, and grids, by selected frame, see PageGridInFrame;
+  //     both null if they are the sequence's
+  //   points: by selected detection the image points of the object's points, [x, y, responsibility
+  //     in %, ...], or null; null without any. Of objects that have some: their count, and
+  //     of_object, the sum of their responsibilities
+  nlohmann::json data = {};
+};
+
+// Throws InputError when a file that the variant should have is missing or not valid. `sequence` is
+// the variant's own.
+PageVariant ReadPageVariant(const VariantResult& result, const Sequence& sequence,
+                            const PageSelection& selection);
 
 // Cost over yaw of up to kCurvesPerObject observations of each object, evenly spaced among the
 // selected ones: detection (index into the selected ones); yaw_deg: the grid; cost: by name;

@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <map>
 #include <optional>
@@ -11,7 +10,6 @@
 
 #include "base/table.h"
 #include "base/text.h"
-#include "inspection/inspection.h"
 #include "report/page.h"
 #include "report/page_html.h"
 #include "report/page_parts.h"
@@ -21,18 +19,25 @@
 namespace soslam {
 namespace {
 
-using nlohmann::json;
-using Pointer = json::json_pointer;
+constexpr const char* kDash = "–";
 
-std::string NumberOrDash(const json& value, int decimals) {
-  return value.is_number() ? fmt::format("{:.{}f}", value.get<double>(), decimals) : "–";
+std::string TextOrDash(const Metric& metric, const std::optional<double>& value) {
+  return value ? metric.Text(value) : kDash;
 }
 
-// {"name": count, ...} as "2 name, 1 other name".
-std::string ListOf(const json& counts) {
+// "Rot, °"
+std::string HeaderOnPage(const Metric& metric) {
+  const std::string unit = metric.unit;
+  return unit.empty() ? metric.title
+                      : fmt::format("{}, {}", metric.title, unit == "deg" ? "°" : unit);
+}
+
+// "2 name, 1 other name"
+template <typename Count>
+std::string ListOf(const std::map<std::string, Count>& counts) {
   std::vector<std::string> texts;
-  for (const auto& [name, count] : counts.items()) {
-    texts.push_back(fmt::format("{} {}", count.get<size_t>(), WithBlanks(name)));
+  for (const auto& [name, count] : counts) {
+    texts.push_back(fmt::format("{} {}", count, WithBlanks(name)));
   }
   return fmt::format("{}", fmt::join(texts, ", "));
 }
@@ -46,101 +51,86 @@ std::string Section(const std::string& id, const std::string& title, const std::
                      HtmlText(title), content);
 }
 
-// A column of the numbers of all variants, with its JSON pointer into metrics.json.
-struct PageColumn {
-  const char* title;
-  const char* pointer;
-  int decimals;
-  bool higher_is_better;
-};
-constexpr std::array<PageColumn, 6> kPageColumns = {{
-    {"IoU", "/summary/iou_mean", 3, true},
-    {"Rot, °", "/summary/rotation_deg_mean", 2, false},
-    {"yaw error, °", "/summary/yaw_error_deg_mean", 2, false},
-    {"IoU, first view", "/first_observation/iou_mean", 3, true},
-    {"ATE, m", "/trajectory/ate_rmse_m", 4, false},
-    {"held-out IoU", "/held_out/iou_mean", 3, true},
-}};
-
-// Adds a column, unless no variant has a value. Values that look equal to the best are bold, too.
-void AddColumn(const PageColumn& column, const std::vector<json>& variants, Table* table) {
-  std::vector<json> values;
-  std::optional<double> best;
-  for (const json& variant : variants) {
-    values.push_back(variant.at("metrics").value(Pointer(column.pointer), json()));
-    if (!values.back().is_number()) continue;
-    const auto value = values.back().get<double>();
-    best = !best                     ? value
-           : column.higher_is_better ? std::max(*best, value)
-                                     : std::min(*best, value);
+// The numbers of all variants, or of those of a kind. Empty where there is nothing that any of them
+// could be measured against, or no variant.
+std::string MetricsTable(const DatasetPage& page, const std::optional<VariantKind>& kind = {}) {
+  std::vector<const PageVariant*> variants;
+  for (const PageVariant& variant : page.variants) {
+    if (!kind || variant.kind == kind) variants.push_back(&variant);
   }
-  if (!best) return;
-  table->header.emplace_back(column.title);
-  for (size_t i = 0; i < values.size(); ++i) {
-    const std::string text = NumberOrDash(values[i], column.decimals);
-    table->rows[i].emplace_back(text, text == NumberOrDash(*best, column.decimals));
-  }
-}
-
-// Empty where there is nothing that any of the variants could be measured against, or no variant.
-std::string MetricsTable(const std::vector<json>& variants, bool has_true_objects) {
-  if (variants.empty()) return "";
   Table table;
   table.name = "metrics";
   table.header = {"variant"};
-  if (has_true_objects) table.header.insert(table.header.end(), {"objects", "observations"});
-  for (const json& variant : variants) {
-    const json& summary = variant.at("metrics").at("summary");
-    table.rows.push_back({variant.at("name").get<std::string>()});
-    if (!has_true_objects) continue;
-    for (const char* key : {"objects", "observations"}) {
-      table.rows.back().emplace_back(summary.at(key).dump());
+  if (page.has_true_objects) table.header.insert(table.header.end(), {"objects", "observations"});
+  for (const PageVariant* variant : variants) {
+    const MetricsSummary& summary = variant->metrics.summary;
+    table.rows.push_back({variant->name});
+    if (!page.has_true_objects) continue;
+    for (const int count : {summary.objects, summary.observations}) {
+      table.rows.back().emplace_back(std::to_string(count));
     }
   }
-  for (const PageColumn& column : kPageColumns) AddColumn(column, variants, &table);
-  return table.header.size() == 1 ? "" : HtmlTable(table);
-}
-
-// What the columns of MetricsTable mean.
-std::string NumbersExplained(const json& page) {
-  std::string text;
-  if (page.at("has_true_objects")) {
-    text +=
-        "Means over objects, the best in bold. IoU: overlap of the cuboids around estimate and "
-        "truth. Rot: the smallest turn that brings the axes of one onto any of the other. Yaw "
-        "error: modulo half a turn. ";
-  } else {
-    text += "The best is bold. ";
+  // Adds a column, unless no variant has a value. Values that look equal to the best are bold, too.
+  const auto add = [&](const std::string& title, const Metric& metric, const auto& value_of) {
+    std::optional<double> best;
+    for (const PageVariant* variant : variants) {
+      const std::optional<double> value = value_of(variant->metrics);
+      if (value && (!best || metric.IsBetter(*value, *best))) best = value;
+    }
+    if (!best) return;
+    table.header.push_back(title);
+    for (size_t i = 0; i < variants.size(); ++i) {
+      const std::string text = TextOrDash(metric, value_of(variants[i]->metrics));
+      table.rows[i].emplace_back(text, text == metric.Text(best));
+    }
+  };
+  for (const ObjectMetric& metric : kMeanMetrics) {
+    add(HeaderOnPage(metric), metric,
+        [&](const Metrics& metrics) { return metrics.summary.*metric.mean; });
   }
-  if (page.at("has_true_poses")) text += "ATE: root mean square error of the camera's positions.";
-  return Faint(text);
+  add(fmt::format("{}, first view", kIou.title), kIou, [](const Metrics& metrics) {
+    return metrics.first_observation.value_or(MetricsSummary()).*kIou.mean;
+  });
+  // A metric of a part that not all variants have.
+  const auto add_of = [&](const auto& metric, const auto& part) {
+    add(HeaderOnPage(metric), metric, [&](const Metrics& metrics) {
+      return metrics.*part ? metric.of(*(metrics.*part)).front() : std::nullopt;
+    });
+  };
+  add_of(kTrajectoryError, &Metrics::trajectory);
+  add_of(kHeldOutIou, &Metrics::held_out);
+  return variants.empty() || table.header.size() == 1 ? "" : HtmlTable(table);
 }
 
 // Empty where nothing was measured.
-std::string NumbersSection(const json& page) {
-  constexpr std::array<std::array<const char*, 2>, 3> kKinds = {
-      {{"map", "Maps: all frames, landmarks and poses together"},
-       {"views", "One landmark from all frames, poses as given"},
-       {"frames", "Single frames: mean over the observations of each object"}}};
+std::string NumbersSection(const DatasetPage& page) {
   std::string tables;
-  for (const auto& [kind, title] : kKinds) {
-    std::vector<json> variants;
-    for (const json& variant : page.at("variants")) {
-      if (variant.at("kind") == kind) variants.push_back(variant);
-    }
-    const std::string table = MetricsTable(variants, page.at("has_true_objects"));
+  for (const auto& [kind, title] :
+       {std::pair(VariantKind::kMap, "Maps: all frames, landmarks and poses together"),
+        {VariantKind::kViews, "One landmark from all frames, poses as given"},
+        {VariantKind::kFrames, "Single frames: mean over the observations of each object"}}) {
+    const std::string table = MetricsTable(page, kind);
     if (!table.empty()) tables += fmt::format("<h3>{}</h3>\n{}", title, table);
   }
   if (tables.empty()) return "";
-  return Section("numbers", "Numbers", NumbersExplained(page) + tables);
+  std::string explained =
+      page.has_true_objects
+          ? "Means over objects, the best in bold. IoU: overlap of the cuboids around estimate and "
+            "truth. Rot: the smallest turn that brings the axes of one onto any of the other. Yaw "
+            "error: modulo half a turn. "
+          : "The best is bold. ";
+  if (page.has_true_poses) {
+    explained += "ATE: root mean square error of the camera's positions.";
+  }
+  return Section("numbers", "Numbers", Faint(explained) + tables);
 }
 
 // Comparison of a dataset's maps with all true objects, independent of ids; empty without maps or
 // without true objects.
-std::string QualityHtml(const std::string& dataset, const std::vector<json>& variants) {
-  DatasetResult result{dataset, {}};
-  for (const json& variant : variants) {
-    result.variants.push_back({variant.at("name"), {}, variant.at("metrics")});
+std::string QualityHtml(const DatasetPage& page) {
+  DatasetResult result{Utf8(page.name), {}};
+  for (const PageVariant& variant : page.variants) {
+    result.variants.push_back({variant.name, {}, variant.metrics});
   }
   std::string html;
   for (const Table& table : QualityTables(result)) {
@@ -150,133 +140,118 @@ std::string QualityHtml(const std::string& dataset, const std::vector<json>& var
   return html;
 }
 
-// The missed objects and false landmarks of each map, with their reasons.
-std::string Mistakes(const std::vector<json>& variants) {
-  std::string html;
-  for (const json& variant : variants) {
-    const Table table = MistakesTable(variant.at("metrics"));
+std::string QualitySection(const DatasetPage& page) {
+  const std::string tables = QualityHtml(page);
+  if (tables.empty()) return "";
+  std::string mistakes;
+  for (const PageVariant& variant : page.variants) {
+    const Table table = MistakesTable(variant.metrics);
     if (table.rows.empty()) continue;
-    html += fmt::format(
+    mistakes += fmt::format(
         "<details><summary>{}: what is missed or false, and why</summary>\n{}</details>\n",
-        HtmlText(variant.at("name")), HtmlTable(table));
+        HtmlText(variant.name), HtmlTable(table));
   }
-  return html;
-}
-
-std::string QualitySection(const json& page) {
-  const std::string table = QualityHtml(page.at("dataset"), page.at("variants"));
-  if (table.empty()) return "";
   return Section("quality", "Maps compared with all true objects",
                  Faint("Landmarks and true objects are matched by overlap, whatever their ids and "
                        "labels, in the world of the true poses: alignment none where the map is in "
                        "it, rigid where it has to be moved there, similarity where it is scaled as "
                        "well.") +
-                     table + Mistakes(page.at("variants")));
+                     tables + mistakes);
 }
 
-// An object of a variant; its metrics are empty if there are none.
-struct ObjectRow {
-  size_t index;
-  json metrics;
-  json estimate;
-
-  double Iou() const {
-    const json iou = metrics.value("iou", json());
-    return iou.is_number() ? iou.get<double>() : std::numeric_limits<double>::infinity();
+// The observed objects in ascending order of IoU; those without IoU come last.
+std::string ObjectsTable(const Sequence& sequence, const PageVariant& variant,
+                         bool has_true_objects) {
+  struct Row {
+    size_t index;
+    std::optional<ObjectMetrics> metrics;  // none without truth
+  };
+  std::vector<Row> rows;
+  bool has_failures = false;
+  for (size_t i = 0; i < sequence.objects.size(); ++i) {
+    const auto& all = variant.metrics.objects;
+    const auto found = std::ranges::find(all, sequence.objects[i].id, &ObjectMetrics::object_index);
+    Row row = {i, found == all.end() ? std::nullopt : std::optional(*found)};
+    const bool is_seen = row.metrics && row.metrics->observations > 0;
+    if (!is_seen && !variant.objects[i].landmark_in_world) continue;
+    has_failures |= !variant.objects[i].failure.empty();
+    rows.push_back(std::move(row));
   }
-};
-
-// Observed objects in ascending order of IoU; those without IoU come last.
-std::vector<ObjectRow> WorstFirst(const json& objects, const json& variant) {
-  std::map<int, json> metrics_of;
-  for (const json& metrics : variant.at("metrics").at("objects")) {
-    metrics_of[metrics.at("object").get<int>()] = metrics;
-  }
-  std::vector<ObjectRow> rows;
-  for (size_t i = 0; i < objects.size(); ++i) {
-    const json& estimate = variant.at("objects").at(i);
-    const auto found = metrics_of.find(objects[i].at("id").get<int>());
-    const json metrics = found == metrics_of.end() ? json::object() : found->second;
-    const bool is_seen = metrics.value("observations", 0) > 0;
-    if (is_seen || !estimate.at("landmark").is_null()) rows.push_back({i, metrics, estimate});
-  }
-  std::ranges::stable_sort(rows, {}, &ObjectRow::Iou);
-  return rows;
-}
-
-std::string ObjectsTable(const json& objects, const json& variant, bool has_true_objects) {
-  const std::vector<ObjectRow> rows = WorstFirst(objects, variant);
-  const auto failure = [](const ObjectRow& row) { return WithBlanks(row.estimate.at("failure")); };
+  const auto error = [](const std::optional<ObjectMetrics>& metrics, const ObjectMetric& metric) {
+    return metrics ? metric.of(*metrics).front() : std::nullopt;
+  };
+  std::ranges::stable_sort(rows, {}, [&](const Row& row) {
+    return error(row.metrics, kIou).value_or(std::numeric_limits<double>::infinity());
+  });
   Table table;
   table.header = {"object", "observations"};
   if (has_true_objects) {
-    table.header.insert(table.header.end(), {"IoU", "centre error, m", "Rot, °", "yaw error, °"});
+    for (const ObjectMetric& metric : kObjectMetrics) table.header.push_back(HeaderOnPage(metric));
   }
-  table.header.emplace_back("yaw sigma, °");
-  const bool has_failures =
-      std::ranges::any_of(rows, [&](const ObjectRow& row) { return !failure(row).empty(); });
+  for (const auto& metric : kEstimateMetrics) table.header.push_back(HeaderOnPage(metric));
   if (has_failures) table.header.emplace_back("no landmark");
   std::vector<size_t> indices;
-  for (const ObjectRow& row : rows) {
-    const json& object = objects[row.index];
-    const auto number = [&](const char* key, int decimals) {
-      return NumberOrDash(row.metrics.value(key, json()), decimals);
-    };
-    table.rows.push_back(
-        {ObjectName(object, "id"),
-         row.metrics.value("observations", row.estimate.at("observations")).dump()});
+  for (const auto& [index, metrics] : rows) {
+    const Object& object = sequence.objects[index];
+    const ObjectEstimate& estimate = variant.objects[index];
+    std::vector<Cell> row = {
+        ObjectName(object.label, object.id),
+        std::to_string(metrics ? metrics->observations : estimate.observations)};
     if (has_true_objects) {
-      table.rows.back().insert(table.rows.back().end(),
-                               {number("iou", 3), number("centre_m", 3), number("rotation_deg", 2),
-                                number("yaw_error_deg", 2)});
+      for (const ObjectMetric& metric : kObjectMetrics) {
+        row.emplace_back(TextOrDash(metric, error(metrics, metric)));
+      }
     }
-    table.rows.back().emplace_back(NumberOrDash(row.estimate.value("sigma_yaw_deg", json()), 2));
-    if (has_failures) table.rows.back().emplace_back(failure(row));
-    indices.push_back(row.index);
+    for (const auto& metric : kEstimateMetrics) {
+      const std::optional<double> value = metric.of(estimate).front();
+      row.emplace_back(TextOrDash(metric, value ? OnPage(*value) : std::nullopt));
+    }
+    if (has_failures) row.emplace_back(WithBlanks(estimate.failure));
+    table.rows.push_back(std::move(row));
+    indices.push_back(index);
   }
   return HtmlTable(table, indices);
 }
 
 // A table for each variant; scripts show one of them at a time.
-std::string ObjectsSection(const json& page) {
-  const bool has_true_objects = page.at("has_true_objects");
+std::string ObjectsSection(const DatasetPage& page) {
   std::string tables;
   for (const size_t index : DetailedVariants(page)) {
-    const json& variant = page.at("variants")[index];
-    const json& sequence = page.at("sequences").at(variant.at("sequence").get<size_t>());
-    tables += fmt::format("<details{}><summary>{}</summary>\n{}</details>\n",
-                          tables.empty() ? " open" : "", HtmlText(variant.at("name")),
-                          ObjectsTable(sequence.at("objects"), variant, has_true_objects));
+    const PageVariant& variant = page.variants[index];
+    tables += fmt::format(
+        "<details{}><summary>{}</summary>\n{}</details>\n", tables.empty() ? " open" : "",
+        HtmlText(variant.name),
+        ObjectsTable(page.sequences[variant.sequence].sequence, variant, page.has_true_objects));
   }
   if (tables.empty()) return "";
   return Section(
       "objects", "Objects",
-      (has_true_objects ? Faint("Worst first. Yaw error: modulo half a turn.") : "") + tables);
-}
-
-std::string Signed(const json& value, int decimals) {
-  return value.is_number() ? fmt::format("{:+.{}f}", value.get<double>(), decimals) : "–";
-}
-
-// A mean difference with its interval, bold if that excludes zero.
-Cell IntervalCell(const json& difference, int decimals) {
-  const std::string mean = Signed(difference.at("mean"), decimals);
-  if (difference.at("low").is_null()) return mean;
-  const auto low = difference.at("low").get<double>(), high = difference.at("high").get<double>();
-  return {fmt::format("{} ({} to {})", mean, Signed(low, decimals), Signed(high, decimals)),
-          low * high > 0.0};
+      (page.has_true_objects ? Faint("Worst first. Yaw error: modulo half a turn.") : "") + tables);
 }
 
 // Ablations: the effect of one more part, paired by object.
-std::string AblationSection(const json& page) {
+std::string AblationSection(const DatasetPage& page) {
+  if (page.differences.empty()) return "";
   Table table;
-  table.header = {"", "objects", "IoU", "Rot, °", "yaw error, °"};
-  for (const json& pair : page.at("differences")) {
-    table.rows.push_back({FillIn("{with} – {without}", pair), pair.at("objects").dump(),
-                          IntervalCell(pair.at("iou"), 3), IntervalCell(pair.at("rotation_deg"), 2),
-                          IntervalCell(pair.at("yaw_error_deg"), 2)});
+  table.header = {"", "objects"};
+  for (const ObjectMetric& metric : kMeanMetrics) table.header.push_back(HeaderOnPage(metric));
+  const auto on_page = [](double value) { return OnPage(value).value_or(value); };
+  for (const auto& [parts, objects, of_metrics] : page.differences) {
+    table.rows.push_back(
+        {fmt::format("{} – {}", parts.variant, parts.baseline), std::to_string(objects)});
+    for (size_t i = 0; i < of_metrics.size(); ++i) {
+      if (!of_metrics[i]) {
+        table.rows.back().emplace_back(kDash);
+        continue;
+      }
+      PairedDifference difference = *of_metrics[i];
+      difference.mean = on_page(difference.mean);
+      if (auto& interval = difference.confidence_95) {
+        interval = {on_page(interval->low), on_page(interval->high)};
+      }
+      table.rows.back().push_back(WithInterval(difference, kMeanMetrics[i]));
+    }
   }
-  if (table.rows.empty()) return "";
   return Section("ablation", "What each part is worth",
                  "<p>Differences between two variants over the same objects: mean and, in "
                  "brackets, 95 % confidence interval (Student's t). Bold where the interval leaves "
@@ -284,30 +259,27 @@ std::string AblationSection(const json& page) {
                      HtmlTable(table));
 }
 
-std::vector<Cell> StagesRow(const json& variant) {
-  const json& objects = variant.at("objects");
-  const auto landmarks = std::ranges::count_if(
-      objects, [](const json& object) { return !object.at("landmark").is_null(); });
-  std::vector<Cell> row = {variant.at("name").get<std::string>(), std::to_string(landmarks),
-                           ListOf(json(CountsBy("failure", objects)))};
-  const json& solver = variant.at("solver");
-  if (solver.is_null()) {
-    row.resize(7, "");
-    return row;
-  }
-  row.insert(row.end(), {solver.at("iterations").dump(), solver.at("converged") ? "yes" : "no",
-                         ListOf(solver.at("residuals")), ListOf(solver.at("gated"))});
-  return row;
-}
-
 // Results of the stages of each variant.
-std::string StagesSection(const json& page) {
+std::string StagesSection(const DatasetPage& page) {
   Table table;
   table.name = "sentences";
   table.header = {"variant",   "landmarks", "objects without one", "iterations", "converged",
                   "residuals", "left out"};
   for (const size_t index : DetailedVariants(page)) {
-    table.rows.push_back(StagesRow(page.at("variants")[index]));
+    const PageVariant& variant = page.variants[index];
+    int landmarks = 0;
+    std::map<std::string, int> failures;
+    for (const ObjectEstimate& estimate : variant.objects) {
+      landmarks += estimate.landmark_in_world ? 1 : 0;
+      if (!estimate.failure.empty()) ++failures[estimate.failure];
+    }
+    std::vector<Cell> row = {variant.name, std::to_string(landmarks), ListOf(failures)};
+    if (const auto& solver = variant.solver) {
+      row.insert(row.end(), {std::to_string(solver->iterations), solver->converged ? "yes" : "no",
+                             ListOf(solver->residuals), ListOf(solver->gated)});
+    }
+    row.resize(table.header.size(), "");
+    table.rows.push_back(std::move(row));
   }
   if (table.rows.empty()) return "";
   return Section("stages", "Stages",
@@ -317,113 +289,104 @@ std::string StagesSection(const json& page) {
                      HtmlTable(table));
 }
 
-// Planned variants that are missing or older than the plan: a row for each state.
-std::string UnfinishedTable(const json& unfinished) {
+// Findings, unfinished variants with a row for each state, and files that cannot be shown.
+std::string Remarks(const DatasetPage& page) {
   NamesByKey names_by_state;
-  for (const json& variant : unfinished) {
-    const std::string state = variant.at("state").get<std::string>() +
-                              (variant.at("is_shown") ? " (shown: the last complete run)" : "");
-    names_by_state[state].push_back(variant.at("name").get<std::string>());
+  for (const auto& [name, state, is_shown] : page.unfinished) {
+    names_by_state[state + (is_shown ? " (shown: the last complete run)" : "")].push_back(name);
   }
-  if (names_by_state.empty()) return "";
   Table table;
   table.name = "sentences";
   table.header = {"not complete", "state"};
   for (const auto& [state, names] : names_by_state) {
     table.rows.push_back({fmt::format("{}", fmt::join(names, ", ")), state});
   }
-  return HtmlTable(table);
-}
-
-// Findings, unfinished variants and files that cannot be shown.
-std::string Remarks(const json& page) {
-  std::string remarks = UnfinishedTable(page.at("unfinished"));
-  for (const json& text : page.at("problems")) remarks += Faint(text);
-  return remarks + FindingsHtml(page.at("findings"));
-}
-
-// What is not on the page.
-std::string Notes(const json& page) {
-  std::string notes;
-  for (const json& text : page.at("notes")) notes += Faint(text);
-  return notes;
+  std::string remarks = table.rows.empty() ? "" : HtmlTable(table);
+  for (const std::string& problem : page.problems) remarks += Faint(problem);
+  return remarks + FindingsHtml(page.findings);
 }
 
 // Where findings are below a map that may need all of the screen, and may be of other variants.
-std::string LinkToFindings(const json& page) {
-  const size_t count = page.at("findings").size();
-  if (count == 0 || page.at("map_section").get_ref<const std::string&>().empty()) return "";
+std::string LinkToFindings(const DatasetPage& page) {
+  if (page.findings.empty() || page.map_section.empty()) return "";
   std::vector<std::string> places;
-  for (const json& finding : page.at("findings")) {
-    const auto place = finding.at("where").get<std::string>();
-    if (std::ranges::find(places, place) == places.end()) places.push_back(place);
+  for (const PageFinding& finding : page.findings) {
+    if (std::ranges::find(places, finding.where) == places.end()) places.push_back(finding.where);
   }
-  return fmt::format("<p><a href=\"#remarks\">{}</a> below, in {}</p>\n", Counted(count, "finding"),
-                     HtmlText(NamesInWords(places)));
+  return fmt::format("<p><a href=\"#remarks\">{}</a> below, in {}</p>\n",
+                     Counted(page.findings.size(), "finding"), HtmlText(NamesInWords(places)));
 }
 
 // The variant of most interest.
-const json& MainVariant(const json& page) {
+const PageVariant& MainVariant(const DatasetPage& page) {
   const std::vector<size_t> detailed = DetailedVariants(page);
-  return page.at("variants")[detailed.empty() ? 0 : detailed.front()];
+  return page.variants[detailed.empty() ? 0 : detailed.front()];
 }
 
 }  // namespace
 
-std::string CountsOfDataset(const json& page) {
-  if (page.at("variants").empty()) return "";
-  const json& main = MainVariant(page);
-  const json& counts = page.at("sequences").at(main.at("sequence").get<size_t>()).at("counts");
-  std::set<size_t> others;  // numbers of detections in the sequences of other variants
-  for (const json& sequence : page.at("sequences")) {
-    others.insert(sequence.at("counts").at("detections").get<size_t>());
+std::vector<size_t> DetailedVariants(const DatasetPage& page) {
+  std::vector<size_t> detailed;
+  for (size_t i = 0; i < page.variants.size(); ++i) {
+    if (!page.variants[i].numbers_only) detailed.push_back(i);
   }
-  others.erase(counts.at("detections").get<size_t>());
-  return fmt::format("{}, {}, {} used{}", Counted(counts.at("frames").get<size_t>(), "frame"),
-                     Counted(counts.at("objects").get<size_t>(), "object"),
-                     Counted(counts.at("detections").get<size_t>(), "detection"),
-                     others.empty()
-                         ? ""
-                         : fmt::format(" by {} (by others {})", main.at("name").get<std::string>(),
-                                       fmt::join(others, ", ")));
+  auto names = kKnownVariants;
+  std::ranges::reverse(names);
+  std::ranges::stable_sort(detailed, {}, [&](size_t index) {
+    const PageVariant& variant = page.variants[index];
+    return std::pair(variant.kind, std::ranges::find(names, variant.name) - names.begin());
+  });
+  return detailed;
 }
 
-std::string DatasetTables(const json& page) {
-  if (page.at("variants").empty()) return "";
-  const json& sequence = page.at("sequences").at(MainVariant(page).at("sequence").get<size_t>());
+std::string CountsOfDataset(const DatasetPage& page) {
+  if (page.variants.empty()) return "";
+  const PageVariant& main = MainVariant(page);
+  const Sequence& sequence = page.sequences[main.sequence].sequence;
+  std::set<size_t> others;  // numbers of detections in the sequences of other variants
+  for (const ShownSequence& shown : page.sequences) {
+    others.insert(shown.sequence.detections.size());
+  }
+  others.erase(sequence.detections.size());
+  return fmt::format(
+      "{}, {}, {} used{}", Counted(sequence.frames.size(), "frame"),
+      Counted(sequence.objects.size(), "object"), Counted(sequence.detections.size(), "detection"),
+      others.empty() ? ""
+                     : fmt::format(" by {} (by others {})", main.name, fmt::join(others, ", ")));
+}
+
+std::string DatasetTables(const DatasetPage& page) {
+  if (page.variants.empty()) return "";
+  const ShownSequence& main = page.sequences[MainVariant(page).sequence];
   std::string counts = CountsOfDataset(page);
-  const json& frames = sequence.at("frames");
-  const auto shown = std::ranges::count_if(
-      frames, [](const json& frame) { return frame.at("shown").get<bool>(); });
-  if (shown < sequence.at("counts").at("frames"))
-    counts += fmt::format("; {} frames are shown", shown);
-  if (!sequence.at("rejected").empty()) counts += "; not used: " + ListOf(sequence.at("rejected"));
-  return fmt::format("<h1>{}</h1>\n", HtmlText(page.at("dataset"))) + Faint(counts) +
-         LinkToFindings(page) + page.at("map_section").get<std::string>() +
-         "<div id=\"remarks\">\n" + Remarks(page) + "</div>\n" +
+  const size_t shown = main.selection.shown.size();
+  if (shown < main.sequence.frames.size()) counts += fmt::format("; {} frames are shown", shown);
+  const auto& rejected = main.sequence.rejected_detections;
+  if (!rejected.empty()) counts += "; not used: " + ListOf(rejected);
+  std::string notes;
+  for (const std::string& note : page.notes) notes += Faint(note);
+  return fmt::format("<h1>{}</h1>\n", HtmlText(page.name)) + Faint(counts) + LinkToFindings(page) +
+         page.map_section + "<div id=\"remarks\">\n" + Remarks(page) + "</div>\n" +
          "<noscript><p class=\"faint\">The map in three dimensions, frames, charts and figures "
          "need JavaScript; all else is here.</p></noscript>\n" +
          NumbersSection(page) + QualitySection(page) + ObjectsSection(page) +
-         AblationSection(page) + StagesSection(page) + Notes(page);
+         AblationSection(page) + StagesSection(page) + notes;
 }
 
-std::string OverviewTables(const json& overview) {
+std::string OverviewTables(const std::vector<DatasetPage>& pages) {
   std::string sections;
-  for (const json& dataset : overview.at("datasets")) {
-    const auto url = dataset.at("url").get<std::string>();
+  for (const DatasetPage& page : pages) {
+    const std::string url = UrlOf(page.name);
     std::string content = Faint("Nothing of it can be shown.");
-    if (dataset.at("counts") != "") {
+    if (!page.variants.empty()) {
       content = fmt::format(
           "<p>{}. <a href=\"./{}/report.html\">Map, frames, objects and figures</a></p>\n",
-          HtmlText(dataset.at("counts")), HtmlText(url));
+          HtmlText(CountsOfDataset(page)), HtmlText(url));
     }
-    content += Remarks(dataset);
-    if (!dataset.at("variants").empty()) {
-      const std::string quality = QualityHtml(dataset.at("dataset"), dataset.at("variants"));
-      content += MetricsTable(dataset.at("variants"), dataset.at("has_true_objects"));
-      if (!quality.empty()) content += "<h3>Maps compared with all true objects</h3>\n" + quality;
-    }
-    sections += Section(url, dataset.at("dataset"), content);
+    content += Remarks(page) + MetricsTable(page);
+    const std::string quality = QualityHtml(page);
+    if (!quality.empty()) content += "<h3>Maps compared with all true objects</h3>\n" + quality;
+    sections += Section(url, page.name, content);
   }
   return "<h1>Results</h1>\n" + sections;
 }

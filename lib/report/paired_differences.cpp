@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <sstream>
 
 #include "base/error.h"
 #include "base/text.h"
 #include "evaluation/statistics.h"
-#include "report/page_parts.h"
 #include "report/tables.h"
 
 namespace soslam {
@@ -32,31 +32,16 @@ double StudentProbability(int dof, double theta) {
   return is_odd ? 2.0 / std::numbers::pi * (theta + probability) : probability;
 }
 
-std::string Signed(double value, const Quantity& quantity) {
-  return fmt::format("{:+.{}f}", value, quantity.decimals);
+std::string Signed(double value, const Metric& metric) {
+  return fmt::format("{:+.{}f}", value, metric.decimals);
 }
 
-// A mean difference, bold if its interval excludes zero, and the ends of that.
-struct DifferenceTexts {
-  Cell mean;
-  std::string low, high;
-};
-
-DifferenceTexts TextsOf(const std::vector<double>& differences, const Quantity& quantity) {
-  const PairedDifference difference = MeanDifference(differences);
-  const auto& interval = difference.confidence_95;
-  const bool is_clear = interval && (interval->low > 0.0 || interval->high < 0.0);
-  return {Cell(Signed(difference.mean, quantity), is_clear),
-          interval ? Signed(interval->low, quantity) : kNoValue,
-          interval ? Signed(interval->high, quantity) : kNoValue};
-}
-
-// Differences of the objects for which both variants have the quantity, in the order of `variant`.
+// Differences of the objects for which both variants have the metric.
 std::vector<double> DifferencesByObject(const VariantResult& variant, const VariantResult& baseline,
-                                        const Quantity& quantity) {
-  const ValuesByObject baseline_values = ObjectValues(baseline, quantity);
+                                        const ObjectMetric& metric) {
+  const std::map<int, double> baseline_values = ObjectValues(baseline, metric);
   std::vector<double> differences;
-  for (const auto& [object, value] : ObjectValues(variant, quantity)) {
+  for (const auto& [object, value] : ObjectValues(variant, metric)) {
     const auto other = baseline_values.find(object);
     if (other != baseline_values.end()) differences.push_back(value - other->second);
   }
@@ -104,6 +89,18 @@ PairedDifference MeanDifference(const std::vector<double>& differences) {
   return difference;
 }
 
+bool PairedDifference::IsClear() const {
+  return confidence_95 && (confidence_95->low > 0.0 || confidence_95->high < 0.0);
+}
+
+Cell WithInterval(const PairedDifference& difference, const Metric& metric) {
+  const std::string mean = Signed(difference.mean, metric);
+  if (!difference.confidence_95) return mean;
+  const auto& [low, high] = *difference.confidence_95;
+  return {fmt::format("{} ({} to {})", mean, Signed(low, metric), Signed(high, metric)),
+          difference.IsClear()};
+}
+
 namespace {
 
 // Differences of the objects of a dataset, or of several.
@@ -116,7 +113,7 @@ struct Compared {
 // The datasets that have objects to compare, then those of them with a detector's boxes together,
 // then all of them, each if there are several.
 std::vector<Compared> ComparedObjects(const std::vector<DatasetResult>& datasets,
-                                      const Comparison& comparison, const Quantity& quantity) {
+                                      const Comparison& comparison, const ObjectMetric& metric) {
   std::vector<Compared> compared;
   Compared of_detector = {"detector's boxes", {}}, of_all = {"all datasets", {}};
   int datasets_of_detector = 0;
@@ -124,7 +121,7 @@ std::vector<Compared> ComparedObjects(const std::vector<DatasetResult>& datasets
     const VariantResult* const variant = dataset.Evaluated(comparison.variant);
     const VariantResult* const baseline = dataset.Evaluated(comparison.baseline);
     if (!variant || !baseline) continue;
-    const std::vector<double> differences = DifferencesByObject(*variant, *baseline, quantity);
+    const std::vector<double> differences = DifferencesByObject(*variant, *baseline, metric);
     if (differences.empty()) continue;
     compared.push_back({dataset.name, differences});
     of_all.differences.insert(of_all.differences.end(), differences.begin(), differences.end());
@@ -141,28 +138,26 @@ std::vector<Compared> ComparedObjects(const std::vector<DatasetResult>& datasets
   return compared;
 }
 
-// "+0.245 (+0.194 to +0.296)"
-Cell WithInterval(const std::vector<double>& differences, const Quantity& quantity) {
-  const auto [mean, low, high] = TextsOf(differences, quantity);
-  return {fmt::format("{} ({} to {})", mean.text, low, high), mean.bold};
-}
-
 }  // namespace
 
 Table DifferencesTable(const std::vector<DatasetResult>& datasets,
-                       const std::vector<Comparison>& comparisons, const Quantity& quantity) {
-  Table table = {std::string("differences_") + quantity.file_name,
-                 fmt::format("Paired differences: {} ({} is better)", quantity.title,
-                             quantity.higher_is_better ? "more" : "less"),
+                       const std::vector<Comparison>& comparisons, const ObjectMetric& metric) {
+  Table table = {std::string("differences_") + metric.name,
+                 fmt::format("Paired differences: {} ({} is better)", metric.Header(),
+                             metric.more_is_better ? "more" : "less"),
                  {"dataset", "variant", "minus", "objects", "difference", "from", "to"},
                  {},
                  3,
                  {"Mean over objects with 95 % t interval; bold where it excludes 0."}};
   for (const Comparison& comparison : comparisons) {
-    for (const Compared& compared : ComparedObjects(datasets, comparison, quantity)) {
-      const auto [mean, low, high] = TextsOf(compared.differences, quantity);
+    for (const Compared& compared : ComparedObjects(datasets, comparison, metric)) {
+      const PairedDifference difference = MeanDifference(compared.differences);
+      const auto& interval = difference.confidence_95;
       table.rows.push_back({compared.name, comparison.variant, comparison.baseline,
-                            std::to_string(compared.differences.size()), mean, low, high});
+                            std::to_string(compared.differences.size()),
+                            Cell(Signed(difference.mean, metric), difference.IsClear()),
+                            interval ? Signed(interval->low, metric) : kNoValue,
+                            interval ? Signed(interval->high, metric) : kNoValue});
     }
   }
   return table;
@@ -170,77 +165,62 @@ Table DifferencesTable(const std::vector<DatasetResult>& datasets,
 
 Table DifferencesOverDatasets(const std::vector<DatasetResult>& datasets,
                               const std::vector<Comparison>& comparisons) {
-  Table table = {"differences",
-                 "Paired differences over several datasets",
-                 {"variant", "minus", "datasets", "objects", "IoU", "with Rot", "Rot deg"},
-                 {},
-                 3,
-                 {"Mean over objects with 95 % t interval; bold where it excludes 0. More IoU and "
-                  "less Rot are better."}};
+  Table table = {
+      "differences",
+      "Paired differences over several datasets",
+      {"variant", "minus", "datasets", "objects", kIou.Header(), "with Rot", kRotation.Header()},
+      {},
+      3,
+      {"Mean over objects with 95 % t interval; bold where it excludes 0. More IoU and "
+       "less Rot are better."}};
   for (const Comparison& comparison : comparisons) {
     const std::vector<Compared> rotations = ComparedObjects(datasets, comparison, kRotation);
     for (const Compared& ious : ComparedObjects(datasets, comparison, kIou)) {
       if (!ious.is_of_several) continue;
       const auto rotation = std::ranges::find(rotations, ious.name, &Compared::name);
       const bool has_rotation = rotation != rotations.end();
-      table.rows.push_back(
-          {comparison.variant, comparison.baseline, ious.name,
-           std::to_string(ious.differences.size()), WithInterval(ious.differences, kIou),
-           std::to_string(has_rotation ? rotation->differences.size() : 0),
-           has_rotation ? WithInterval(rotation->differences, kRotation) : Cell(kNoValue)});
+      table.rows.push_back({comparison.variant, comparison.baseline, ious.name,
+                            std::to_string(ious.differences.size()),
+                            WithInterval(MeanDifference(ious.differences), kIou),
+                            std::to_string(has_rotation ? rotation->differences.size() : 0),
+                            has_rotation
+                                ? WithInterval(MeanDifference(rotation->differences), kRotation)
+                                : Cell(kNoValue)});
     }
   }
   return table;
 }
 
-namespace {
-
-using nlohmann::json;
-
-// Pairs of variants, of which the first has one more part.
-const std::array<Comparison, 14> kParts = {{{"InitP", "Init1-1"},
-                                            {"InitPT", "InitP"},
-                                            {"InitS", "InitP"},
-                                            {"InitST", "InitS"},
-                                            {"InitSP", "InitS"},
-                                            {"InitSTE", "InitST"},
-                                            {"InitSTEP", "InitSTE"},
-                                            {"OursP", "Quadric"},
-                                            {"OursPT", "OursP"},
-                                            {"OursS", "OursP"},
-                                            {"OursST", "OursS"},
-                                            {"OursSP", "OursS"},
-                                            {"OursSTE", "OursST"},
-                                            {"OursSTEP", "OursSTE"}}};
-
-json PageDifference(const std::vector<double>& differences) {
-  json page = {{"mean", nullptr}, {"low", nullptr}, {"high", nullptr}};
-  if (differences.empty()) return page;
-  const PairedDifference paired = MeanDifference(differences);
-  page["mean"] = PageNumber(paired.mean);
-  if (paired.confidence_95) {
-    page["low"] = PageNumber(paired.confidence_95->low);
-    page["high"] = PageNumber(paired.confidence_95->high);
-  }
-  return page;
-}
-
-}  // namespace
-
-json PageDifferences(const DatasetResult& dataset) {
-  json pairs = json::array();
+std::vector<PartDifference> PartDifferences(const DatasetResult& dataset) {
+  // Pairs of variants, of which the first has one more part.
+  const std::array<Comparison, 14> kParts = {{{"InitP", "Init1-1"},
+                                              {"InitPT", "InitP"},
+                                              {"InitS", "InitP"},
+                                              {"InitST", "InitS"},
+                                              {"InitSP", "InitS"},
+                                              {"InitSTE", "InitST"},
+                                              {"InitSTEP", "InitSTE"},
+                                              {"OursP", "Quadric"},
+                                              {"OursPT", "OursP"},
+                                              {"OursS", "OursP"},
+                                              {"OursST", "OursS"},
+                                              {"OursSP", "OursS"},
+                                              {"OursSTE", "OursST"},
+                                              {"OursSTEP", "OursSTE"}}};
+  std::vector<PartDifference> differences;
   for (const Comparison& parts : kParts) {
     const VariantResult* with = dataset.Evaluated(parts.variant);
     const VariantResult* without = dataset.Evaluated(parts.baseline);
     if (with == nullptr || without == nullptr) continue;
-    json pair = {{"with", parts.variant}, {"without", parts.baseline}};
-    pair["objects"] = DifferencesByObject(*with, *without, kIou).size();
-    for (const Quantity& quantity : {kIou, kRotation, kYawError}) {
-      pair[quantity.key] = PageDifference(DifferencesByObject(*with, *without, quantity));
+    PartDifference difference = {parts, DifferencesByObject(*with, *without, kIou).size(), {}};
+    for (const ObjectMetric& metric : kMeanMetrics) {
+      const std::vector<double> of_metric = DifferencesByObject(*with, *without, metric);
+      difference.of_metrics.emplace_back();
+      if (!of_metric.empty()) difference.of_metrics.back() = MeanDifference(of_metric);
     }
-    pairs.push_back(std::move(pair));
+    differences.push_back(std::move(difference));
   }
-  return pairs;
+  return differences;
 }
 
 }  // namespace soslam

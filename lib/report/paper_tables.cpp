@@ -3,17 +3,19 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
 
 #include "artefact/json_file.h"
+#include "evaluation/statistics.h"
 #include "report/tables.h"
 
 namespace soslam {
 
-const PublishedTable* Published::Find(const std::string& number, const Quantity& quantity) const {
+const PublishedTable* Published::Find(const std::string& number, const Metric& metric) const {
   const auto found = std::ranges::find_if(tables, [&](const PublishedTable& table) {
-    return table.table == number && table.quantity == quantity.key;
+    return table.table == number && table.quantity == metric.Key();
   });
   return found == tables.end() ? nullptr : &*found;
 }
@@ -26,15 +28,15 @@ namespace {
 
 // A kind of rows of measured values.
 struct RowKind {
-  const char* summary;  // of metrics.json, "/summary/"
   const char* title;
+  bool is_of_first_observation = false;
 };
 
 struct Layout {
   const char* number;
   const char* name;
   const char* title;
-  Quantity quantity;
+  ObjectMetric metric;
   std::vector<std::string> variants;  // columns; one that is not ours has published values only
   std::vector<RowKind> row_kinds;
 };
@@ -49,9 +51,8 @@ const std::vector<std::string> kInitialVariants = {"SVD",     "Cube",      "Init
                                                    "InitSTE", "InitSP",    "InitSTEP"};
 const std::vector<std::string> kMapVariants = {"Quadric", "OursP",   "OursPT", "OursS",
                                                "OursST",  "OursSTE", "OursSP", "OursSTEP"};
-const std::vector<RowKind> kSingleFrameRows = {{"/summary/", "all observations"},
-                                               {"/first_observation/", "first observation"}};
-const std::vector<RowKind> kMapRows = {{"/summary/", "measured"}};
+const std::vector<RowKind> kSingleFrameRows = {{"all observations"}, {"first observation", true}};
+const std::vector<RowKind> kMapRows = {{"measured"}};
 
 const std::vector<Layout> kLayouts = {
     {"I", "table_1_initial_iou", "Initialisation, IoU", kIou, kInitialVariants, kSingleFrameRows},
@@ -63,46 +64,26 @@ const std::vector<Layout> kLayouts = {
 // One mean per column.
 using Means = std::vector<std::optional<ObjectMean>>;
 
-bool HasAny(const Means& means) {
-  return std::ranges::any_of(means, [](const auto& mean) { return mean.has_value(); });
+auto CountOf(const Means& means) {
+  return std::ranges::count_if(means, [](const auto& mean) { return mean.has_value(); });
 }
 
-// None without the quantity; the first observation exists for single-frame variants only. The
-// number of objects is that of objects with an angle in any observation, as metrics.json does not
-// have it for first observations.
-std::optional<ObjectMean> MeanOverObjects(const VariantResult& variant, const Quantity& quantity,
-                                          const std::string& summary) {
-  const auto mean = MetricsNumber(variant, summary + quantity.key + "_mean");
-  const auto count = MetricsNumber(variant, summary + "observations");
-  const int objects = static_cast<int>(ObjectValues(variant, quantity).size());
-  if (!mean || !count || objects == 0) return std::nullopt;
-  return ObjectMean{*mean, objects, static_cast<int>(*count)};
-}
-
+// The means of variants that have the metric; the first observation exists for single-frame
+// variants only. The number of objects is that of objects with an angle in any observation, as
+// metrics.json does not have it for first observations.
 Means MeansOf(const DatasetResult& dataset, const Layout& layout, const RowKind& kind) {
-  Means means;
-  for (const std::string& name : layout.variants) {
-    const VariantResult* const variant = dataset.Evaluated(name);
-    means.push_back(variant ? MeanOverObjects(*variant, layout.quantity, kind.summary)
-                            : std::nullopt);
+  Means means(layout.variants.size());
+  for (size_t i = 0; i < means.size(); ++i) {
+    const VariantResult* const variant = dataset.Evaluated(layout.variants[i]);
+    if (!variant) continue;
+    const auto& summary = kind.is_of_first_observation ? variant->metrics->first_observation
+                                                       : std::optional(variant->metrics->summary);
+    const int objects = static_cast<int>(ObjectValues(*variant, layout.metric).size());
+    if (!summary || objects == 0) continue;
+    const std::optional<double> mean = (*summary).*layout.metric.mean;
+    if (mean) means[i] = {*mean, objects, summary->observations};
   }
   return means;
-}
-
-std::string ValueText(const ObjectMean& mean, const Quantity& quantity) {
-  return fmt::format("{:.{}f}", mean.mean, quantity.decimals);
-}
-
-// The best value as displayed, so that values that look equal are equally good.
-std::string BestText(const Means& means, const Quantity& quantity) {
-  const ObjectMean* best = nullptr;
-  for (const auto& mean : means) {
-    if (!mean) continue;
-    const bool is_better =
-        !best || (quantity.higher_is_better ? mean->mean > best->mean : mean->mean < best->mean);
-    if (is_better) best = &*mean;
-  }
-  return best ? ValueText(*best, quantity) : kNoValue;
 }
 
 // The most observations of a variant.
@@ -124,20 +105,22 @@ std::string ObservationsText(const Means& means, const std::vector<std::string>&
 std::vector<Cell> MeasuredRow(const std::string& dataset, const std::string& kind,
                               const Means& means, const Layout& layout,
                               const DatasetFacts& facts = {}) {
-  const Quantity& quantity = layout.quantity;
   int objects = 0;
-  for (const auto& mean : means) objects = std::max(objects, mean ? mean->objects : 0);
-  const std::string best = BestText(means, quantity);
+  std::optional<double> best;
+  for (const auto& mean : means) {
+    if (!mean) continue;
+    objects = std::max(objects, mean->objects);
+    if (!best || layout.metric.IsBetter(mean->mean, *best)) best = mean->mean;
+  }
   std::vector<Cell> row = {dataset, kind, MarksOf(facts, objects), std::to_string(objects),
                            ObservationsText(means, layout.variants)};
   for (const auto& mean : means) {
-    if (!mean) {
-      row.emplace_back(kNoValue);
-    } else if (mean->objects < objects) {
-      row.emplace_back(fmt::format("{} ({})", ValueText(*mean, quantity), mean->objects));
+    const std::string text = mean ? layout.metric.Text(mean->mean) : kNoValue;
+    if (mean && mean->objects < objects) {
+      row.emplace_back(fmt::format("{} ({})", text, mean->objects));
     } else {
-      const std::string text = ValueText(*mean, quantity);
-      row.emplace_back(text, text == best);
+      // Values that look equal are equally good.
+      row.emplace_back(text, mean && text == layout.metric.Text(best));
     }
   }
   return row;
@@ -148,51 +131,10 @@ std::vector<Cell> PublishedRowOf(const PublishedRow& published, const Layout& la
                            std::to_string(published.objects), kNoValue};
   for (const std::string& variant : layout.variants) {
     const auto value = published.values.find(variant);
-    row.emplace_back(value == published.values.end()
-                         ? kNoValue
-                         : fmt::format("{:.{}f}", value->second, layout.quantity.decimals));
+    row.emplace_back(value == published.values.end() ? kNoValue
+                                                     : layout.metric.Text(value->second));
   }
   return row;
-}
-
-// Means of the datasets that have a value in every column in which any dataset has one.
-struct Complete {
-  std::vector<std::string> datasets;
-  std::vector<Means> means;
-};
-
-Complete CompleteDatasets(const std::vector<DatasetResult>& datasets, const Layout& layout,
-                          const RowKind& kind) {
-  std::vector<Means> means;
-  Means any(layout.variants.size());
-  for (const DatasetResult& dataset : datasets) {
-    means.push_back(MeansOf(dataset, layout, kind));
-    for (size_t i = 0; i < any.size(); ++i) {
-      if (means.back()[i]) any[i] = means.back()[i];
-    }
-  }
-  const auto values = [](const Means& of) {
-    return std::ranges::count_if(of, [](const auto& mean) { return mean.has_value(); });
-  };
-  Complete complete;
-  for (size_t k = 0; k < datasets.size(); ++k) {
-    if (!HasAny(means[k]) || values(means[k]) < values(any)) continue;
-    complete.datasets.push_back(datasets[k].name);
-    complete.means.push_back(means[k]);
-  }
-  return complete;
-}
-
-Means Averages(const Complete& complete) {
-  Means averages;
-  for (size_t i = 0; i < complete.means.front().size(); ++i) {
-    std::vector<ObjectMean> column;
-    for (const Means& means : complete.means) {
-      if (means[i]) column.push_back(*means[i]);
-    }
-    averages.push_back(column.empty() ? std::nullopt : std::optional(WeightedMean(column)));
-  }
-  return averages;
 }
 
 // The published dataset that this one stands above.
@@ -208,7 +150,7 @@ void AddDatasetRows(const std::vector<DatasetResult>& datasets, const PublishedT
     const size_t rows = table->rows.size();
     for (const RowKind& kind : layout.row_kinds) {
       const Means means = MeansOf(dataset, layout, kind);
-      if (!HasAny(means)) continue;
+      if (CountOf(means) == 0) continue;
       table->rows.push_back(MeasuredRow(dataset.name, kind.title, means, layout, dataset.facts));
     }
     return table->rows.size() > rows;
@@ -235,71 +177,75 @@ void AddDatasetRows(const std::vector<DatasetResult>& datasets, const PublishedT
   }
 }
 
-// The objects of a dataset for which all of these variants have the quantity.
-std::set<int> CommonObjects(const DatasetResult& dataset, const Quantity& quantity,
-                            const std::vector<std::string>& variants) {
-  std::map<int, size_t> variants_with;  // by object
-  for (const std::string& name : variants) {
-    const VariantResult* const variant = dataset.Evaluated(name);
-    if (!variant) return {};
-    for (const auto& [object, value] : ObjectValues(*variant, quantity)) ++variants_with[object];
-  }
-  std::set<int> common;
-  for (const auto& [object, count] : variants_with) {
-    if (count == variants.size()) common.insert(object);
-  }
-  return common;
-}
-
-std::optional<ObjectMean> MeanOver(const std::set<int>& objects, const VariantResult* variant,
-                                   const Quantity& quantity) {
-  if (!variant || objects.empty()) return std::nullopt;
-  ObjectMean mean = {0.0, static_cast<int>(objects.size())};
-  for (const auto& [object, value] : ObjectValues(*variant, quantity)) {
-    if (objects.contains(object)) mean.mean += value / mean.objects;
-  }
-  return mean;
-}
-
-// The row over the objects of all datasets with boxes of a detector.
-void AddDetectorRow(const std::vector<DatasetResult>& datasets, const Layout& layout,
-                    Table* table) {
-  std::vector<std::string> measured;
-  for (const std::string& name : layout.variants) {
-    const bool is_measured = std::ranges::any_of(datasets, [&](const DatasetResult& dataset) {
-      return dataset.facts.HasDetectorBoxes() && dataset.Evaluated(name);
-    });
-    if (is_measured) measured.push_back(name);
-  }
-  Complete common;
+// The row over the objects of all datasets with boxes of a detector that all variants have.
+void AddDetectorRow(std::vector<DatasetResult> datasets, const Layout& layout, Table* table) {
+  std::erase_if(datasets,
+                [](const DatasetResult& dataset) { return !dataset.facts.HasDetectorBoxes(); });
+  std::vector<std::string> measured, names;
+  std::ranges::copy_if(layout.variants, std::back_inserter(measured), [&](const auto& name) {
+    return std::ranges::any_of(
+        datasets, [&](const auto& dataset) { return dataset.Evaluated(name) != nullptr; });
+  });
+  std::map<std::string, std::vector<double>> values;  // by variant
   for (const DatasetResult& dataset : datasets) {
-    if (!dataset.facts.HasDetectorBoxes()) continue;
-    const std::set<int> objects = CommonObjects(dataset, layout.quantity, measured);
-    if (objects.empty()) continue;
-    common.datasets.push_back(dataset.name);
-    common.means.emplace_back();
-    for (const std::string& name : layout.variants) {
-      common.means.back().push_back(MeanOver(objects, dataset.Evaluated(name), layout.quantity));
+    std::map<int, std::vector<double>> by_object;
+    for (const std::string& name : measured) {
+      const VariantResult* const variant = dataset.Evaluated(name);
+      if (!variant) continue;
+      for (const auto& [object, value] : ObjectValues(*variant, layout.metric)) {
+        by_object[object].push_back(value);
+      }
+    }
+    std::erase_if(by_object, [&](const auto& of) { return of.second.size() < measured.size(); });
+    if (by_object.empty()) continue;
+    names.push_back(dataset.name);
+    for (const auto& [object, of_variants] : by_object) {
+      for (size_t i = 0; i < measured.size(); ++i) values[measured[i]].push_back(of_variants[i]);
     }
   }
-  if (common.datasets.size() < 2) return;
-  table->rows.push_back(
-      MeasuredRow("detector's boxes", "common objects", Averages(common), layout));
+  if (names.size() < 2) return;
+  Means means;
+  for (const std::string& name : layout.variants) {
+    const std::vector<double>& of_variant = values[name];
+    means.emplace_back();
+    if (const auto mean = MeanOf(of_variant)) {
+      means.back() = {*mean, static_cast<int>(of_variant.size())};
+    }
+  }
+  table->rows.push_back(MeasuredRow("detector's boxes", "common objects", means, layout));
   table->notes.push_back(fmt::format(
       "Detector's boxes: over the objects that all of {} have, all observations, of {}.",
-      fmt::join(measured, ", "), fmt::join(common.datasets, ", ")));
+      fmt::join(measured, ", "), fmt::join(names, ", ")));
 }
 
-void AddAverages(const std::vector<DatasetResult>& datasets, const Layout& layout, Table* table) {
-  for (const RowKind& kind : layout.row_kinds) {
-    const Complete complete = CompleteDatasets(datasets, layout, kind);
-    if (complete.datasets.size() < 2) continue;
-    table->rows.push_back(MeasuredRow("average", kind.title, Averages(complete), layout));
-    table->notes.push_back(fmt::format(
-        "Average ({}): weighted by objects, over the datasets in which no variant lacks a value: "
-        "{}.",
-        kind.title, fmt::join(complete.datasets, ", ")));
+// The row over the datasets that have a value in every column in which any dataset has one.
+void AddAverage(const std::vector<DatasetResult>& datasets, const Layout& layout,
+                const RowKind& kind, Table* table) {
+  std::vector<Means> all;
+  Means any(layout.variants.size());
+  for (const DatasetResult& dataset : datasets) {
+    all.push_back(MeansOf(dataset, layout, kind));
+    for (size_t i = 0; i < any.size(); ++i) {
+      if (all.back()[i]) any[i] = all.back()[i];
+    }
   }
+  std::vector<std::string> names;
+  std::vector<std::vector<ObjectMean>> columns(any.size());
+  for (size_t k = 0; k < datasets.size(); ++k) {
+    if (CountOf(all[k]) == 0 || CountOf(all[k]) < CountOf(any)) continue;
+    names.push_back(datasets[k].name);
+    for (size_t i = 0; i < any.size(); ++i) {
+      if (any[i]) columns[i].push_back(*all[k][i]);
+    }
+  }
+  if (names.size() < 2) return;
+  for (size_t i = 0; i < any.size(); ++i) {
+    if (any[i]) any[i] = WeightedMean(columns[i]);
+  }
+  table->rows.push_back(MeasuredRow("average", kind.title, any, layout));
+  table->notes.push_back(fmt::format(
+      "Average ({}): weighted by objects, over the datasets in which no variant lacks a value: {}.",
+      kind.title, fmt::join(names, ", ")));
 }
 
 }  // namespace
@@ -320,7 +266,7 @@ std::vector<Table> PaperTables(const std::vector<DatasetResult>& datasets,
   std::vector<Table> tables;
   for (const Layout& layout : kLayouts) {
     const bool is_measured = std::ranges::any_of(datasets, [&](const DatasetResult& dataset) {
-      return HasAny(MeansOf(dataset, layout, layout.row_kinds.front()));
+      return CountOf(MeansOf(dataset, layout, layout.row_kinds.front())) > 0;
     });
     if (!is_measured) continue;
     Table table = {layout.name,
@@ -330,9 +276,9 @@ std::vector<Table> PaperTables(const std::vector<DatasetResult>& datasets,
                    3,
                    {kBoldNote, MarksNote()}};
     table.header.insert(table.header.end(), layout.variants.begin(), layout.variants.end());
-    const PublishedTable* const paper = published.Find(layout.number, layout.quantity);
+    const PublishedTable* const paper = published.Find(layout.number, layout.metric);
     AddDatasetRows(datasets, paper, layout, &table);
-    AddAverages(datasets, layout, &table);
+    for (const RowKind& kind : layout.row_kinds) AddAverage(datasets, layout, kind, &table);
     AddDetectorRow(datasets, layout, &table);
     if (paper) {
       table.rows.push_back(PublishedRowOf(paper->average, layout));

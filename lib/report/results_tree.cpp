@@ -14,6 +14,7 @@
 #include "base/run_log.h"
 #include "base/table.h"
 #include "base/text.h"
+#include "model/describe_metrics.h"
 
 namespace soslam {
 
@@ -46,52 +47,28 @@ std::string FirstLineOf(const fs::path& file) {
   return line;
 }
 
-using nlohmann::json;
-
-// Rank in the order of variants; equal for all that are neither the paper's nor ours.
-auto VariantRank(const VariantResult& variant) {
-  return std::ranges::find(kKnownVariants, variant.name) - kKnownVariants.begin();
-}
-
-std::optional<StageTiming> ReadTiming(const fs::path& file) {
-  if (!Exists(file)) return std::nullopt;
-  return ReadDocument<StageTiming>(ParseJsonFile(file), file.string());
-}
-
-std::vector<StageRun> ReadStages(const fs::path& dataset, const fs::path& variant) {
-  std::vector<StageRun> stages;
-  for (const std::string& run : RunsIn(variant / "stages.txt")) {
-    const fs::path folder = dataset / "shared" / run;
-    stages.push_back({StageOf(run), folder, ReadTiming(folder / "timing.json")});
-  }
-  return stages;
-}
-
 VariantResult ReadVariant(const fs::path& dataset, const fs::path& folder, DamagedFiles damaged) {
   VariantResult variant = {folder.filename().string(), folder};
   try {
     if (Exists(folder / "metrics.json")) {
-      variant.metrics = ReadArtefact(folder / "metrics.json", "metrics");
+      variant.metrics = ReadDescribed<Metrics>(folder / "metrics.json", "metrics").body;
     }
-    variant.stages = ReadStages(dataset, folder);
+    for (const std::string& run : RunsIn(folder / "stages.txt")) {
+      StageRun stage = {StageOf(run), dataset / "shared" / run, {}};
+      const fs::path timing = stage.folder / "timing.json";
+      if (Exists(timing)) {
+        stage.timing = ReadDocument<StageTiming>(ParseJsonFile(timing), timing.string());
+      }
+      variant.stages.push_back(std::move(stage));
+    }
     variant.shown_runs = RunsIn(folder / (Exists(folder / ".linked") ? ".linked" : "stages.txt"));
   } catch (const InputError& error) {
     if (damaged == DamagedFiles::kRefused) throw;
-    variant.metrics = json();
+    variant.metrics.reset();
+    variant.stages.clear();
     variant.unreadable = error.what();
   }
   return variant;
-}
-
-std::vector<VariantResult> ReadVariants(const fs::path& dataset, DamagedFiles damaged) {
-  std::vector<VariantResult> variants;
-  for (const std::string& name : SubfoldersOf(dataset)) {
-    const fs::path folder = dataset / name;
-    if (!Exists(folder / "metrics.json") && !Exists(folder / "stages.txt")) continue;
-    variants.push_back(ReadVariant(dataset, folder, damaged));
-  }
-  std::ranges::stable_sort(variants, {}, VariantRank);
-  return variants;
 }
 
 }  // namespace
@@ -100,7 +77,7 @@ std::string FailureIn(const fs::path& run_folder) { return FirstLineOf(run_folde
 
 const VariantResult* DatasetResult::Evaluated(const std::string& variant) const {
   const auto found = std::ranges::find_if(variants, [&](const VariantResult& candidate) {
-    return candidate.name == variant && !candidate.metrics.is_null();
+    return candidate.name == variant && candidate.metrics;
   });
   return found == variants.end() ? nullptr : &*found;
 }
@@ -122,7 +99,16 @@ fs::path DatasetFolderOf(const fs::path& results_of_dataset) {
 std::vector<DatasetResult> ReadResults(const fs::path& results, DamagedFiles damaged) {
   std::vector<DatasetResult> datasets;
   for (const std::string& name : SubfoldersOf(results)) {
-    DatasetResult dataset = {name, ReadVariants(results / name, damaged)};
+    DatasetResult dataset = {name, {}};
+    for (const std::string& variant : SubfoldersOf(results / name)) {
+      const fs::path folder = results / name / variant;
+      if (!Exists(folder / "metrics.json") && !Exists(folder / "stages.txt")) continue;
+      dataset.variants.push_back(ReadVariant(results / name, folder, damaged));
+    }
+    // Variants that are neither the paper's nor ours are equal in rank.
+    std::ranges::stable_sort(dataset.variants, {}, [](const VariantResult& variant) {
+      return std::ranges::find(kKnownVariants, variant.name) - kKnownVariants.begin();
+    });
     if (!dataset.variants.empty()) datasets.push_back(std::move(dataset));
   }
   return datasets;
@@ -148,18 +134,10 @@ DatasetFacts ReadFacts(const DatasetResult& dataset, const fs::path& settings) {
   return facts;
 }
 
-std::optional<double> MetricsNumber(const VariantResult& variant, const std::string& pointer) {
-  const json::json_pointer place(pointer);
-  if (!variant.metrics.contains(place) || variant.metrics.at(place).is_null()) return std::nullopt;
-  return variant.metrics.at(place).get<double>();
-}
-
-ValuesByObject ObjectValues(const VariantResult& variant, const Quantity& quantity) {
-  ValuesByObject values;
-  if (variant.metrics.is_null()) return values;
-  for (const json& object : variant.metrics.at("objects")) {
-    const json& value = object.at(quantity.key);
-    if (!value.is_null()) values.emplace(object.at("object"), value);
+std::map<int, double> ObjectValues(const VariantResult& variant, const ObjectMetric& metric) {
+  std::map<int, double> values;
+  for (const ObjectMetrics& object : variant.metrics->objects) {
+    if (const auto value = metric.of(object).front()) values.emplace(object.object_index, *value);
   }
   return values;
 }

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <fmt/format.h>
-
 #include <array>
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "base/description.h"
 #include "base/process.h"
+#include "model/metric_catalogue.h"
 
 namespace soslam {
 
@@ -92,18 +92,6 @@ inline constexpr std::array kKnownVariants = {"SVD",    "Init1-1", "InitP",  "In
                                               "OursST", "OursSTE", "OursSP", "OursSTEP"};
 inline constexpr std::span kPaperVariants = std::span(kKnownVariants).first<7>();
 
-// An error that metrics.json has for each object and, as a mean over objects, in its summaries.
-struct Quantity {
-  const char* title;  // "Rot deg"
-  const char* key;    // of an object, "rotation_deg"; the key of its mean has the suffix "_mean"
-  const char* file_name;  // as part of the name of a table's files
-  int decimals;
-  bool higher_is_better;
-};
-inline constexpr Quantity kIou = {"IoU", "iou", "iou", 3, true};
-inline constexpr Quantity kRotation = {"Rot deg", "rotation_deg", "rotation", 2, false};
-inline constexpr Quantity kYawError = {"yaw error deg", "yaw_error_deg", "yaw_error", 2, false};
-
 // Run time of a stage, from its timing.json.
 struct StageTiming {
   std::string stage;
@@ -136,8 +124,8 @@ struct StageRun {
 struct VariantResult {
   std::string name;
   std::filesystem::path folder;
-  nlohmann::json metrics = {};        // metrics.json (schemas/metrics.schema.json); null without it
-  std::vector<StageRun> stages = {};  // in the order in which they run; empty without stages.txt
+  std::optional<Metrics> metrics = {};  // metrics.json, with ids for indices; none without it
+  std::vector<StageRun> stages = {};    // in the order in which they run; empty without stages.txt
   // The runs, <stage>-<key>, that produced the other files of the folder; `stages` may be newer.
   std::vector<std::string> shown_runs = {};
   std::string unreadable =
@@ -174,14 +162,8 @@ std::vector<DatasetResult> ReadResults(const std::filesystem::path& results,
 // InputError.
 DatasetFacts ReadFacts(const DatasetResult& dataset, const std::filesystem::path& settings);
 
-// A number of metrics.json by its JSON pointer, "/summary/iou_mean"; none when it is null or
-// absent.
-std::optional<double> MetricsNumber(const VariantResult& variant, const std::string& pointer);
-
-// A quantity of the objects that have it, by their ids in the dataset and in the order of
-// metrics.json.
-using ValuesByObject = nlohmann::ordered_map<int, double>;
-ValuesByObject ObjectValues(const VariantResult& variant, const Quantity& quantity);
+// A metric of the objects that have it, by their ids in the dataset. The variant must have metrics.
+std::map<int, double> ObjectValues(const VariantResult& variant, const ObjectMetric& metric);
 
 // The reason why the variant's folder does not show the planned results: "failed: refine: exit code
 // 3: ..." or "incomplete: refine has not run"; empty if it does, and for folders without

@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,7 +24,7 @@ Table SequencesTable(const std::vector<DatasetResult>& datasets);
 std::vector<Table> QualityTables(const DatasetResult& dataset);
 
 // The true objects that a map misses and its false landmarks, each with the reason.
-Table MistakesTable(const nlohmann::json& metrics);
+Table MistakesTable(const Metrics& metrics);
 
 // Tables over all datasets: maps of some variants compared with all true objects (map_quality in
 // metrics.json). Without rows if no dataset has such a map.
@@ -55,7 +54,7 @@ struct PublishedRow {
 
 struct PublishedTable {
   std::string table;     // its number, "I"
-  std::string quantity;  // Quantity::key
+  std::string quantity;  // Metric::Key
   std::string source;
   std::vector<PublishedRow> rows;  // in the paper's order
   PublishedRow average;            // as printed, not computed from the rows
@@ -82,7 +81,7 @@ struct Published {
   PublishedTimes times;
 
   // Null when there is none.
-  const PublishedTable* Find(const std::string& number, const Quantity& quantity) const;
+  const PublishedTable* Find(const std::string& number, const Metric& metric) const;
 };
 
 template <typename Visitor>
@@ -133,7 +132,7 @@ void Describe(Visitor& visit, Published& published) {
 // Reads pipelines/published.json. Throws InputError.
 Published ReadPublished(const std::filesystem::path& path);
 
-// A quantity averaged over the objects that have it.
+// A metric averaged over the objects that have it.
 struct ObjectMean {
   double mean = 0.0;
   int objects = 0;
@@ -199,6 +198,9 @@ struct PairedDifference {
   // Confidence interval of the mean by Student's t, which assumes independent normal differences of
   // the objects. None for fewer than two objects.
   std::optional<Interval> confidence_95;
+
+  // True if the interval excludes zero.
+  bool IsClear() const;
 };
 
 // The t that the absolute value of a Student variable with this many degrees of freedom (>= 1) does
@@ -208,21 +210,29 @@ double StudentT95(int degrees_of_freedom);
 // Requires at least one difference.
 PairedDifference MeanDifference(const std::vector<double>& differences);
 
+// "+0.245 (+0.194 to +0.296)", bold if the interval excludes zero.
+Cell WithInterval(const PairedDifference& difference, const Metric& metric);
+
 // One row per comparison and dataset with objects to compare, then one over the objects of all
 // datasets with a detector's boxes and one over those of all datasets, each if there are several.
 // Bold: the interval excludes zero.
 Table DifferencesTable(const std::vector<DatasetResult>& datasets,
-                       const std::vector<Comparison>& comparisons, const Quantity& quantity);
+                       const std::vector<Comparison>& comparisons, const ObjectMetric& metric);
 
 // The rows over several datasets alone, with IoU and Rot side by side.
 Table DifferencesOverDatasets(const std::vector<DatasetResult>& datasets,
                               const std::vector<Comparison>& comparisons);
 
-// The effect of each part of the methods, for pairs of neighbouring variants with and without it
-// that both have metrics: with, without (names), objects, and for iou, rotation_deg and
-// yaw_error_deg the mean paired difference and the ends low and high of its 95 % interval (null for
-// fewer than two objects).
-nlohmann::json PageDifferences(const DatasetResult& dataset);
+// The effect of one more part of the methods: the first variant has it, the baseline has not.
+struct PartDifference {
+  Comparison parts;
+  size_t objects = 0;
+  // One for each of kMeanMetrics; none where no object has it with both variants.
+  std::vector<std::optional<PairedDifference>> of_metrics;
+};
+
+// Those of all pairs of neighbouring variants that both have metrics.
+std::vector<PartDifference> PartDifferences(const DatasetResult& dataset);
 
 // A page of prose with tables in it, each between two lines
 //

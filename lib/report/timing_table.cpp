@@ -16,18 +16,16 @@ namespace {
 constexpr std::array kLandmarkStages = {"edges", "track", "initialise", "refine"};
 constexpr const char* kMapStage = "optimise";
 
-std::string MachineText(const StageTiming& timing) {
-  if (!timing.machine) return "not recorded";
-  return fmt::format("{}, {} cores, {} threads", timing.machine->cpu, timing.machine->cores,
-                     timing.threads);
-}
-
 std::string MachineNote(const std::vector<DatasetResult>& datasets) {
   std::set<std::string> machines;
   for (const DatasetResult& dataset : datasets) {
     for (const VariantResult& variant : dataset.variants) {
       for (const StageRun& run : variant.stages) {
-        if (run.timing) machines.insert(MachineText(*run.timing));
+        if (!run.timing) continue;
+        const auto& machine = run.timing->machine;
+        machines.insert(machine ? fmt::format("{}, {} cores, {} threads", machine->cpu,
+                                              machine->cores, run.timing->threads)
+                                : "not recorded");
       }
     }
   }
@@ -35,41 +33,29 @@ std::string MachineNote(const std::vector<DatasetResult>& datasets) {
                      fmt::join(machines, "; "));
 }
 
-struct TimeRow {
-  const char* title;
-  double LandmarkTime::*value;
-};
-constexpr std::array<TimeRow, 3> kTimeRows = {{{"wall ms", &LandmarkTime::wall_ms},
-                                               {"CPU ms", &LandmarkTime::cpu_ms},
-                                               {"observations", &LandmarkTime::observations}}};
-
-// Times in the order of kKnownVariants. Variants share sequences, which can be large: each is read
-// once.
-std::vector<std::optional<LandmarkTime>> TimesOf(const DatasetResult& dataset) {
+// Variants share sequences, which can be large: each is read once.
+void AddMeasuredTimes(const DatasetResult& dataset, Table* table) {
   std::map<std::filesystem::path, SequenceCounts> counts;
-  std::vector<std::optional<LandmarkTime>> times;
+  std::vector<Cell> wall = {dataset.name, "wall ms"}, cpu = {dataset.name, "CPU ms"};
+  std::vector<Cell> observations = {dataset.name, "observations"};
+  bool is_measured = false;
   for (const char* name : kKnownVariants) {
     const VariantResult* const variant = dataset.Evaluated(name);
-    times.emplace_back();
-    if (!variant || !Exists(variant->folder / "sequence.json")) continue;
-    const auto file = std::filesystem::canonical(variant->folder / "sequence.json");
-    if (!counts.contains(file)) counts[file] = CountObservations(file);
-    times.back() = TimePerLandmark(*variant, counts[file]);
-  }
-  return times;
-}
-
-void AddMeasuredTimes(const DatasetResult& dataset, Table* table) {
-  const std::vector<std::optional<LandmarkTime>> times = TimesOf(dataset);
-  const bool any = std::ranges::any_of(times, [](const auto& time) { return time.has_value(); });
-  if (!any) return;
-  for (const TimeRow& time_row : kTimeRows) {
-    std::vector<Cell> row = {dataset.name, time_row.title};
-    for (const auto& time : times) {
-      row.emplace_back(time ? fmt::format("{:.1f}", (*time).*time_row.value) : kNoValue);
+    std::optional<LandmarkTime> time;
+    if (variant && Exists(variant->folder / "sequence.json")) {
+      const auto file = std::filesystem::canonical(variant->folder / "sequence.json");
+      if (!counts.contains(file)) counts[file] = CountObservations(file);
+      time = TimePerLandmark(*variant, counts[file]);
     }
-    table->rows.push_back(std::move(row));
+    const auto add = [&](double LandmarkTime::*value, std::vector<Cell>* row) {
+      row->emplace_back(time ? fmt::format("{:.1f}", (*time).*value) : kNoValue);
+    };
+    add(&LandmarkTime::wall_ms, &wall);
+    add(&LandmarkTime::cpu_ms, &cpu);
+    add(&LandmarkTime::observations, &observations);
+    is_measured |= time.has_value();
   }
+  if (is_measured) table->rows.insert(table->rows.end(), {wall, cpu, observations});
 }
 
 void AddPublishedTimes(const PublishedTimes& published, Table* table) {
@@ -99,23 +85,24 @@ SequenceCounts CountObservations(const std::filesystem::path& sequence_file) {
 
 std::optional<LandmarkTime> TimePerLandmark(const VariantResult& variant,
                                             const SequenceCounts& counts) {
-  if (variant.metrics.is_null()) return std::nullopt;
+  if (!variant.metrics) return std::nullopt;
   const bool is_map =
       std::ranges::find(variant.stages, kMapStage, &StageRun::stage) != variant.stages.end();
-  std::vector<StageRun> runs = variant.stages;
-  std::erase_if(runs, [&](const StageRun& run) {
-    return is_map ? run.stage != kMapStage
-                  : std::ranges::find(kLandmarkStages, run.stage) == kLandmarkStages.end();
-  });
   double wall_s = 0.0, cpu_s = 0.0;
-  for (const StageRun& run : runs) {
+  int runs = 0;
+  for (const StageRun& run : variant.stages) {
+    const bool counts_here =
+        is_map ? run.stage == kMapStage
+               : std::ranges::find(kLandmarkStages, run.stage) != kLandmarkStages.end();
+    if (!counts_here) continue;
     if (!run.timing) return std::nullopt;
     wall_s += run.timing->wall_s;
     cpu_s += run.timing->cpu_s;
+    ++runs;
   }
-  const bool is_single_frame = !variant.metrics.at("first_observation").is_null();
+  const bool is_single_frame = variant.metrics->first_observation.has_value();
   const int landmarks = is_single_frame ? counts.observations : counts.objects;
-  if (runs.empty() || landmarks == 0) return std::nullopt;
+  if (runs == 0 || landmarks == 0) return std::nullopt;
   return LandmarkTime{1e3 * wall_s / landmarks, 1e3 * cpu_s / landmarks,
                       static_cast<double>(counts.observations) / landmarks};
 }

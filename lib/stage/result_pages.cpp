@@ -36,8 +36,8 @@ std::vector<Table> AllTables(const std::vector<DatasetResult>& datasets, const P
   std::ranges::move(PaperTables(datasets, published), std::back_inserter(tables));
   tables.push_back(TimeTable(datasets, published));
   tables.push_back(DifferencesOverDatasets(datasets, comparisons));
-  for (const Quantity& quantity : {kIou, kRotation, kYawError}) {
-    tables.push_back(DifferencesTable(datasets, comparisons, quantity));
+  for (const ObjectMetric& metric : kMeanMetrics) {
+    tables.push_back(DifferencesTable(datasets, comparisons, metric));
   }
   tables.push_back(MapsTable(datasets, maps));
   tables.push_back(LostTable(datasets, maps));
@@ -61,8 +61,8 @@ void RunReport(const ReportOptions& options, const StageFiles& files, int /*thre
   const fs::path settings = files.contains("datasets") ? files.at("datasets") : fs::path();
   std::vector<DatasetResult> datasets = ReadResults(results);
   std::erase_if(datasets, [](const DatasetResult& dataset) {
-    return std::ranges::all_of(
-        dataset.variants, [](const VariantResult& variant) { return variant.metrics.is_null(); });
+    return std::ranges::all_of(dataset.variants,
+                               [](const VariantResult& variant) { return !variant.metrics; });
   });
   if (datasets.empty()) {
     throw NothingUsableError(results.string() +
@@ -111,34 +111,30 @@ ImageSource ImagesIn(const fs::path& dataset, const Sequence& sequence) {
           }};
 }
 
-// Returns the data of the page, and writes the page unless it has nothing to show.
-nlohmann::json WriteDatasetPage(const DatasetResult& result, const fs::path& folder, int threads) {
+// Returns the page, and writes it unless it has nothing to show.
+DatasetPage WriteDatasetPage(const DatasetResult& result, const fs::path& folder, int threads) {
   const auto page_with = [&](const std::string& tables, const nlohmann::json& data) {
     return PageHtml(result.name, tables, data, PageScripts::kDataset);
   };
   const size_t max_data_bytes = kMaxPageBytes - page_with("", {}).size();
   const fs::path dataset = DatasetFolderOf(folder);
-  nlohmann::json data = PageData(
+  DatasetPage page = MakePage(
       result, [&](const Sequence& sequence) { return ImagesIn(dataset, sequence); }, max_data_bytes,
       threads);
   const auto print = [&](const std::string& problem) {
     fmt::print(stderr, "soslam-pages: {}: {}\n", result.name, problem);
   };
-  for (const nlohmann::json& variant : data["unfinished"]) {
-    print(fmt::format("{} {}", variant["name"].get<std::string>(),
-                      variant["state"].get<std::string>()));
+  for (const UnfinishedVariant& variant : page.unfinished) {
+    print(variant.name + " " + variant.state);
   }
-  for (const nlohmann::json& problem : data["problems"]) print(problem.get<std::string>());
-  if (data["variants"].empty()) return data;
-  const std::string tables = DatasetTables(data);
-  data.erase("map_section");
-  const std::string html = page_with(tables, data);
+  for (const std::string& problem : page.problems) print(problem);
+  if (page.variants.empty()) return page;
+  const std::string html = page_with(DatasetTables(page), DataOf(page));
   WriteTextFile(folder / "report.html", html);
   fmt::print("{}: {} variants, {} images, {:.1f} MB\n", (folder / "report.html").string(),
-             data["variants"].size(), data["images"].size(),
-             static_cast<double>(html.size()) / 1e6);
-  data.erase("images");
-  return data;
+             page.variants.size(), page.images.size(), static_cast<double>(html.size()) / 1e6);
+  page.images.clear();
+  return page;
 }
 
 }  // namespace
@@ -148,20 +144,19 @@ void RunPages(const NoOptions& /*options*/, const StageFiles& files, int threads
   if (!IsFolder(results)) {
     throw InputError(results.string() + ": is no folder; expected results of runs");
   }
-  std::vector<nlohmann::json> pages;
+  std::vector<DatasetPage> pages;
   for (const DatasetResult& result : ReadResults(results, DamagedFiles::kNoted)) {
     pages.push_back(WriteDatasetPage(result, results / result.name, threads));
   }
-  const bool shows_something = std::ranges::any_of(
-      pages, [](const nlohmann::json& page) { return !page["variants"].empty(); });
+  const bool shows_something =
+      std::ranges::any_of(pages, [](const DatasetPage& page) { return !page.variants.empty(); });
   if (!shows_something) {
     throw NothingUsableError(results.string() +
                              ": no <dataset>/<variant>/ with a metrics.json and what it is of that "
                              "can be read; expected at least one");
   }
-  const nlohmann::json overview = OverviewData(pages);
-  WriteTextFile(results / "report.html",
-                PageHtml("Results", OverviewTables(overview), overview, PageScripts::kNone));
+  WriteTextFile(results / "report.html", PageHtml("Results", OverviewTables(pages),
+                                                  OverviewData(pages), PageScripts::kNone));
 }
 
 }  // namespace soslam

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "artefact/described_json.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {
@@ -38,20 +39,20 @@ TEST(PageHtml, CarriesTheLicencesOfTheScriptsInIt) {
 
 using nlohmann::json;
 
-json FindingAs(const std::string& severity, const std::string& found) {
-  return {
-      {"check", "camera_against_images"}, {"severity", severity},         {"found", found},
-      {"expected", "640 x 480"},          {"cause", "<img onerror='x'>"}, {"remedy", "scale it"}};
+Finding FindingAs(Severity severity, const std::string& found) {
+  return {"camera_against_images", severity, found, "640 x 480", "<img onerror='x'>", "scale it"};
 }
 
 class PageFindingsTest : public testing::Test {
  protected:
-  void Write(const std::string& variant, const std::string& file, const json& findings) {
+  void Write(const std::string& variant, const std::string& file,
+             const std::vector<Finding>& findings) {
     const std::filesystem::path folder = folder_ / variant;
     if (std::filesystem::create_directories(folder)) {
       dataset_.variants.push_back({.name = variant, .folder = folder});
     }
-    WriteBytes(folder / file, json{{"artefact", {}}, {"findings", findings}}.dump());
+    WriteBytes(folder / file,
+               json{{"artefact", {}}, {"findings", DescribedToJson(findings)}}.dump());
   }
 
   TemporaryFolder folder_;
@@ -59,30 +60,28 @@ class PageFindingsTest : public testing::Test {
 };
 
 TEST_F(PageFindingsTest, EachIsThereOnceErrorsFirst) {
-  const json warning = FindingAs("warning", "1280 x 960"), error = FindingAs("error", "no scale");
-  for (const char* variant : {"InitP", "OursP"})
-    Write(variant, "sequence.json", json::array({warning}));
-  Write("OursP", "map.json", json::array({error}));
-  const json findings = PageFindings(dataset_);
+  const Finding warning = FindingAs(Severity::kWarning, "1280 x 960");
+  for (const char* variant : {"InitP", "OursP"}) Write(variant, "sequence.json", {warning});
+  Write("OursP", "map.json", {FindingAs(Severity::kError, "no scale")});
+  const std::vector<PageFinding> findings = PageFindings(dataset_);
   ASSERT_EQ(findings.size(), 2u);
-  EXPECT_EQ(findings[0]["found"], "no scale");
-  EXPECT_EQ(findings[0]["where"], "map.json of OursP");
-  EXPECT_EQ(findings[1]["where"], "sequence.json of all variants");
-  EXPECT_EQ(findings[1]["remedy"], "scale it");
+  EXPECT_EQ(findings[0].finding.found, "no scale");
+  EXPECT_EQ(findings[0].where, "map.json of OursP");
+  EXPECT_EQ(findings[1].where, "sequence.json of all variants");
+  EXPECT_EQ(findings[1].finding, warning);
 }
 
 TEST_F(PageFindingsTest, WhatIsNoFindingIsNone) {
-  Write("InitP", "sequence.json", json::array());
+  Write("InitP", "sequence.json", {});
   WriteBytes(folder_ / "InitP/initial.json", "[1, 2]");
   WriteBytes(folder_ / "InitP/map.json", "{\"findings\": [");
   WriteBytes(folder_ / "InitP/planes.json", "{}");
-  EXPECT_EQ(PageFindings(dataset_), json::array());
-  EXPECT_EQ(FindingsHtml(json::array()), "");
+  EXPECT_TRUE(PageFindings(dataset_).empty());
+  EXPECT_EQ(FindingsHtml({}), "");
 }
 
 TEST_F(PageFindingsTest, TextsAreEscaped) {
-  Write("<Init>", "sequence.json",
-        json::array({FindingAs("error\" onclick=\"x", "</li><script>")}));
+  Write("<Init>", "sequence.json", {FindingAs(Severity::kError, "\" onclick=\"x</li><script>")});
   const std::string html = FindingsHtml(PageFindings(dataset_));
   EXPECT_THAT(html, AllOf(HasSubstr("&lt;/li&gt;&lt;script&gt;"), HasSubstr("640 x 480"),
                           HasSubstr("&lt;img onerror=&#39;x&#39;&gt;"), HasSubstr("scale it"),

@@ -263,38 +263,41 @@ TEST(EncodeCrop, IsSmallOrEmpty) {
 }
 
 // A page of three variants whose parts have 10 000 bytes each, in at most so many.
-json Fitted(size_t max_bytes) {
+DatasetPage Fitted(size_t max_bytes) {
   const std::string part(10'000, 'x');
-  json data = {{"notes", json::array()}};
-  data["sequences"].push_back({{"frames", part}, {"counts", 3}});
-  data["symmetries"].push_back({{"curves", part}, {"descriptors", 5}});
-  for (const auto& [name, kind] : std::vector<std::pair<std::string, std::string>>{
-           {"SVD", "views"}, {"OursP", "map"}, {"InitP", "frames"}}) {
-    data["variants"].push_back({{"name", name},
-                                {"kind", kind},
-                                {"numbers_only", false},
-                                {"metrics", {{"summary", 1}, {"objects", {1, 2}}}},
-                                {"outlines", part}});
+  DatasetPage page;
+  page.sequences.push_back({{}, {{0}, {0}, {}}, {{"frames", part}, {"counts", 3}}});
+  page.symmetries.push_back({{"curves", part}, {"descriptors", 5}});
+  for (const auto& [name, kind] : {std::pair("SVD", VariantKind::kViews),
+                                   {"OursP", VariantKind::kMap},
+                                   {"InitP", VariantKind::kFrames}}) {
+    PageVariant variant = {name, {}, kind};
+    variant.metrics.summary.objects = 7;
+    variant.objects.resize(2);
+    variant.data = {{"outlines", part}};
+    page.variants.push_back(variant);
   }
-  FitPageData(
-      max_bytes, [](const json& all) { return PageText(all).size(); }, &data);
-  EXPECT_LE(PageText(data).size(), max_bytes + 200);  // the notes
-  for (const json& variant : data["variants"]) EXPECT_EQ(variant["metrics"]["summary"], 1);
-  return data;
+  FitPage(
+      max_bytes, [](const DatasetPage& all) { return PageText(DataOf(all)).size(); }, &page);
+  for (const PageVariant& variant : page.variants) EXPECT_EQ(variant.metrics.summary.objects, 7);
+  return page;
 }
 
-TEST(FitPageData, ReducesSingleFramesFirstAndKeepsNumbersWhateverHappens) {
-  const json some = Fitted(35'000);
-  EXPECT_TRUE(some["variants"][0].contains("outlines"));
-  EXPECT_TRUE(some["variants"][1].contains("outlines"));
-  EXPECT_EQ(some["variants"][2]["numbers_only"], true);
-  EXPECT_FALSE(some["variants"][2].contains("outlines"));
-  EXPECT_EQ(some["notes"].back(), "For lack of room only the numbers of InitP are shown.");
-  EXPECT_FALSE(some["sequences"][0]["frames"].empty());
-  const json numbers = Fitted(1000);
-  EXPECT_EQ(numbers["symmetries"][0]["descriptors"], 5);
-  EXPECT_EQ(numbers["sequences"][0]["counts"], 3);
-  EXPECT_TRUE(numbers["sequences"][0]["frames"].empty());
+TEST(FitPage, ReducesSingleFramesFirstAndKeepsNumbersWhateverHappens) {
+  const DatasetPage some = Fitted(35'000);
+  EXPECT_LE(PageText(DataOf(some)).size(), 35'000 + 200u);  // the notes
+  EXPECT_TRUE(some.variants[0].data.contains("outlines"));
+  EXPECT_TRUE(some.variants[1].data.contains("outlines"));
+  EXPECT_TRUE(some.variants[2].numbers_only);
+  EXPECT_TRUE(some.variants[2].data.empty());
+  EXPECT_TRUE(some.variants[2].objects.empty());
+  EXPECT_EQ(some.notes.back(), "For lack of room only the numbers of InitP are shown.");
+  EXPECT_FALSE(some.sequences[0].data["frames"].empty());
+  const DatasetPage numbers = Fitted(1000);
+  EXPECT_EQ(numbers.symmetries[0]["descriptors"], 5);
+  EXPECT_EQ(numbers.sequences[0].data["counts"], 3);
+  EXPECT_TRUE(numbers.sequences[0].data["frames"].empty());
+  EXPECT_TRUE(numbers.sequences[0].selection.shown.empty());
 }
 
 }  // namespace

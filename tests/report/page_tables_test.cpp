@@ -8,57 +8,42 @@
 namespace soslam {
 namespace {
 
-using nlohmann::json;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-json MetricsOfPage(double iou, const json& ate) {
-  return {{"summary", {{"objects", 2}, {"observations", 9}, {"iou_mean", iou}}},
-          {"first_observation", nullptr},
-          {"trajectory", {{"ate_rmse_m", ate}}},
-          {"objects",
-           {{{"object", 5}, {"observations", 4}, {"iou", 0.75}, {"rotation_deg", nullptr}},
-            {{"object", 6}, {"observations", 5}, {"iou", 0.25}, {"rotation_deg", 3.0}}}}};
+PageVariant VariantOf(const std::string& name, VariantKind kind, double iou) {
+  PageVariant variant = {name, {}, kind};
+  variant.metrics.summary.objects = 2;
+  variant.metrics.summary.observations = 9;
+  variant.metrics.summary.iou_mean = iou;
+  variant.metrics.objects = {{5, 4, 4, 0.75, {}, {}, {}}, {6, 5, 5, 0.25, {}, 3.0, {}}};
+  variant.objects = {{0, 4, Landmark(), {}, ""}, {1, 5, {}, {}, "too_few_views"}};
+  return variant;
 }
 
-json Variant(const std::string& name, const std::string& kind, double iou, const json& ate) {
-  const json objects = {{{"landmark", {1}}, {"failure", ""}, {"observations", 4}},
-                        {{"landmark", nullptr}, {"failure", "too_few_views"}, {"observations", 5}}};
-  return {{"name", name},
-          {"kind", kind},
-          {"numbers_only", false},
-          {"sequence", 0},
-          {"solver", nullptr},
-          {"objects", objects},
-          {"metrics", MetricsOfPage(iou, ate)}};
-}
-
-json Page() {
-  const json objects = {{{"id", 5}, {"label", "chair"}}, {{"id", 6}, {"label", "<cup>"}}};
-  const json sequence = {{"counts", {{"frames", 2}, {"objects", 2}, {"detections", 1}}},
-                         {"frames", {{{"shown", true}}, {{"shown", false}}}},
-                         {"objects", objects},
-                         {"rejected", {{"near_border", 3}}}};
-  json ours = Variant("OursP", "map", 0.5004, 0.0123);
-  ours["solver"] = {{"iterations", 12},
-                    {"converged", true},
-                    {"residuals", {{"detection", 40}}},
-                    {"gated", {{"behind_camera", 2}}}};
-  return {
-      {"dataset", "a & b"},
-      {"url", "a%20b"},
-      {"findings", json::array()},
-      {"unfinished", {{{"name", "SVD"}, {"state", "failed: <x>"}, {"is_shown", false}}}},
-      {"notes", {"a note"}},
-      {"problems", json::array()},
-      {"differences", json::array()},
-      {"map_section", ""},
-      {"has_true_objects", true},
-      {"has_true_poses", true},
-      {"sequences", {sequence}},
-      {"variants",
-       {Variant("InitP", "frames", 0.4, nullptr), ours, Variant("OursS", "map", 0.5, nullptr)}}};
+DatasetPage Page() {
+  DatasetPage page;
+  page.name = "a & b";
+  Sequence sequence;
+  sequence.frames.resize(2);
+  sequence.objects = {{5, "chair", 0, {}}, {6, "<cup>", 0, {}}};
+  sequence.detections.resize(1);
+  sequence.rejected_detections = {{"near_border", 3}};
+  page.sequences.push_back({sequence, {{0, 1}, {0}, {}}, {}});
+  page.unfinished = {{"SVD", "failed: <x>", false}};
+  page.notes = {"a note"};
+  page.has_true_objects = page.has_true_poses = true;
+  page.variants = {VariantOf("InitP", VariantKind::kFrames, 0.4),
+                   VariantOf("OursP", VariantKind::kMap, 0.5004),
+                   VariantOf("OursS", VariantKind::kMap, 0.5)};
+  page.variants[1].metrics.trajectory = {0.0123, 0.0};
+  SolverSummary& solver = page.variants[1].solver.emplace();
+  solver.iterations = 12;
+  solver.converged = true;
+  solver.residuals = {{"detection", 40}};
+  solver.gated = {{"behind_camera", 2}};
+  return page;
 }
 
 TEST(DatasetTables, HaveTheNumbersOfAllVariantsTheBestBold) {
@@ -76,11 +61,10 @@ TEST(DatasetTables, HaveTheNumbersOfAllVariantsTheBestBold) {
 }
 
 TEST(DatasetTables, CountTheDetectionsOfTheVariantThatIsShownFirst) {
-  json page = Page();
-  json others = page["sequences"][0];
-  others["counts"]["detections"] = 7;
-  page["sequences"].push_back(others);
-  page["variants"][2]["sequence"] = 1;
+  DatasetPage page = Page();
+  page.sequences.push_back(page.sequences[0]);
+  page.sequences[1].sequence.detections.resize(7);
+  page.variants[2].sequence = 1;
   EXPECT_EQ(CountsOfDataset(page), "2 frames, 2 objects, 7 detections used by OursS (by others 1)");
   EXPECT_THAT(DatasetTables(page), HasSubstr("7 detections used by OursS (by others 1); 1 frames"));
   EXPECT_EQ(OverviewData({page})["datasets"][0]["counts"], CountsOfDataset(page));
@@ -88,16 +72,11 @@ TEST(DatasetTables, CountTheDetectionsOfTheVariantThatIsShownFirst) {
 
 // Findings may be of other variants than the map above them; notes are no findings.
 TEST(DatasetTables, FindingsHaveTheirPlaceAndNotesAreBelowAll) {
-  json page = Page();
-  page["map_section"] = "<h2>Map of OursS</h2>";
-  page["findings"] = {{{"severity", "warning"},
-                       {"check", "degenerate"},
-                       {"found", "thin"},
-                       {"expected", "thick"},
-                       {"cause", "views"},
-                       {"remedy", "more"},
-                       {"where", "map.json of Quadric"}}};
-  page["notes"] = {"For lack of room images are small."};
+  DatasetPage page = Page();
+  page.map_section = "<h2>Map of OursS</h2>";
+  page.findings = {{{"degenerate", Severity::kWarning, "thin", "thick", "views", "more"},
+                    "map.json of Quadric"}};
+  page.notes = {"For lack of room images are small."};
   const std::string html = DatasetTables(page);
   EXPECT_THAT(html, HasSubstr("1 finding</a> below, in map.json of Quadric<"));
   EXPECT_GT(html.find("For lack of room"), html.rfind("</section>"));
@@ -114,10 +93,32 @@ TEST(DatasetTables, HaveTheObjectsOfEachVariantWorstFirst) {
   EXPECT_THAT(html, Not(HasSubstr("<cup>")));
 }
 
+// The backend's own summary, and what an ablation without a value for some metric shows.
+TEST(DatasetTables, HaveStagesAndDifferences) {
+  DatasetPage page = Page();
+  page.differences = {
+      {{"OursS", "OursP"},
+       3,
+       {PairedDifference{0.25, Interval{0.125, 0.375}}, PairedDifference{-1.5, {}}, std::nullopt}}};
+  EXPECT_THAT(DatasetTables(page),
+              AllOf(HasSubstr("<td>OursP</td><td>1</td><td>1 too few views</td><td>12</td>"
+                              "<td>yes</td><td>40 detection</td><td>2 behind camera</td>"),
+                    HasSubstr("<td>OursS – OursP</td><td>3</td><td class=\"best\">+0.250 (+0.125 "
+                              "to +0.375)</td><td>-1.50</td><td>–</td>")));
+}
+
+TEST(DatasetTables, ObjectsWithoutTruthHaveNoErrorsAndComeLast) {
+  DatasetPage page = Page();
+  page.variants[2].metrics.objects.erase(page.variants[2].metrics.objects.begin());
+  EXPECT_THAT(DatasetTables(page),
+              HasSubstr("<tr data-index=\"0\"><td>chair 5</td><td>4</td><td>–</td><td>–</td>"
+                        "<td>–</td><td>–</td><td>–</td><td></td></tr>\n</tbody>"));
+}
+
 TEST(DetailedVariants, AreThoseWithMostToShowFirst) {
-  json page = Page();
+  DatasetPage page = Page();
   EXPECT_EQ(DetailedVariants(page), (std::vector<size_t>{2, 1, 0}));
-  page["variants"][2]["numbers_only"] = true;
+  page.variants[2].numbers_only = true;
   EXPECT_EQ(DetailedVariants(page), (std::vector<size_t>{1, 0}));
 }
 

@@ -35,6 +35,19 @@ TEST(ReadResults, DatasetsByNameAndVariantsInTheirOrder) {
               ElementsAre("SVD", "OursPT", "MultiView", "OursSTE", "alpha", "zeta"));
 }
 
+// Without their sequence, metrics have the ids and labels of their objects.
+TEST(ReadResults, MetricsNameTheirObjects) {
+  const ResultsFolder results;
+  results.WriteMetrics("room", "OursS", {{.id = 7, .iou = 0.5}, {.id = 9, .observations = 0}});
+  const DatasetResult room = ReadResults(results.path()).front();
+  const Metrics& metrics = *room.variants.front().metrics;
+  EXPECT_EQ(metrics.dataset, "room");
+  EXPECT_EQ(metrics.objects.front().object_index, 7);
+  EXPECT_EQ(metrics.objects.front().label, "box");
+  // An object that was not observed has no error.
+  EXPECT_THAT(ObjectValues(room.variants.front(), kIou), ElementsAre(testing::Pair(7, 0.5)));
+}
+
 TEST(KnownVariants, AreThoseOfThePipelines) {
   for (const auto& file : fs::directory_iterator(SOSLAM_SOURCE_DIR "/pipelines/variants")) {
     EXPECT_THAT(kKnownVariants, testing::Contains(file.path().stem().string()));

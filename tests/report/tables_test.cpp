@@ -4,8 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "artefact/files.h"
 #include "base/error.h"
 #include "base/hash.h"
@@ -19,55 +17,60 @@
 namespace soslam {
 namespace {
 
-// An alignment of a map, as metrics.json has it.
-nlohmann::json Alignment(const char* kind, double scale, int frames, double rmse_m) {
-  return {{"kind", kind}, {"scale", scale}, {"frames", frames}, {"rmse_m", rmse_m}};
+Alignments OneAlignment(AlignmentKind kind, double scale, int frames,
+                        std::optional<double> rmse_m) {
+  return {{{0, {kind, CameraPath::kGeneral, scale, {}, frames, rmse_m}}}};
 }
 
-nlohmann::json Score(int found, double f1) {
-  return {{"true_objects", 4},
-          {"detectable", 3},
-          {"landmarks", 5},
-          {"ignored", 1},
-          {"found", found},
-          {"precision", 0.875},
-          {"recall", 0.625},
-          {"f1", f1},
-          {"recall_of_detectable", 0.75},
-          {"of_found",
-           {{"iou_mean", 0.5},
-            {"centre_m_mean", 0.125},
-            {"centre_relative_mean", 0.25},
-            {"log_size_abs_mean", {0.1, 0.2, nullptr}},
-            {"log_scale_abs_mean", 0.0625},
-            {"yaw_error_deg_mean", nullptr},
-            {"up_error_deg_mean", 1.5},
-            {"plane_offset_m_abs_mean", 0.01},
-            {"plane_tilt_deg_mean", 2.5},
-            {"labels_agree", 2},
-            {"ids_known", 3},
-            {"ids_agree", 1}}}};
+MapScore Score(int found, double f1) {
+  MapScore score;
+  score.true_objects = 4;
+  score.detectable = 3;
+  score.landmarks = 5;
+  score.ignored = 1;
+  score.found = found;
+  score.precision = 0.875;
+  score.recall = 0.625;
+  score.f1 = f1;
+  score.recall_of_detectable = 0.75;
+  FoundSummary& of_found = score.of_found;
+  of_found.iou_mean = 0.5;
+  of_found.centre_m_mean = 0.125;
+  of_found.centre_relative_mean = 0.25;
+  of_found.log_size_abs_mean = {0.1, 0.2, std::nullopt};
+  of_found.log_scale_abs_mean = 0.0625;
+  of_found.up_error_deg_mean = 1.5;
+  of_found.plane_offset_m_abs_mean = 0.01;
+  of_found.plane_tilt_deg_mean = 2.5;
+  of_found.labels_agree = 2;
+  of_found.ids_known = 3;
+  of_found.ids_agree = 1;
+  return score;
 }
 
-nlohmann::json FalseLandmark(int id, const std::string& label, const nlohmann::json& true_object,
-                             const std::string& reason) {
-  return {{"object", id},     {"label", label}, {"fate", "false"}, {"true_object", true_object},
-          {"reason", reason}, {"detail", ""}};
+LandmarkRow FalseLandmark(int id, const std::string& label, std::optional<int> true_object,
+                          MapReason reason) {
+  LandmarkRow row;
+  row.object_index = id;
+  row.label = label;
+  row.true_index = true_object;
+  row.why_false = Explanation{reason, ""};
+  return row;
 }
 
-// What tables read of the metrics.json of a map: a cup that is missed, and a television that is
-// false.
-nlohmann::json MapMetrics(const nlohmann::json& alignments) {
-  return {
-      {"odometry_source", "ORB-SLAM2"},
-      {"map_quality",
-       {{"alignments", alignments},
-        {"scores", {Score(3, 0.75), Score(2, 0.5)}},
-        {"in_frames", {{"iou_mean", 0.625}, {"iou_mean_in_world", 0.5}}},
-        {"objects",
-         {{{"true_object", 7}, {"label", "cup"}, {"reason", "not_detected"}, {"detail", "0 of 9"}},
-          {{"true_object", 8}, {"label", "book"}, {"reason", nullptr}, {"detail", nullptr}}}},
-        {"landmarks", nlohmann::json::array({FalseLandmark(2, "tv", nullptr, "background")})}}}};
+// What tables read of the metrics of a map: a cup that is missed, and a television that is false.
+Metrics MapMetrics(const Alignments& alignments) {
+  Metrics metrics;
+  metrics.odometry_source = "ORB-SLAM2";
+  MapQuality& quality = metrics.map_quality.emplace();
+  quality.alignments = alignments;
+  quality.scores = {Score(3, 0.75), Score(2, 0.5)};
+  quality.in_frames.iou_mean = 0.625;
+  quality.in_frames.iou_mean_in_world = 0.5;
+  quality.objects = {{7, 0, false, {}, Explanation{MapReason::kNotDetected, "0 of 9"}, "cup"},
+                     {8, 9, true, {}, {}, "book"}};
+  quality.landmarks = {FalseLandmark(2, "tv", {}, MapReason::kBackground)};
+  return metrics;
 }
 
 using testing::ElementsAre;
@@ -107,17 +110,11 @@ TEST(DatasetFacts, AllDatasetsOfTheProjectAreDescribed) {
 }
 
 TEST(DatasetTable, HasTheNumbersOfEachVariantAndOfTheOdometry) {
-  const nlohmann::json summary = {{"objects", 8},
-                                  {"observations", 247},
-                                  {"iou_mean", 0.34678},
-                                  {"rotation_deg_mean", 7.1016},
-                                  {"yaw_error_deg_mean", 22.874}};
-  const nlohmann::json first = {{"iou_mean", 0.4053}, {"rotation_deg_mean", nullptr}};
-  const nlohmann::json trajectory = {{"ate_rmse_m", 0.01234}, {"odometry_ate_rmse_m", 0.05678}};
-  const Table table =
-      DatasetTable({"room",
-                    {{"InitP", {}, {{"summary", summary}, {"first_observation", first}}},
-                     {"OursS", {}, {{"summary", summary}, {"trajectory", trajectory}}}}});
+  Metrics single_frames, map;
+  single_frames.summary = map.summary = {8, 247, 0.34678, {}, 7.1016, {}, 22.874, {}};
+  single_frames.first_observation.emplace().iou_mean = 0.4053;
+  map.trajectory = {0.01234, 0.05678};
+  const Table table = DatasetTable({"room", {{"InitP", {}, single_frames}, {"OursS", {}, map}}});
   const std::vector<std::string> rows = CellTexts(table);
   EXPECT_THAT(rows, testing::IsSupersetOf(
                         {"InitP 8 247 0.347 0.405 7.10 - 22.87 -", "Quadric - - - - - - - -"}));
@@ -133,33 +130,28 @@ TEST(SequencesTable, HasARowForEachCountedDataset) {
               ElementsAre("room a network - - r 4 3 1"));
 }
 
-using nlohmann::json;
 using testing::IsEmpty;
 
-const json kExact = json::array({Alignment("none", 1.0, 3, 0.0)});
+const Alignments kExact = OneAlignment(AlignmentKind::kNone, 1.0, 3, 0.0);
 
-json InFrames(double place) {
-  return {{"landmarks", 3},
-          {"iou_mean", 0.625},
-          {"what_if", {{"yaw", 0.75}, {"quarter_turn", 0.625}, {"place", place}, {"size", 1.0}}}};
+const WhatIf kWhatIf = {.yaw = 0.75, .quarter_turn = 0.625, .place = 0.875, .size = 1.0};
+
+LandmarkRow FoundLandmark(int true_object, const std::optional<InFrames>& in_frames) {
+  LandmarkRow row;
+  row.object_index = 5;
+  row.label = "bowl";
+  row.fate = LandmarkFate::kFound;
+  row.true_index = true_object;
+  row.in_frames = in_frames;
+  row.errors = BodyErrors();
+  row.errors->iou = 0.5;
+  row.errors->centre_m = 0.25;
+  row.errors->log_size = {0.5, -0.25, 0.0};
+  return row;
 }
 
-json FoundLandmark(int true_object, const json& in_frames) {
-  return {{"object", 5},
-          {"label", "bowl"},
-          {"fate", "found"},
-          {"true_object", true_object},
-          {"reason", nullptr},
-          {"detail", nullptr},
-          {"in_frames", in_frames},
-          {"errors",
-           {{"iou", 0.5},
-            {"centre_m", 0.25},
-            {"log_size", {0.5, -0.25, 0.0}},
-            {"yaw_error_deg", nullptr}}}};
-}
-
-std::vector<DatasetResult> OneMap(const json& metrics, const std::filesystem::path& folder = {}) {
+std::vector<DatasetResult> OneMap(const Metrics& metrics,
+                                  const std::filesystem::path& folder = {}) {
   return {{"room", {{"OursS", folder, metrics}}}};
 }
 
@@ -175,20 +167,20 @@ TEST(MapsTable, SaysWhatTheVariantWasGiven) {
 
 // The landmark of a missed object is not listed again.
 TEST(LostTable, JoinsTheObjectsOfAReason) {
-  json metrics = MapMetrics(kExact);
-  metrics["map_quality"]["objects"].push_back(
-      {{"true_object", 9}, {"label", "can"}, {"reason", "not_detected"}, {"detail", ""}});
-  metrics["map_quality"]["landmarks"].push_back(FalseLandmark(1, "jar", 7, "wrong_size"));
-  metrics["map_quality"]["landmarks"].push_back(FalseLandmark(3, "jar", 8, "duplicate"));
+  Metrics metrics = MapMetrics(kExact);
+  metrics.map_quality->objects.push_back(
+      {9, 0, false, {}, Explanation{MapReason::kNotDetected, ""}, "can"});
+  metrics.map_quality->landmarks.push_back(FalseLandmark(1, "jar", 7, MapReason::kWrongSize));
+  metrics.map_quality->landmarks.push_back(FalseLandmark(3, "jar", 8, MapReason::kDuplicate));
   EXPECT_THAT(CellTexts(LostTable(OneMap(metrics), {"OursS"})),
               ElementsAre("room OursS missed not detected cup 7, can 9",
                           "room OursS false background tv 2", "room OursS false duplicate jar 3"));
 }
 
 TEST(LimitsTable, HasTheFoundLandmarks) {
-  json metrics = MapMetrics(kExact);
-  metrics["map_quality"]["landmarks"].push_back(FoundLandmark(8, InFrames(0.875)));
-  metrics["map_quality"]["landmarks"].push_back(FoundLandmark(6, nullptr));
+  Metrics metrics = MapMetrics(kExact);
+  metrics.map_quality->landmarks.push_back(FoundLandmark(8, InFrames{3, 0.625, 0.0, kWhatIf}));
+  metrics.map_quality->landmarks.push_back(FoundLandmark(6, {}));
   const Table table = LimitsTable(OneMap(metrics), {"OursS"});
   EXPECT_THAT(
       CellTexts(table),
@@ -198,24 +190,25 @@ TEST(LimitsTable, HasTheFoundLandmarks) {
 }
 
 TEST(WhatIfTable, HasMapsAndSingleFrames) {
-  json map = MapMetrics(kExact);
-  map["map_quality"]["in_frames"] = InFrames(0.875);
-  json single_frames = {{"summary", InFrames(0.5)}};
-  single_frames["summary"]["objects"] = 2;
-  json without = {{"summary", {{"what_if", nullptr}}}};
+  Metrics map = MapMetrics(kExact);
+  map.map_quality->in_frames = {3, 0.625, 0.5, {}, {}, kWhatIf};
+  Metrics single_frames, without;
+  single_frames.summary.objects = 2;
+  single_frames.summary.iou_mean = 0.5;
+  single_frames.summary.what_if = kWhatIf;
   const Table table = WhatIfTable(
       {{"room", {{"OursS", {}, map}, {"InitSTE", {}, single_frames}, {"SVD", {}, without}}}},
       {"SVD", "InitSTE", "OursS", "OursSTE"});
-  EXPECT_THAT(CellTexts(table), ElementsAre("room InitSTE 2 0.625 0.750 0.625 0.500 1.000",
+  EXPECT_THAT(CellTexts(table), ElementsAre("room InitSTE 2 0.500 0.750 0.625 0.875 1.000",
                                             "room OursS 3 0.625 0.750 0.625 0.875 1.000"));
   EXPECT_EQ(table.header.size(), table.rows.front().size());
 }
 
 TEST(QualityTables, HaveARowForEachMap) {
-  const auto tables =
-      QualityTables({"room",
-                     {{"InitP", {}, json::object()},
-                      {"OursS", {}, MapMetrics(json::array({Alignment("rigid", 1.0, 9, 0.25)}))}}});
+  const auto tables = QualityTables(
+      {"room",
+       {{"InitP", {}, Metrics()},
+        {"OursS", {}, MapMetrics(OneAlignment(AlignmentKind::kRigid, 1.0, 9, 0.25))}}});
   ASSERT_EQ(tables.size(), 2u);
   EXPECT_EQ(tables[0].name, "map_quality_room");
   EXPECT_THAT(CellTexts(tables[0]),
@@ -230,23 +223,22 @@ TEST(QualityTables, HaveARowForEachMap) {
 }
 
 TEST(QualityTables, TitlesSayWhatAlignedTheMaps) {
-  const auto title = [](const std::vector<json>& alignments) {
+  const auto title = [](const std::vector<Alignments>& alignments) {
     DatasetResult road{"road", {}};
-    for (const json& of_map : alignments) {
+    for (const Alignments& of_map : alignments) {
       road.variants.push_back({"OursS", {}, MapMetrics(of_map)});
     }
     const std::string text = QualityTables(road)[0].title;
     return text.substr(text.find("alignment"));
   };
+  Alignments two_segments = OneAlignment(AlignmentKind::kNone, 1.0, 3, 0.1);
+  two_segments.of_segment[1] = {AlignmentKind::kNone, CameraPath::kGeneral, 1.0, {}, 1, 0.5};
   // sqrt((3 * 0.01 + 0.25) / 4)
-  EXPECT_EQ(title({{Alignment("none", 1.0, 3, 0.1), Alignment("none", 1.0, 1, 0.5)}}),
-            "alignment none, cameras 0.2646 m from the true ones");
-  EXPECT_EQ(
-      title({{Alignment("similarity", 2.5, 9, 0.25)}, {Alignment("similarity", 2.0, 9, 0.5)}}),
-      "alignment similarity, scale 2 to 2.5, cameras 0.25 to 0.5 m from the true ones");
-  json unknown = Alignment("none", 1.0, 0, 0.0);
-  unknown["rmse_m"] = nullptr;
-  EXPECT_EQ(title({{unknown}}), "alignment none");
+  EXPECT_EQ(title({two_segments}), "alignment none, cameras 0.2646 m from the true ones");
+  EXPECT_EQ(title({OneAlignment(AlignmentKind::kSimilarity, 2.5, 9, 0.25),
+                   OneAlignment(AlignmentKind::kSimilarity, 2.0, 9, 0.5)}),
+            "alignment similarity, scale 2 to 2.5, cameras 0.25 to 0.5 m from the true ones");
+  EXPECT_EQ(title({OneAlignment(AlignmentKind::kNone, 1.0, 0, {})}), "alignment none");
 }
 
 class TimingTableTest : public testing::Test {

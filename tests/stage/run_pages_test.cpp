@@ -398,9 +398,9 @@ TEST_F(RunPagesTest, NamesAreTextWhateverTheyHold) {
 
 TEST_F(RunPagesTest, FindingsAreAtTheTopOfPageAndOverview) {
   WriteMultiView("MultiView");
-  const json finding = {{"check", "up"}, {"severity", "error"}, {"found", "looks <down>"}};
+  const Finding finding = {"up", Severity::kError, "looks <down>", "up", "cameras", "turn them"};
   WriteBytes(Folder("MultiView") / "planes.json",
-             json{{"findings", json::array({finding})}}.dump());
+             json{{"findings", DescribedToJson(std::vector{finding})}}.dump());
   Run();
   for (const fs::path& page : {Page(), results_.path() / "report.html"}) {
     const std::string html = FileBytes(page);
