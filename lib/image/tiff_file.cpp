@@ -184,7 +184,7 @@ std::string ExifTimeTaken(std::string_view exif) {
 namespace {
 
 // TIFF 6.0, section 8 and "Tiled images".
-constexpr std::uint64_t kWidth = 256, kHeight = 257, kBitsPerSample = 258;
+constexpr std::uint64_t kWidth = 256, kHeight = 257, kBitsPerSample = 258, kCompression = 259;
 constexpr std::uint64_t kStripOffsets = 273, kStripByteCounts = 279;
 constexpr std::uint64_t kTileWidth = 322, kTileHeight = 323, kTileOffsets = 324;
 constexpr std::uint64_t kTileByteCounts = 325;
@@ -192,9 +192,10 @@ constexpr std::uint64_t kTileByteCounts = 325;
 bool IsTiff(std::string_view first_bytes) { return OrderOf(first_bytes.substr(0, 4)).has_value(); }
 
 // Header of the first page. libtiff, too, takes the first of two entries with the same tag; it
-// allocates whole tiles.
+// allocates whole tiles. What is packed in an unknown way becomes black without an error.
 std::optional<ImageHeader> Header(const ImageBytes& file) {
   constexpr std::uint64_t kMaxBits = 16, kMaxTileSide = 1 << 13;
+  constexpr std::uint64_t kCompressions[] = {1, 5, 7, 8, 32773, 32946};  // none, LZW, JPEG, ...
   const auto directory = TiffDirectory::Read(file);
   if (!directory) return std::nullopt;
   const auto is_at_most = [&](std::uint64_t tag, std::uint64_t most) {
@@ -202,7 +203,10 @@ std::optional<ImageHeader> Header(const ImageBytes& file) {
   };
   const auto width = directory->Number(kWidth);
   const auto height = directory->Number(kHeight);
+  const auto compression =
+      directory->Count(kCompression) == 0 ? 1 : directory->Number(kCompression).value_or(0);
   if (!width || !height || !is_at_most(kBitsPerSample, kMaxBits) ||
+      std::ranges::count(kCompressions, compression) == 0 ||
       !is_at_most(kTileWidth, kMaxTileSide) || !is_at_most(kTileHeight, kMaxTileSide)) {
     return std::nullopt;
   }
@@ -265,7 +269,7 @@ std::optional<size_t> Length(std::string_view file) {
   const bool is_tiled = directory->Count(kTileOffsets) > 0;
   const auto places = directory->Find(is_tiled ? kTileOffsets : kStripOffsets);
   const auto lengths = directory->Find(is_tiled ? kTileByteCounts : kStripByteCounts);
-  if (!places || !lengths) return std::nullopt;
+  if (!places || !lengths || places->count != lengths->count) return std::nullopt;
   for (std::uint64_t i = 0; i < places->count; ++i) {
     const auto begin = directory->Number(*places, i);
     const auto length = directory->Number(*lengths, i);

@@ -252,6 +252,10 @@ TEST_F(ReadImageTest, OtherFormatsAreRefused) {
                                                 24));
   ExpectRefused(heif, {"is an HEIF image", "expected a JPEG"});
   ExpectRefused(Write("a.tiff", EncodedImage(".tiff", cv::Mat(8, 8, CV_32FC1, 0.5))), {"TIFF"});
+  std::string tiff = GreyTiff(TestImage(), 1, ByteOrder::kLittleEndian);
+  tiff.replace(8 + 2 + 3 * 12 + 8, 2,
+               NumberBytes(513, 2, ByteOrder::kLittleEndian));  // compression
+  ExpectRefused(Write("a.tiff", tiff), {"TIFF"});
 }
 
 const cv::Mat kThumbnail(6, 8, CV_8UC1, cv::Scalar(50));
