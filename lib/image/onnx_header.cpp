@@ -138,7 +138,9 @@ OnnxHeader ReadOnnxHeader(std::string_view bytes, const std::string& name) {
     constexpr size_t kMaxBytes = std::numeric_limits<int>::max();
     if (bytes.size() > kMaxBytes ||
         !model.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
-      throw InputError("its messages are cut short, malformed or nested too deep");
+      throw InputError(fmt::format(
+          "its {} bytes are cut short, malformed or nested too deep; expected a complete ONNX file",
+          bytes.size()));
     }
     return HeaderOf(model);
   } catch (const InputError& error) {
