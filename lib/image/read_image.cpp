@@ -108,8 +108,9 @@ cv::Mat ReadImage(const std::filesystem::path& path, int mode, ImageOrientation 
     throw InputError(fmt::format("{}: cannot be decoded: {}", path.string(), error.err));
   }
   if (stored.cols != header.stored.width || stored.rows != header.stored.height) {
-    throw InputError(fmt::format("{}: cannot be decoded; expected an intact {} image",
-                                 path.string(), format->name));
+    throw InputError(fmt::format(
+        "{}: cannot be decoded; expected an intact {} image, not one cut short or of a rare kind",
+        path.string(), format->name));
   }
   const bool is_upright = orientation == ImageOrientation::kUpright;
   cv::Mat image = is_upright ? Turned(stored, ExifTurn(header.orientation)) : stored;
