@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "base/table.h"
 #include "geometry/angles.h"
 
 namespace soslam {
@@ -21,13 +20,13 @@ bool Metric::IsBetter(double value, double other) const {
   return more_is_better ? value > other : value < other;
 }
 
-std::string Metric::Text(const std::optional<double>& value) const {
-  return value ? fmt::format("{:.{}f}", *value, decimals) : kNoValue;
+std::string Metric::Text(const std::optional<double>& value, const char* none) const {
+  return value ? fmt::format("{:.{}f}", *value, decimals) : none;
 }
 
-std::string Metric::Text(const MetricValues& values) const {
+std::string Metric::Text(const MetricValues& values, const char* none) const {
   std::string text;
-  for (const auto& value : values) text += (text.empty() ? "" : ", ") + Text(value);
+  for (const auto& value : values) text += (text.empty() ? "" : ", ") + Text(value, none);
   return text;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/table.h"
 #include "model/estimates.h"
 #include "model/metrics.h"
 
@@ -25,9 +26,9 @@ struct Metric {
   std::string Key() const;     // name with unit, "rotation_deg"
   std::string Header() const;  // title with unit, "Rot deg"
   bool IsBetter(double value, double other) const;
-  // "7.10"; kNoValue for none. Several values are divided by commas.
-  std::string Text(const std::optional<double>& value) const;
-  std::string Text(const MetricValues& values) const;
+  // "7.10"; `none` where there is no value. Several values are divided by commas.
+  std::string Text(const std::optional<double>& value, const char* none = kNoValue) const;
+  std::string Text(const MetricValues& values, const char* none = kNoValue) const;
 };
 
 // A metric of a part of what was read. It has one value, or one for each axis.

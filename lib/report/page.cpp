@@ -106,7 +106,15 @@ class PageMaker {
     bool is_shown = false;
     if (result.metrics) {
       try {
-        AddEstimates(result);
+        const size_t index = IndexOfSequence(result.folder / "sequence.json");
+        const ShownSequence& shown = page_.sequences[index];
+        PageVariant variant = ReadPageVariant(result, shown.sequence, shown.selection);
+        variant.sequence = index;
+        if (ShowsStage(result, "refine", "symmetry.h5")) {
+          variant.symmetry = IndexOfSymmetry(result.folder / "symmetry.h5", shown);
+        }
+        page_.variants.push_back(std::move(variant));
+        folders_.push_back(result.folder);
         is_shown = true;
       } catch (const InputError& error) {
         state = fmt::format("failed: {}", error.what());
@@ -136,18 +144,6 @@ class PageMaker {
           Utf8(fmt::format("the map from above cannot be shown: {}", error.what())));
       return "";
     }
-  }
-
-  void AddEstimates(const VariantResult& result) {
-    const size_t index = IndexOfSequence(result.folder / "sequence.json");
-    const ShownSequence& shown = page_.sequences[index];
-    PageVariant variant = ReadPageVariant(result, shown.sequence, shown.selection);
-    variant.sequence = index;
-    if (ShowsStage(result, "refine", "symmetry.h5")) {
-      variant.symmetry = IndexOfSymmetry(result.folder / "symmetry.h5", shown);
-    }
-    page_.variants.push_back(std::move(variant));
-    folders_.push_back(result.folder);
   }
 
   size_t IndexOfSequence(const fs::path& file) {

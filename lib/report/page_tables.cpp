@@ -21,10 +21,6 @@ namespace {
 
 constexpr const char* kDash = "–";
 
-std::string TextOrDash(const Metric& metric, const std::optional<double>& value) {
-  return value ? metric.Text(value) : kDash;
-}
-
 // "Rot, °"
 std::string HeaderOnPage(const Metric& metric) {
   const std::string unit = metric.unit;
@@ -80,7 +76,7 @@ std::string MetricsTable(const DatasetPage& page, const std::optional<VariantKin
     if (!best) return;
     table.header.push_back(title);
     for (size_t i = 0; i < variants.size(); ++i) {
-      const std::string text = TextOrDash(metric, value_of(variants[i]->metrics));
+      const std::string text = metric.Text(value_of(variants[i]->metrics), kDash);
       table.rows[i].emplace_back(text, text == metric.Text(best));
     }
   };
@@ -177,11 +173,9 @@ std::string ObjectsTable(const Sequence& sequence, const PageVariant& variant,
     has_failures |= !variant.objects[i].failure.empty();
     rows.push_back(std::move(row));
   }
-  const auto error = [](const std::optional<ObjectMetrics>& metrics, const ObjectMetric& metric) {
-    return metrics ? metric.of(*metrics).front() : std::nullopt;
-  };
-  std::ranges::stable_sort(rows, {}, [&](const Row& row) {
-    return error(row.metrics, kIou).value_or(std::numeric_limits<double>::infinity());
+  std::ranges::stable_sort(rows, {}, [](const Row& row) {
+    const auto iou = row.metrics ? kIou.of(*row.metrics).front() : std::nullopt;
+    return iou.value_or(std::numeric_limits<double>::infinity());
   });
   Table table;
   table.header = {"object", "observations"};
@@ -199,12 +193,13 @@ std::string ObjectsTable(const Sequence& sequence, const PageVariant& variant,
         std::to_string(metrics ? metrics->observations : estimate.observations)};
     if (has_true_objects) {
       for (const ObjectMetric& metric : kObjectMetrics) {
-        row.emplace_back(TextOrDash(metric, error(metrics, metric)));
+        row.emplace_back(metrics ? metric.Text(metric.of(*metrics), kDash) : kDash);
       }
     }
     for (const auto& metric : kEstimateMetrics) {
-      const std::optional<double> value = metric.of(estimate).front();
-      row.emplace_back(TextOrDash(metric, value ? OnPage(*value) : std::nullopt));
+      MetricValues values = metric.of(estimate);
+      for (auto& value : values) value = value ? OnPage(*value) : value;
+      row.emplace_back(metric.Text(values, kDash));
     }
     if (has_failures) row.emplace_back(WithBlanks(estimate.failure));
     table.rows.push_back(std::move(row));

@@ -166,11 +166,8 @@ void ReadAbout(const std::filesystem::path& settings, DatasetFacts* facts) {
   const nlohmann::json about =
       document.is_object() ? document.value("about", nlohmann::json()) : nlohmann::json();
   if (about.is_null()) return;
-  const auto counts = facts->counts;
-  const std::string odometry = facts->odometry;
-  *facts = ReadDocument<DatasetFacts>(about, settings.string() + ": about");
-  facts->counts = counts;
-  facts->odometry = odometry;
+  static_cast<AboutDataset&>(*facts) =
+      ReadDocument<AboutDataset>(about, settings.string() + ": about");
 }
 
 std::string MarksOf(const DatasetFacts& facts, int objects) {

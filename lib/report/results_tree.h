@@ -27,12 +27,8 @@ enum class BoxesOf { kDetector, kSimulation, kLabels };
 inline constexpr std::array kBoxesOfNames = {"detector", "simulation", "labels"};
 inline constexpr const auto& NamesOf(BoxesOf) { return kBoxesOfNames; }
 
-// What tables say of a dataset beside its name.
-struct DatasetFacts {
-  std::optional<DatasetCounts> counts = std::nullopt;  // none without a sequence.json
-  std::string odometry = {};                           // origin of the pose estimates
-
-  // The field "about" of the dataset's settings (schemas/about.schema.json).
+// The field "about" of pipelines/datasets/<name>.json (schemas/about.schema.json).
+struct AboutDataset {
   std::optional<BoxesOf> boxes_of = {};  // none: not said
   std::string boxes = {};
   std::string annotation = {};
@@ -43,20 +39,25 @@ struct DatasetFacts {
   bool HasDetectorBoxes() const { return boxes_of == BoxesOf::kDetector; }
 };
 
-// The field "about" of pipelines/datasets/<name>.json.
+// What tables say of a dataset beside its name.
+struct DatasetFacts : AboutDataset {
+  std::optional<DatasetCounts> counts = std::nullopt;  // none without a sequence.json
+  std::string odometry = {};                           // origin of the pose estimates
+};
+
 template <typename Visitor>
-void Describe(Visitor& visit, DatasetFacts& facts) {
-  visit.OrAbsent("boxes_of", &facts.boxes_of,
+void Describe(Visitor& visit, AboutDataset& about) {
+  visit.OrAbsent("boxes_of", &about.boxes_of,
                  "kind of boxes; means over all datasets with a detector's boxes "
                  "have rows of their own");
-  visit.OrAbsent("boxes", &facts.boxes, "whose boxes: names of detectors", kNotEmpty);
-  visit.OrAbsent("annotation", &facts.annotation, "who measured the objects, and how", kNotEmpty);
-  visit.OrAbsent("partly_annotated", &facts.partly_annotated,
+  visit.OrAbsent("boxes", &about.boxes, "whose boxes: names of detectors", kNotEmpty);
+  visit.OrAbsent("annotation", &about.annotation, "who measured the objects, and how", kNotEmpty);
+  visit.OrAbsent("partly_annotated", &about.partly_annotated,
                  "true: things of the same kinds stand there that nobody has measured");
-  visit.OrAbsent("published", &facts.published,
+  visit.OrAbsent("published", &about.published,
                  "dataset of the publication whose rows stand below, where it has another name",
                  kNotEmpty);
-  visit.OrAbsent("differs", &facts.differs, "in what it differs from that", kNotEmpty);
+  visit.OrAbsent("differs", &about.differs, "in what it differs from that", kNotEmpty);
 }
 
 // Reads the field "about" of a file of settings, if it is there and has one. Throws InputError.

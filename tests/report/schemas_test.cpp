@@ -36,7 +36,7 @@ std::map<std::string, std::string> GeneratedSchemas() {
   add("run", "one run of a stage: what it was made with and from", RunSchema());
   add("timing", "how long one run of a stage took", SchemaWriter::Of<StageTiming>());
   add("about", "what tables say of a dataset: the field about of its settings",
-      SchemaWriter::Of<DatasetFacts>());
+      SchemaWriter::Of<AboutDataset>());
   add("published", "values that a publication prints, beside measured ones",
       SchemaWriter::Of<Published>());
   add("furniture_labels", "which models of a furniture catalogue count as which label",
