@@ -118,12 +118,21 @@ constexpr std::array kArtefacts = {"sequence.json", "world.json",   "association
                                    "planes.json",   "initial.json", "refined.json",
                                    "map.json",      "metrics.json"};
 
-// Empty for a file that cannot be read; the page lists such files elsewhere.
+// Empty for a file that cannot be read; the page lists such files elsewhere. Damaged findings are a
+// finding.
 std::vector<Finding> FindingsIn(const fs::path& file) {
+  json document;
   try {
-    return FindingsOf(ParseJsonFile(file));
+    document = ParseJsonFile(file);
   } catch (const InputError&) {
-    return {};
+  }
+  if (!document.is_object()) return {};
+  try {
+    return FindingsOf(document);
+  } catch (const InputError& error) {
+    return {{"findings", Severity::kWarning, error.what(), "findings as its stage writes them",
+             "a file that was edited, or written by another version",
+             "run the stage that made it again"}};
   }
 }
 

@@ -80,6 +80,15 @@ TEST_F(PageFindingsTest, WhatIsNoFindingIsNone) {
   EXPECT_EQ(FindingsHtml({}), "");
 }
 
+TEST_F(PageFindingsTest, DamagedFindingsAreNamed) {
+  Write("InitP", "planes.json", {});
+  WriteBytes(folder_ / "InitP/planes.json", R"({"findings": [{"check": "up"}]})");
+  const std::vector<PageFinding> findings = PageFindings(dataset_);
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_THAT(findings[0].finding.found, HasSubstr("severity"));
+  EXPECT_EQ(findings[0].where, "planes.json of all variants");
+}
+
 TEST_F(PageFindingsTest, TextsAreEscaped) {
   Write("<Init>", "sequence.json", {FindingAs(Severity::kError, "\" onclick=\"x</li><script>")});
   const std::string html = FindingsHtml(PageFindings(dataset_));
