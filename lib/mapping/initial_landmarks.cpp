@@ -24,11 +24,13 @@ namespace {
 constexpr double kYawBin = 6.0 * kRadPerDeg;
 constexpr double kYawStep = 3.0 * kRadPerDeg;
 constexpr size_t kMinViews = 2;
-// Views of an object with images or points, which are slow to fit: enough to see it from all sides
-// that it is seen from.
+// Most views of an object that its initial landmark is fitted to. Images and points are slow to
+// fit: enough to see it from all sides that it is seen from. Boxes alone are bounded for long
+// sequences, as the hypotheses of all single frames are compared in each view.
 constexpr size_t kMaxViewsWithImages = 16;
+constexpr size_t kMaxViewsOfBoxes = 500;
 constexpr size_t kMaxCandidates = 12;
-constexpr size_t kAll = std::numeric_limits<size_t>::max();
+constexpr size_t kAllMinima = std::numeric_limits<size_t>::max();
 
 // The evidence for an object in the world, from views of it (indices in Sequence::detections), with
 // constant poses. Keeps references to its arguments.
@@ -105,7 +107,8 @@ std::optional<Landmark> ChooseLandmark(const BackEndInput& input, size_t object_
     ObjectEvidence boxes = on_face;
     boxes.further.clear();
     boxes.compared_cost = nullptr;
-    std::ranges::copy(ProfileOverYaw(boxes, kYawStep).Minima(kAll), std::back_inserter(hypotheses));
+    std::ranges::copy(ProfileOverYaw(boxes, kYawStep).Minima(kAllMinima),
+                      std::back_inserter(hypotheses));
   }
   if (hypotheses.empty()) return std::nullopt;
   const double point_size_m = SizeForPoints(hypotheses);
@@ -196,7 +199,7 @@ std::vector<std::optional<Landmark>> ChooseInitialUprightLandmarks(
   const auto detections = DetectionsByObject(sequence);
   const bool has_boxes_alone =
       input.symmetry_images.empty() && input.edge_images.empty() && input.points.empty();
-  const size_t max_views = has_boxes_alone ? kAll : kMaxViewsWithImages;
+  const size_t max_views = has_boxes_alone ? kMaxViewsOfBoxes : kMaxViewsWithImages;
   std::vector<std::optional<Landmark>> initial_landmarks(sequence.objects.size());
   ParallelFor("objects", initial_landmarks.size(), threads, [&](size_t i) {
     if (detections[i].empty() || !sequence.objects[i].is_static) return;
