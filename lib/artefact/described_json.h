@@ -50,22 +50,14 @@ class Place {
 
 namespace internal {
 
-template <typename T>
-inline constexpr bool kIsOptional = false;
-template <typename T>
-inline constexpr bool kIsOptional<std::optional<T>> = true;
-template <typename T>
-inline constexpr bool kIsVector = false;
-template <typename T>
-inline constexpr bool kIsVector<std::vector<T>> = true;
+template <template <typename...> typename Template, typename T>
+inline constexpr bool kIs = false;
+template <template <typename...> typename Template, typename... Parts>
+inline constexpr bool kIs<Template, Template<Parts...>> = true;
 template <typename T>
 inline constexpr bool kIsArray = false;
 template <typename T, size_t kSize>
 inline constexpr bool kIsArray<std::array<T, kSize>> = true;
-template <typename T>
-inline constexpr bool kIsMap = false;
-template <typename Key, typename T>
-inline constexpr bool kIsMap<std::map<Key, T>> = true;
 template <typename T>
 concept IsMatrix = std::derived_from<T, Eigen::MatrixBase<T>>;
 template <typename T>
@@ -108,10 +100,18 @@ Schema ListSchema(Schema of_items, size_t least, size_t most);
 // The schema that null satisfies, too.
 Schema OrNullSchema(Schema schema);
 
+// What only readers do.
+struct VisitorThatDoesNotRead {
+  template <typename Violation>
+  void Check(const Violation&) {}
+  template <typename Action>
+  void AfterReading(const Action&) {}
+};
+
 }  // namespace internal
 
 // Writes one struct.
-class JsonWriter {
+class JsonWriter : public internal::VisitorThatDoesNotRead {
  public:
   explicit JsonWriter(const Sequence* sequence) : sequence_(sequence) {}
 
@@ -145,12 +145,8 @@ class JsonWriter {
     if (!json_.is_array()) json_ = nlohmann::json::array();
     json_.push_back(ToJson(*value));
   }
-  template <typename Item>
-  void Id(const char* name, const int* index, std::vector<Item> Sequence::*items, const char* doc) {
-    Field(name, sequence_ == nullptr ? index : &(sequence_->*items).at(*index).id, doc);
-  }
-  template <typename Item>
-  void Id(const char* name, const std::optional<int>* index, std::vector<Item> Sequence::*items,
+  template <typename Index, typename Item>
+  void Id(const char* name, const Index* index, std::vector<Item> Sequence::*items,
           const char* doc) {
     std::optional<int> id = *index;
     if (id && sequence_ != nullptr) id = (sequence_->*items).at(*id).id;
@@ -159,20 +155,15 @@ class JsonWriter {
   void FrameIdItem(const int* index, const char* doc) {
     Item(&sequence_->frames.at(*index).id, doc);
   }
-  template <typename Violation>
-  void Check(const Violation&) {}
-  template <typename Action>
-  void AfterReading(const Action&) {}
-
   void OfSequence(const Sequence* sequence) { sequence_ = sequence; }
   const Sequence* sequence() const { return sequence_; }
   nlohmann::json Take() { return std::move(json_); }
 
   template <typename Value>
   static bool IsAbsent(const Value& value) {
-    if constexpr (internal::kIsOptional<Value>) {
+    if constexpr (internal::kIs<std::optional, Value>) {
       return !value.has_value();
-    } else if constexpr (internal::kIsVector<Value> || internal::kIsMap<Value>) {
+    } else if constexpr (internal::kIs<std::vector, Value> || internal::kIs<std::map, Value>) {
       return value.empty();
     } else {
       return value == Value();
@@ -188,15 +179,17 @@ class JsonWriter {
       return std::string(value);
     } else if constexpr (std::is_enum_v<Value>) {
       return NameOf(value);
-    } else if constexpr (internal::kIsOptional<Value>) {
+    } else if constexpr (internal::kIs<std::optional, Value>) {
       return value ? ToJson(*value, describe) : json();
-    } else if constexpr (internal::kIsVector<Value> || internal::kIsArray<Value>) {
+    } else if constexpr (internal::kIs<std::vector, Value> || internal::kIsArray<Value>) {
       json list = json::array();
       for (const auto& item : value) list.push_back(ToJson(item, describe));
       return list;
-    } else if constexpr (internal::kIsMap<Value>) {
+    } else if constexpr (internal::kIs<std::map, Value>) {
       json object = json::object();
-      for (const auto& [key, item] : value) object[KeyOf(key)] = ToJson(item, describe);
+      for (const auto& [key, item] : value) {
+        object[ToJson(key).template get<std::string>()] = ToJson(item, describe);
+      }
       return object;
     } else if constexpr (std::same_as<Value, Eigen::Quaterniond>) {
       return {value.x(), value.y(), value.z(), value.w()};
@@ -217,15 +210,6 @@ class JsonWriter {
   }
 
  private:
-  template <typename Key>
-  static std::string KeyOf(const Key& key) {
-    if constexpr (std::is_enum_v<Key>) {
-      return NameOf(key);
-    } else {
-      return key;
-    }
-  }
-
   const Sequence* sequence_;
   nlohmann::json json_ = nlohmann::json::object();
 };
@@ -335,29 +319,29 @@ class JsonReader {
       *value = internal::ReadText(json, limits, place);
     } else if constexpr (std::is_enum_v<Value>) {
       *value = static_cast<Value>(internal::ReadName(json, NamesOf(Value()), place));
-    } else if constexpr (internal::kIsOptional<Value>) {
+    } else if constexpr (internal::kIs<std::optional, Value>) {
       value->reset();
       if (json.is_null()) return;
       typename Value::value_type read = {};
       Read(json, place, limits, describe, &read);
       *value = std::move(read);
-    } else if constexpr (internal::kIsVector<Value>) {
-      internal::CheckIsList(json, limits.least_items, /*is_exact=*/false, place);
-      value->assign(json.size(), {});
+    } else if constexpr (internal::kIs<std::vector, Value> || internal::kIsArray<Value>) {
+      if constexpr (internal::kIsArray<Value>) {
+        internal::CheckIsList(json, value->size(), /*is_exact=*/true, place);
+      } else {
+        internal::CheckIsList(json, limits.least_items, /*is_exact=*/false, place);
+        value->assign(json.size(), {});
+      }
       for (size_t i = 0; i < json.size(); ++i) {
         Read(json[i], Place(place, i), limits, describe, &(*value)[i]);
       }
-    } else if constexpr (internal::kIsArray<Value>) {
-      internal::CheckIsList(json, value->size(), /*is_exact=*/true, place);
-      for (size_t i = 0; i < json.size(); ++i) {
-        Read(json[i], Place(place, i), limits, describe, &(*value)[i]);
-      }
-    } else if constexpr (internal::kIsMap<Value>) {
+    } else if constexpr (internal::kIs<std::map, Value>) {
       internal::CheckIsObject(json, place);
       value->clear();
       for (const auto& item : json.items()) {
-        Read(item.value(), Place(place, item.key()), limits, describe,
-             &(*value)[ReadKey<typename Value::key_type>(item.key(), place)]);
+        typename Value::key_type key;
+        Read(item.key(), place, {}, describe, &key);
+        Read(item.value(), Place(place, item.key()), limits, describe, &(*value)[key]);
       }
     } else if constexpr (std::same_as<Value, Eigen::Quaterniond>) {
       Read(json, place, limits, describe, &value->coeffs());
@@ -382,15 +366,6 @@ class JsonReader {
   }
 
  private:
-  template <typename Key>
-  static Key ReadKey(const std::string& key, const Place& place) {
-    if constexpr (std::is_enum_v<Key>) {
-      return static_cast<Key>(internal::ReadName(key, NamesOf(Key()), place));
-    } else {
-      return key;
-    }
-  }
-
   const nlohmann::json& json_;
   const Place& place_;
   const Sequence* sequence_;
@@ -399,7 +374,7 @@ class JsonReader {
 };
 
 // The JSON schema (draft 7) of one struct.
-class SchemaWriter {
+class SchemaWriter : public internal::VisitorThatDoesNotRead {
  public:
   template <typename Value, typename Describer = ByDescribe>
   void Field(const char* name, Value* /*value*/, const char* doc, const Limits& limits = {},
@@ -417,7 +392,7 @@ class SchemaWriter {
   void OrAbsent(const char* name, Value* /*value*/, const char* doc, const Limits& limits = {},
                 const Describer& describe = {}) {
     Add(name, doc, Of<Value>(limits, describe));
-    if constexpr (!internal::kIsOptional<Value>) {
+    if constexpr (!internal::kIs<std::optional, Value>) {
       properties_[name]["default"] = JsonWriter(nullptr).ToJson(Value(), describe);
     }
   }
@@ -445,11 +420,6 @@ class SchemaWriter {
     Field(name, index, doc);
   }
   void FrameIdItem(int* index, const char* doc) { Item(index, doc, kNotNegative); }
-  template <typename Violation>
-  void Check(const Violation&) {}
-  template <typename Action>
-  void AfterReading(const Action&) {}
-
   void OfSequence(const Sequence* /*sequence*/) {}
   const Sequence* sequence() const { return nullptr; }
   internal::Schema Take();
@@ -470,16 +440,16 @@ class SchemaWriter {
     } else if constexpr (std::is_enum_v<Value>) {
       const std::span<const char* const> names = NamesOf(Value());
       return {{"enum", std::vector<std::string>(names.begin(), names.end())}};
-    } else if constexpr (internal::kIsOptional<Value>) {
+    } else if constexpr (internal::kIs<std::optional, Value>) {
       return internal::OrNullSchema(Of<typename Value::value_type>(limits, describe));
-    } else if constexpr (internal::kIsVector<Value>) {
+    } else if constexpr (internal::kIs<std::vector, Value>) {
       constexpr size_t kAny = std::numeric_limits<size_t>::max();
       return internal::ListSchema(Of<typename Value::value_type>(limits, describe),
                                   limits.least_items, kAny);
     } else if constexpr (internal::kIsArray<Value>) {
       constexpr size_t kSize = std::tuple_size_v<Value>;
       return internal::ListSchema(Of<typename Value::value_type>(limits, describe), kSize, kSize);
-    } else if constexpr (internal::kIsMap<Value>) {
+    } else if constexpr (internal::kIs<std::map, Value>) {
       return {{"type", "object"},
               {"additionalProperties", Of<typename Value::mapped_type>(limits, describe)}};
     } else if constexpr (std::same_as<Value, Eigen::Quaterniond>) {

@@ -20,8 +20,6 @@ namespace soslam {
 namespace {
 
 using nlohmann::json;
-// [major, minor] of all schemas. A reader refuses newer ones, and files that lack what is required.
-const std::vector<int> kSchemaVersion = {1, 10};
 
 // Parser callback that rejects duplicate keys, of which nlohmann silently keeps the last, and deep
 // nesting, which would exhaust the stack in recursive code.
@@ -128,25 +126,26 @@ std::string Excerpt(const json& value) {
   return text.size() <= kMaxLength ? text : text.substr(0, kMaxLength) + "...";
 }
 
-json HeaderOfKind(const std::string& kind) {
-  return {
-      {"kind", kind}, {"schema_version", kSchemaVersion}, {"software", "soslam " SOSLAM_VERSION}};
-}
+const char* const kSoftware = "soslam " SOSLAM_VERSION;
 
 json ArtefactHeader(const std::string& kind, const ArtefactInfo& info) {
-  json inputs = json::array();
+  FileHeader header = {kind,
+                       kSchemaVersion,
+                       kSoftware,
+                       info.stage,
+                       info.settings.is_null() ? json::object() : info.settings,
+                       {}};
   for (const auto& input : info.inputs) {
-    inputs.push_back({{"file", input.filename().string()}, {"sha256", DigestOfInput(input)}});
+    header.inputs.push_back({input.filename().string(), DigestOfInput(input)});
   }
-  std::sort(inputs.begin(), inputs.end());
-  json header = HeaderOfKind(kind);
-  header["settings"] = info.settings.is_null() ? json::object() : info.settings;
-  header["inputs"] = inputs;
-  return header;
+  std::ranges::sort(header.inputs, {}, [](const FileHeader::Input& input) {
+    return std::pair(input.file, input.sha256);
+  });
+  return DescribedToJson(header);
 }
 
 void CheckArtefactHeader(const json& header, const std::string& kind, const std::string& file) {
-  if (!header.is_object() || !header.contains("kind") || !header.contains("schema_version")) {
+  if (!header.is_object() || !header.contains("kind") || !header.contains(kSchemaVersionField)) {
     throw InputError(fmt::format(
         "{}: has no artefact header with kind and schema_version; expected one of kind '{}'", file,
         kind));
@@ -155,7 +154,7 @@ void CheckArtefactHeader(const json& header, const std::string& kind, const std:
     throw InputError(
         fmt::format("{}: artefact kind is {}; expected \"{}\"", file, header["kind"].dump(), kind));
   }
-  const json& version = header["schema_version"];
+  const json& version = header[kSchemaVersionField];
   const auto is_count = [](const json& number) { return number.is_number_unsigned(); };
   if (!version.is_array() || version.size() != 2 || !std::ranges::all_of(version, is_count)) {
     throw InputError(
@@ -218,8 +217,9 @@ void internal::ReadInFile(const std::filesystem::path& path, const json& documen
     read();
   } catch (const InputError& error) {
     const json header = document.is_object() ? document.value("artefact", json()) : json();
-    const json version = header.is_object() ? header.value("schema_version", json(kSchemaVersion))
-                                            : json(kSchemaVersion);
+    const json version = header.is_object()
+                             ? header.value(kSchemaVersionField, json(kSchemaVersion))
+                             : json(kSchemaVersion);
     throw InputError(fmt::format(
         "{}: {}{}", path.string(), error.what(),
         version == json(kSchemaVersion)

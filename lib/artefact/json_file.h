@@ -55,9 +55,10 @@ namespace soslam {
 
 // Provenance of an artefact.
 struct ArtefactInfo {
-  nlohmann::json settings;                    // every option of the stage, resolved
-  std::vector<std::filesystem::path> inputs;  // files that were read
-  std::vector<Finding> findings = {};         // findings of the stage that writes it
+  nlohmann::json settings;                         // every option of the stage, resolved
+  std::vector<std::filesystem::path> inputs = {};  // files that were read
+  std::vector<Finding> findings = {};              // findings of the stage that writes it
+  std::string stage = {};                          // its name: "planes"; empty for other programs
 };
 
 // Parses any JSON file. Throws InputError with file and line when it is missing, empty or
@@ -73,11 +74,8 @@ std::string JsonText(const nlohmann::json& document, int indent = -1);
 // The list "findings" of an artefact of any kind, which is absent when empty. Throws InputError.
 std::vector<Finding> FindingsOf(const nlohmann::json& artefact);
 
-// The first fields of every header: kind, schema version, software version.
-nlohmann::json HeaderOfKind(const std::string& kind);
-
-// The header of an artefact: kind, schema version, software version, settings, and each input by
-// file name with its SHA-256. JSON artefacts hold it as "artefact", HDF5 artefacts as an attribute.
+// The header of an artefact, a FileHeader. JSON artefacts hold it as "artefact", HDF5 artefacts as
+// an attribute.
 nlohmann::json ArtefactHeader(const std::string& kind, const ArtefactInfo& info);
 
 // Throws InputError, naming `file`, when the header is not of this kind, or its schema version is
@@ -91,6 +89,11 @@ std::string Excerpt(const nlohmann::json& value);
 // What keeps the field sha256 from being a digest, in words; empty if nothing does.
 std::string DigestViolation(const std::string& sha256);
 
+// [major, minor] of all schemas. A reader refuses newer ones, and files that lack what is required.
+inline constexpr std::array<int, 2> kSchemaVersion = {1, 10};
+inline constexpr const char* kSchemaVersionField = "schema_version";
+extern const char* const kSoftware;  // name and version of this software
+
 // What an artefact of any kind begins with.
 struct FileHeader {
   struct Input {
@@ -100,6 +103,7 @@ struct FileHeader {
   std::string kind;
   std::array<int, 2> schema_version = {};
   std::string software;
+  std::string stage;
   nlohmann::json settings;
   std::vector<Input> inputs;
 };
@@ -112,8 +116,12 @@ void Describe(Visitor& visit, FileHeader::Input& input) {
 template <typename Visitor>
 void Describe(Visitor& visit, FileHeader& header) {
   visit.Field("kind", &header.kind, "what the file is");
-  visit.Field("schema_version", &header.schema_version, "major, minor", kNotNegative);
+  visit.Field(kSchemaVersionField, &header.schema_version, "major, minor", kNotNegative);
   visit.Field("software", &header.software, "name and version of what wrote the file");
+  visit.OrAbsent(
+      "stage", &header.stage,
+      "name of the stage that wrote the file, such as planes; absent also in older files",
+      kNotEmpty);
   visit.Field("settings", &header.settings, "every option of the stage that wrote it");
   visit.Check([&] {
     return header.settings.is_object()

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 
-#include "artefact/dataset_folder.h"
 #include "artefact/json_file.h"
 #include "model/associations.h"
 #include "model/describe_estimates.h"
 #include "model/describe_metrics.h"
 #include "model/describe_sequence.h"
+#include "model/frames_record.h"
 #include "model/reconstruction.h"
 #include "model/semantic_table.h"
 #include "model/world.h"

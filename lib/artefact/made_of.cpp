@@ -19,12 +19,16 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 // SHA-256 of what an artefact was made of; `file`: of files of this name only.
-std::set<std::string> HashesOfInputs(const json& header, const std::string& file = "") {
+std::set<std::string> HashesOfInputs(const FileHeader& header, const std::string& file = "") {
   std::set<std::string> hashes;
-  for (const json& input : header.at("inputs")) {
-    if (file.empty() || input.at("file") == file) hashes.insert(input.at("sha256"));
+  for (const FileHeader::Input& input : header.inputs) {
+    if (file.empty() || input.file == file) hashes.insert(input.sha256);
   }
   return hashes;
+}
+
+FileHeader ReadHeader(const fs::path& artefact) {
+  return ReadDocument<FileHeader>(ReadArtefactHeader(artefact), artefact);
 }
 
 std::string Shortened(const std::string& sha256) { return sha256.substr(0, 10); }
@@ -34,24 +38,22 @@ std::string Differences(const fs::path& before, const fs::path& now) {
   const std::string old_name = ParseJsonFile(before).value("name", "");
   const std::string name = ParseJsonFile(now).value("name", "");
   if (name != old_name) return fmt::format("is of {}, not of {}", name, old_name);
-  const json old_header = ReadArtefactHeader(before), header = ReadArtefactHeader(now);
-  const json& old_settings = old_header.at("settings");
-  const json& settings = header.at("settings");
-  json all = old_settings;
-  all.update(settings);
-  if (all.size() > std::min(old_settings.size(), settings.size())) return "is of another stage";
-  const std::vector<std::string> changes = SettingChanges(old_settings, settings);
+  const FileHeader old_header = ReadHeader(before), header = ReadHeader(now);
+  const bool are_stages_known = !header.stage.empty() && !old_header.stage.empty();
+  if (are_stages_known && header.stage != old_header.stage) return "is of another stage";
+  const std::vector<std::string> changes = SettingChanges(old_header.settings, header.settings);
   if (!changes.empty()) return "has other settings: " + NamesInWords(changes, 5);
   const std::set<std::string> old_hashes = HashesOfInputs(old_header);
   std::vector<std::string> files;
-  for (const json& input : header.at("inputs")) {
-    if (!old_hashes.contains(input.at("sha256"))) files.push_back(input.at("file"));
+  for (const FileHeader::Input& input : header.inputs) {
+    if (!old_hashes.contains(input.sha256)) files.push_back(input.file);
   }
   return files.empty() ? "was made anew" : "was made of another " + NamesInWords(files);
 }
 
 // The message of the refusal.
-std::string WasNotMadeOf(const fs::path& artefact, const json& header, const fs::path& input) {
+std::string WasNotMadeOf(const fs::path& artefact, const FileHeader& header,
+                         const fs::path& input) {
   const std::string name = input.filename().string();
   const std::set<std::string> expected = HashesOfInputs(header, name);
   const fs::path beside = artefact.parent_path() / name;
@@ -68,15 +70,10 @@ std::string WasNotMadeOf(const fs::path& artefact, const json& header, const fs:
 }  // namespace
 
 void CheckWasMadeOf(const fs::path& artefact, const std::string& kind, const fs::path& input) {
-  const json header = ReadArtefactHeader(artefact);
-  CheckArtefactHeader(header, kind, artefact.string());
-  try {
-    if (HashesOfInputs(header).contains(DigestOfInput(input))) return;
-    throw InputError(WasNotMadeOf(artefact, header, input));
-  } catch (const json::exception& error) {
-    throw InputError(fmt::format("{}: was not made of {}; a header is not as expected: {}",
-                                 artefact.string(), input.string(), error.what()));
-  }
+  CheckArtefactHeader(ReadArtefactHeader(artefact), kind, artefact.string());
+  const FileHeader header = ReadHeader(artefact);
+  if (HashesOfInputs(header).contains(DigestOfInput(input))) return;
+  throw InputError(WasNotMadeOf(artefact, header, input));
 }
 
 }  // namespace soslam

@@ -47,7 +47,7 @@ std::string LibArchiveVersion() {
 }  // namespace
 
 Software ThisSoftware() {
-  return {"soslam " SOSLAM_VERSION,
+  return {kSoftware,
           CompilerVersion(),
           {{"ceres", CERES_VERSION_STRING},
            {"cli11", CLI11_VERSION},
@@ -71,7 +71,7 @@ struct RunHeader {
 template <typename Visitor>
 void Describe(Visitor& visit, RunHeader& header) {
   visit.Field("kind", &header.kind, "run");
-  visit.Field("schema_version", &header.schema_version, "major, minor", kNotNegative);
+  visit.Field(kSchemaVersionField, &header.schema_version, "major, minor", kNotNegative);
   visit.Field("software", &header.software, "name and version");
 }
 struct RunDocument {
@@ -105,8 +105,7 @@ void CheckBases(const std::vector<RunFile>& files, const RunRecord& record,
 }  // namespace
 
 void WriteRun(const std::filesystem::path& path, const RunRecord& record) {
-  json document = DescribedToJson(record);
-  document["artefact"] = HeaderOfKind(kRunKind);
+  const json document = DescribedToJson(RunDocument{{kRunKind, kSchemaVersion, kSoftware}, record});
   try {
     DescribedFromJson<RunDocument>(document);
   } catch (const InputError& error) {

@@ -11,87 +11,30 @@
 #include "artefact/hdf5_artefact.h"
 #include "artefact/json_file.h"
 #include "artefact/kinds.h"
-#include "association/options.h"
 #include "base/error.h"
-#include "base/options.h"
 #include "base/table.h"
 #include "base/text.h"
-#include "dataset/import_options.h"
-#include "dataset/reconstruct_options.h"
-#include "evaluation/alignment.h"
-#include "ground/options.h"
-#include "image/edge_maps.h"
-#include "image/feature_tracks.h"
-#include "image/frame_choice.h"
-#include "initialisation/options.h"
-#include "mapping/options.h"
-#include "orientation/options.h"
-#include "planes/options.h"
-#include "priors/learn_priors.h"
 
 namespace soslam {
 namespace {
 
 using nlohmann::json;
 
-// A stage, the kinds of its artefacts, and its options.
-struct Maker {
-  const char* stage;
-  std::vector<std::string> kinds;
-  json defaults;
-};
-
-const std::vector<Maker>& Makers() {
-  static const std::vector<Maker> makers = {
-      {"frames", {"frames"}, OptionsToJson(FrameOptions())},
-      {"reconstruct", {"points", "reconstruction"}, OptionsToJson(ReconstructOptions())},
-      {"track", {"points"}, OptionsToJson(TrackOptions())},
-      {"import", {"sequence"}, OptionsToJson(ImportOptions())},
-      {"associate", {"associations", "sequence"}, OptionsToJson(AssociateOptions())},
-      {"planes", {"planes", "sequence"}, OptionsToJson(PlanesOptions())},
-      {"ground", {"sequence", "world"}, OptionsToJson(GroundOptions())},
-      {"edges", {"edges"}, OptionsToJson(EdgesOptions())},
-      {"initialise", {"landmarks"}, OptionsToJson(InitialiseOptions())},
-      {"refine", {"landmarks", "symmetry"}, OptionsToJson(OrientationOptions())},
-      {"optimise", {"map"}, OptionsToJson(OptimiseOptions())},
-      {"evaluate", {"metrics"}, OptionsToJson(EvaluateOptions())},
-      {"learn-priors", {"semantic_table"}, OptionsToJson(LearnPriorsOptions())}};
-  return makers;
-}
-
-// Headers do not name the stage. It is the one whose options share most names with the settings.
-const Maker* MakerOf(const std::string& kind, const json& settings) {
-  const Maker* best = nullptr;
-  size_t most = 0;
-  for (const Maker& maker : Makers()) {
-    if (std::ranges::find(maker.kinds, kind) == maker.kinds.end()) continue;
-    size_t shared = 0;
-    for (const auto& item : settings.items()) shared += maker.defaults.count(item.key());
-    if (best == nullptr || shared > most) {
-      best = &maker;
-      most = shared;
-    }
-  }
-  return best;
-}
-
 std::string SettingsInWords(const json& settings, const json& defaults) {
   std::vector<std::string> words;
   for (const auto& [name, value] : settings.items()) {
-    const json standard = defaults.value(name, json());
-    if (value == standard) continue;
+    if (value == defaults.value(name, json())) continue;
     words.push_back(fmt::format("{} {}", name, value.dump()));
   }
   return words.empty() ? "all as by default" : fmt::format("{}", fmt::join(words, ", "));
 }
 
 // Lists inputs by name; if many have the same extension, such as images, by their number.
-std::string InputsInWords(const json& inputs) {
+std::string InputsInWords(const std::vector<FileHeader::Input>& inputs) {
   constexpr size_t kMaxNames = 6;
   std::map<std::string, std::vector<std::string>> by_extension;
-  for (const json& input : inputs) {
-    const std::string file = input.at("file");
-    by_extension[std::filesystem::path(file).extension().string()].push_back(file);
+  for (const FileHeader::Input& input : inputs) {
+    by_extension[std::filesystem::path(input.file).extension().string()].push_back(input.file);
   }
   std::vector<std::string> words;
   for (auto& [extension, files] : by_extension) {
@@ -105,18 +48,15 @@ std::string InputsInWords(const json& inputs) {
   return words.empty() ? "none" : fmt::format("{}", fmt::join(words, ", "));
 }
 
-// Provenance of an artefact by its header: stage and software, inputs, and the settings that differ
-// from the stage's defaults.
-std::vector<Fact> Provenance(const json& header) {
-  const json settings = header.value("settings", json::object());
-  const std::string version =
-      fmt::format("{}, schema version [{}]", header.value("software", "unknown software"),
-                  fmt::join(header.at("schema_version").get<std::vector<int>>(), ", "));
-  const Maker* maker = MakerOf(header.at("kind"), settings);
-  if (maker == nullptr) return {{"made by", version}};
-  return {{"made by", fmt::format("soslam-{} of {}", maker->stage, version)},
-          {"from", InputsInWords(header.value("inputs", json::array()))},
-          {"settings", SettingsInWords(settings, maker->defaults)}};
+// Provenance of an artefact: stage and software, inputs, and the settings that differ from these
+// defaults.
+std::vector<Fact> Provenance(const FileHeader& header, const json& defaults) {
+  return {{"made by",
+           fmt::format("{}{}, schema version [{}]",
+                       header.stage.empty() ? "" : fmt::format("soslam-{} of ", header.stage),
+                       header.software, fmt::join(header.schema_version, ", "))},
+          {"from", InputsInWords(header.inputs)},
+          {"settings", SettingsInWords(header.settings, defaults)}};
 }
 
 // Kinds of HDF5 files, and what they hold.
@@ -211,7 +151,8 @@ constexpr size_t kTableWidth = 140;
 
 }  // namespace
 
-Inspection Inspect(const std::filesystem::path& file, const std::optional<Sequence>& sequence) {
+Inspection Inspect(const std::filesystem::path& file, const std::optional<Sequence>& sequence,
+                   const json& default_settings) {
   const json header = ReadArtefactHeader(file);
   const std::string kind = header.at("kind");
   const ArtefactKind* const of_json = FindArtefactKind(kind);
@@ -233,13 +174,9 @@ Inspection Inspect(const std::filesystem::path& file, const std::optional<Sequen
   }
   inspection.title = fmt::format("{}: {} ({})", file.string(), kind,
                                  of_json != nullptr ? of_json->title : of_hdf5->second);
-  try {
-    const std::vector<Fact> provenance = Provenance(header);
-    inspection.facts.insert(inspection.facts.begin(), provenance.begin(), provenance.end());
-  } catch (const json::exception& error) {
-    throw InputError(
-        fmt::format("{}: the artefact header is not as expected: {}", file.string(), error.what()));
-  }
+  const std::vector<Fact> provenance =
+      Provenance(ReadDocument<FileHeader>(header, file.string()), default_settings);
+  inspection.facts.insert(inspection.facts.begin(), provenance.begin(), provenance.end());
   for (const Finding& finding : findings) {
     inspection.facts.push_back({NameOf(finding.severity), OneLine(InWords(finding))});
   }

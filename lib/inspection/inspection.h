@@ -64,10 +64,11 @@ struct Inspection {
   std::vector<ValueTable> tables;
 };
 
-// Reads an artefact of any kind. `sequence`, if known, supplies the labels of objects. Throws
-// InputError for a file that is no artefact, of an unknown kind, newer than this software or
-// damaged.
-Inspection Inspect(const std::filesystem::path& file, const std::optional<Sequence>& sequence);
+// Reads an artefact of any kind. `sequence`, if known, supplies the labels of objects; settings
+// with their default values are not listed. Throws InputError for a file that is no artefact, of an
+// unknown kind, newer than this software or damaged.
+Inspection Inspect(const std::filesystem::path& file, const std::optional<Sequence>& sequence,
+                   const nlohmann::json& default_settings = nlohmann::json::object());
 
 // Text for a terminal: title, facts, and the first rows of each table. `is_coloured`: with escape
 // sequences.

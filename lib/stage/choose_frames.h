@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "artefact/dataset_folder.h"
 #include "dataset/photo_folder.h"
 #include "image/frame_choice.h"
 #include "model/finding.h"
+#include "model/frames_record.h"
 
 namespace soslam {
 

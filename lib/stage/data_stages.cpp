@@ -48,7 +48,7 @@ void RunImport(const ImportOptions& options, const StageFiles& files, int thread
   if (options.scene_axes) AddSceneAxes(folder, threads, &sequence, &inputs);
   AddReconstruction(folder, options, &sequence, &inputs);
   ReportFindings("import", sequence.findings);
-  WriteSequence(files.at("output"), sequence, {OptionsToJson(options), inputs});
+  WriteSequence(files.at("output"), sequence, {OptionsToJson(options), inputs, {}, "import"});
   fmt::print("{}: {} frames, {} objects, {} detections used, {}\n", sequence.name,
              sequence.frames.size(), sequence.objects.size(), sequence.detections.size(),
              DescribeRejections(sequence.rejected_detections));
@@ -147,7 +147,8 @@ void RunLearnPriors(const LearnPriorsOptions& options, const StageFiles& files, 
     throw NothingUsableError("no label: neither base table nor ground truth nor furniture has one");
   }
 
-  ArtefactInfo info = {OptionsToJson(options), sequence_files};
+  ArtefactInfo info = {
+      .settings = OptionsToJson(options), .inputs = sequence_files, .stage = "learn-priors"};
   for (const char* name : {"base", "furniture", "furniture_labels"}) {
     if (files.contains(name)) info.inputs.push_back(files.at(name));
   }

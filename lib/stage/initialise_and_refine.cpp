@@ -139,7 +139,7 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
   if (uses_images) inputs.push_back(files.at("edges"));
   if (options.points.point_evidence) inputs.push_back(files.at("points"));
   WriteLandmarks(files.at("output"), estimates, sequence,
-                 {OptionsToJson(options), inputs, findings});
+                 {OptionsToJson(options), inputs, findings, "initialise"});
   fmt::print("{} landmarks{}{}{}\n", tried - failed, failed > 0 ? ", without one: " : "",
              failed > 0 ? CountsInWords(ReasonsInWords(failures)) : "",
              CountWithPoints(points, estimates));
@@ -228,8 +228,9 @@ void RunRefine(const OrientationOptions& options, const StageFiles& files, int t
   std::ranges::stable_sort(to_refine, {},
                            [&](const auto* observation) { return frame_of(observation).id; });
   ArtefactInfo info = {
-      OptionsToJson(options),
-      {files.at("sequence"), files.at("table"), files.at("initial"), files.at("edges")}};
+      .settings = OptionsToJson(options),
+      .inputs = {files.at("sequence"), files.at("table"), files.at("initial"), files.at("edges")},
+      .stage = "refine"};
   if (point_options.point_evidence) info.inputs.push_back(files.at("points"));
 
   const auto points = PointsInFramesOf(point_options, sequence, files);

@@ -146,8 +146,9 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
                            [](const auto& start) { return start.has_value(); })) {
     throw NothingUsableError(files.at("landmarks").string() + ": no landmark to start from");
   }
-  ArtefactInfo info = {OptionsToJson(options),
-                       {files.at("sequence"), files.at("landmarks"), files.at("table")}};
+  ArtefactInfo info = {.settings = OptionsToJson(options),
+                       .inputs = {files.at("sequence"), files.at("landmarks"), files.at("table")},
+                       .stage = "optimise"};
   if (UsesEdges(options)) info.inputs.push_back(files.at("edges"));
   if (options.points.point_evidence) info.inputs.push_back(files.at("points"));
   MapEstimate map = OptimiseMap(input, options, threads);
@@ -234,7 +235,7 @@ void RunEvaluate(const EvaluateOptions& options, const StageFiles& files, int /*
       is_map ? EvaluateMap(sequence, ReadMap(landmarks, sequence), options.alignment)
              : EvaluateLandmarks(sequence, ReadLandmarks(landmarks, sequence), options.alignment);
   WriteMetrics(files.at("output"), metrics, sequence,
-               {OptionsToJson(options), {files.at("sequence"), landmarks}});
+               {OptionsToJson(options), {files.at("sequence"), landmarks}, {}, "evaluate"});
   if (const auto& held_out = metrics.held_out) {
     fmt::print("held-out frames: {} of {} detections matched, mean IoU {:.3f}\n",
                held_out->detections_matched, held_out->detections,

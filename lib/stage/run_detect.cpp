@@ -230,7 +230,7 @@ void RunDetect(const DetectorOptions& options, const StageFiles& files, int thre
   found.input_width = format.input.width;
   found.input_height = format.input.height;
   WriteTextFile(files.at("output"),
-                Comments({OptionsToJson(found), inputs}) + LabelledBoxesText(boxes));
+                Comments({OptionsToJson(found), inputs, {}, "detect"}) + LabelledBoxesText(boxes));
   fmt::print("{}: {}\n{}: {} images, {} detections\n", network.name, format.Text(),
              dataset.string(), images.size(), boxes.size());
 }

@@ -35,7 +35,7 @@ void RunEdges(const EdgesOptions& options, const StageFiles& files, int threads)
     }
     inputs.push_back(image.path);
   }
-  EdgesWriter writer(files.at("output"), {OptionsToJson(options), inputs});
+  EdgesWriter writer(files.at("output"), {OptionsToJson(options), inputs, {}, "edges"});
 
   const FrameImageReader reader(sequence);
   const int frames = static_cast<int>(images.size());

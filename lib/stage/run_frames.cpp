@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "artefact/dataset_folder.h"
+#include "artefact/json_file.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/paths.h"
@@ -166,9 +167,10 @@ void RunFrames(const FrameOptions& options, const StageFiles& files, int threads
     ++count;
   }
   output.Write("rgb.txt", list);
-  output.Write("frames.json", ArtefactText(folder / "frames.json", "frames",
-                                           {OptionsToJson(options), chosen.inputs, findings},
-                                           DescribedToJson(record)));
+  output.Write("frames.json",
+               ArtefactText(folder / "frames.json", "frames",
+                            {OptionsToJson(options), chosen.inputs, findings, "frames"},
+                            DescribedToJson(record)));
   output.Commit();
   const auto left_out = std::ranges::count_if(record.frames, IsLeftOut);
   fmt::print(

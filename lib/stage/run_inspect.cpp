@@ -19,11 +19,13 @@
 #include "inspection/overlay.h"
 #include "stage/read_evidence.h"
 #include "stage/stages.h"
+#include "workflow/pipeline_stages.h"
 
 namespace soslam {
 namespace {
 
 namespace fs = std::filesystem;
+using nlohmann::json;
 
 template <typename Value>
 const Value& Required(const std::optional<Value>& value, const char* option,
@@ -196,7 +198,11 @@ std::string RunInspect(const InspectRequest& request, bool is_coloured) {
   if (request.image && !request.csv && !request.table) return "";
   std::optional<Sequence> sequence;
   if (request.sequence) sequence = ReadSequence(*request.sequence, PlaneNeed::kNotNeeded);
-  const Inspection inspection = Inspect(request.file, sequence);
+  const json header = ReadArtefactHeader(request.file);
+  const PipelineStage* stage = FindStage(header.value("stage", ""));
+  const Inspection inspection =
+      Inspect(request.file, sequence,
+              stage == nullptr ? json::object() : stage->resolve(json::object(), stage->name));
   if (!request.csv && !request.table) return FormatInspection(inspection, is_coloured);
   const ValueTable& table = TableOf(inspection, request.table);
   if (!request.csv) return FormatWholeTable(table, is_coloured);

@@ -326,7 +326,7 @@ void RunReconstruct(const ReconstructOptions& options, const StageFiles& files, 
   Reconstruction reconstruction = ReconstructionOf(model, given.images);
   CheckCamera(model, given, dataset);
   CheckPoses(reconstruction, given);
-  ArtefactInfo info{OptionsToJson(options), model.files, model.findings};
+  ArtefactInfo info{OptionsToJson(options), model.files, model.findings, "reconstruct"};
   info.inputs.push_back(dataset / "rgb.txt");
   if (reconstruction.points.empty() && files.contains("model")) {
     AddTrackedPoints(model, files.at("model"), dataset, given.images, options.image_orientation,

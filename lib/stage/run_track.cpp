@@ -14,7 +14,8 @@ void RunTrack(const TrackOptions& options, const StageFiles& files, int threads)
   const std::filesystem::path& sequence_file = files.at("sequence");
   const Sequence sequence = ReadSequence(sequence_file, PlaneNeed::kNotNeeded);
   const std::vector<FrameImage> images = FrameImages(sequence, files.at("dataset"), sequence_file);
-  ArtefactInfo info = {OptionsToJson(options), {sequence_file}};
+  ArtefactInfo info = {
+      .settings = OptionsToJson(options), .inputs = {sequence_file}, .stage = "track"};
   for (const FrameImage& image : images) info.inputs.push_back(image.path);
   const TrackedPoints tracked = TrackPoints(sequence, images, options, threads);
   info.findings = tracked.findings;

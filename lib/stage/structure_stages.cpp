@@ -59,7 +59,9 @@ void RunAssociate(const AssociateOptions& options, const StageFiles& files, int 
                                          DescribeTracks(association)));
   }
   const Agreement agreement = CompareWithGiven(sequence, association, options.min_observations);
-  ArtefactInfo info = {OptionsToJson(options), {files.at("sequence"), files.at("table")}};
+  ArtefactInfo info = {.settings = OptionsToJson(options),
+                       .inputs = {files.at("sequence"), files.at("table")},
+                       .stage = "associate"};
   for (const auto& [segment, up] : association.up_of_segments) {
     info.findings = CheckUp(up.holding, up.holdings, up.holding_tilt_variance);
     if (!info.findings.empty()) break;  // the first segment whose up direction is ambiguous
@@ -241,7 +243,8 @@ void RunPlanes(const PlanesOptions& options, const StageFiles& files, int thread
                                          files.at("sequence").string(),
                                          sequence.detections.size()));
   }
-  ArtefactInfo info = {OptionsToJson(options), {files.at("sequence")}};
+  ArtefactInfo info = {
+      .settings = OptionsToJson(options), .inputs = {files.at("sequence")}, .stage = "planes"};
   info.inputs.insert(info.inputs.end(), result.inputs.begin(), result.inputs.end());
   if (!has_planes && options.planes != PlaneSource::kCameraHeight) {
     info.findings = CheckPlaneCount(result.estimate.planes.size(), sequence.objects.size());
@@ -264,8 +267,9 @@ void RunGround(const GroundOptions& options, const StageFiles& files, int thread
   }
   const Sequence sequence = ReadFrames(files.at("sequence"));
   CheckOneSegment(sequence, files.at("sequence"));
-  ArtefactInfo info = {OptionsToJson(options),
-                       {files.at("sequence"), files.at("points"), files.at("table")}};
+  ArtefactInfo info = {.settings = OptionsToJson(options),
+                       .inputs = {files.at("sequence"), files.at("points"), files.at("table")},
+                       .stage = "ground"};
   std::vector<SegmentView> views =
       ViewsOfSegments(sequence, options.verticals, files, threads, &info.inputs);
   const GroundEstimate estimate =

@@ -58,11 +58,12 @@ TEST_F(JsonFileTest, UnreadableTextIsRefused) {
 TEST_F(JsonFileTest, HeaderNamesWhatShapedTheArtefact) {
   const auto b = Write("b.txt", "b");
   const auto a = Write("a.txt", "abc");
-  WriteArtefact(file, "landmarks", {{{"yaw", 3}}, {b, a}}, kEmptyLandmarks);
+  WriteArtefact(file, "landmarks", {{{"yaw", 3}}, {b, a}, {}, "refine"}, kEmptyLandmarks);
   const json header = ReadArtefact(file, "landmarks").at("artefact");
   EXPECT_EQ(header.at("kind"), "landmarks");
   EXPECT_EQ(header.at("schema_version"), json({1, 10}));
   EXPECT_THAT(header.at("software").get<std::string>(), testing::StartsWith("soslam "));
+  EXPECT_EQ(header.at("stage"), "refine");
   EXPECT_EQ(header.at("settings").at("yaw"), 3);
   EXPECT_EQ(header.at("inputs").at(0).at("file"), "a.txt");
   EXPECT_EQ(header.at("inputs").at(0).at("sha256"),  // FIPS 180-2, appendix B.1

@@ -22,10 +22,11 @@ class MadeOfTest : public FolderTest {
     WriteLandmarks(landmarks_, {}, sequence_, {{}, {folder_ / "results/sequence.json"}});
   }
   fs::path WriteSequenceTo(const fs::path& folder, const nlohmann::json& settings,
-                           const std::string& boxes = "boxes") const {
+                           const std::string& boxes = "boxes",
+                           const std::string& stage = "import") const {
     fs::create_directories(folder);
     const fs::path detections = Write("data/detections.csv", boxes);
-    WriteSequence(folder / "sequence.json", sequence_, {settings, {detections}});
+    WriteSequence(folder / "sequence.json", sequence_, {settings, {detections}, {}, stage});
     return folder / "sequence.json";
   }
   void ExpectRefused(const fs::path& input, const std::vector<std::string>& words) const {
@@ -55,7 +56,7 @@ TEST_F(MadeOfTest, TheMessageSaysWhatDiffersFromTheFileBeside) {
                  "expected " + (folder_ / "results/sequence.json").string()});
   ExpectRefused(WriteSequenceTo(folder_ / "other", settings, "other boxes"),
                 {"was made of another detections.csv"});
-  ExpectRefused(WriteSequenceTo(folder_ / "other", {{"planes", "estimated"}}),
+  ExpectRefused(WriteSequenceTo(folder_ / "other", settings, "boxes", "planes"),
                 {"is of another stage"});
   sequence_.name = "desk";
   ExpectRefused(WriteSequenceTo(folder_ / "other", settings), {"is of desk, not of "});
@@ -68,11 +69,11 @@ TEST_F(MadeOfTest, TheMessageSaysWhatDiffersFromTheFileBeside) {
 
 TEST_F(MadeOfTest, AHeaderThatWasEditedIsRefused) {
   for (const char* inputs : {"3", "null", R"(["a"])", R"([{"file": 3, "sha256": 4}])"}) {
-    Write(
-        "results/initial.json",
-        std::string(R"({"artefact": {"kind": "landmarks", "schema_version": [1, 0], "inputs": )") +
-            inputs + "}}");
-    ExpectRefused(folder_ / "results/sequence.json", {"initial.json: was not made of"});
+    Write("results/initial.json",
+          std::string(R"({"artefact": {"kind": "landmarks", "schema_version": [1, 0],
+                          "software": "soslam", "settings": {}, "inputs": )") +
+              inputs + "}}");
+    ExpectRefused(folder_ / "results/sequence.json", {"initial.json: /inputs"});
   }
 }
 

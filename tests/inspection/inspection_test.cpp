@@ -6,20 +6,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numbers>
 
 #include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
-#include "association/agreement.h"
 #include "base/error.h"
-#include "dataset/reconstruct_options.h"
 #include "geometry/angles.h"
-#include "initialisation/options.h"
 #include "inspection/doubts.h"
-#include "mapping/options.h"
 #include "model/describe_estimates.h"
-#include "planes/planes_estimate.h"
-#include "stage/stages.h"
 #include "support/expect_error.h"
 #include "support/random.h"
 #include "support/random_estimates.h"
@@ -132,8 +125,8 @@ TEST(ContentsOf, FollowTheDescription) {
                                    "part/id: 7, number", "part/weights: 1.500, 2.250, kilograms"));
   const auto text = [&](const char* name) { return FormatTable(TableOf(contents, name), false); };
   EXPECT_EQ(text("parts"),
-            "id                                               weights\n"
-            " 1                                                  none\n"
+            "id                                              weights\n"
+            " 1                                                 none\n"
             " 2  1.000, 2.000, 3.000, 4.000, 5.000, 6.000 and 2 more\n");
   EXPECT_EQ(text("by_name"), "name  id  weights\na      3     none\n");
   EXPECT_EQ(text("rows"),
@@ -149,10 +142,8 @@ TEST(ContentsOf, FollowTheDescription) {
 
 TEST_F(InspectionTest, ObjectsOfEstimatesHaveLabelsYawsAndStandardDeviations) {
   const LandmarkEstimates estimates = RandomLandmarkEstimates();
-  WriteLandmarks(File(), estimates, sequence_, {OptionsToJson(InitialiseOptions()), {}});
+  WriteLandmarks(File(), estimates, sequence_, {});
   const Inspection inspection = Read(sequence_);
-  EXPECT_THAT(Said(inspection, "made by"), HasSubstr("soslam-initialise"));
-  EXPECT_EQ(Said(inspection, "settings"), "all as by default");
   EXPECT_EQ(Said(inspection, "failures"), "plane_behind_camera 1, too_few_views 1");
   const Landmark& best = estimates.observations[0].hypotheses[0].landmark_in_camera;
   const Eigen::Quaterniond& rotation = best.frame_from_object.rotation;
@@ -178,9 +169,7 @@ TEST_F(InspectionTest, MapsSayHowSureTheyAre) {
   covariance.diagonal() << 9, 9, 4e-4, 1e-2, 1e-2, 2e-2, 1e-2, 4e-2, 4e-2;
   map.objects[0].landmark_in_world = upright;
   map.objects[0].covariance = covariance;
-  OptimiseOptions options;
-  options.max_iterations += 1;
-  WriteMap(File(), map, sequence_, {OptionsToJson(options), {}});
+  WriteMap(File(), map, sequence_, {});
 
   const Inspection inspection = Read();
   const auto at = [&](const char* column) {
@@ -191,7 +180,6 @@ TEST_F(InspectionTest, MapsSayHowSureTheyAre) {
   EXPECT_NEAR(at("sigma_centre_m"), 0.2, 1e-9);
   EXPECT_NEAR(at("sigma_size_percent"), 100.0 * std::sqrt(0.03), 1e-9);
   EXPECT_TRUE(At(inspection, "objects", 1, "sigma_yaw_deg").is_null());
-  EXPECT_EQ(Said(inspection, "settings"), fmt::format("max_iterations {}", options.max_iterations));
   EXPECT_EQ(Said(inspection, "solver/converged"), "yes");
   EXPECT_EQ(Said(inspection, "solver/gated"), "no_plane 1");
   EXPECT_EQ(Said(inspection, "solver/detector_bias_px"), "1.500, -0.250, 0.333, 0.000");
@@ -232,6 +220,17 @@ TEST_F(InspectionTest, DataSetsOfHdf5FilesAreFacts) {
   EXPECT_TRUE(inspection.tables.empty());
 }
 
+TEST_F(InspectionTest, TheStageAndItsSettingsAreSaid) {
+  const auto said = [&](const char* name) { return Said(Inspect(File(), {}, {{"a", 1}}), name); };
+  const ArtefactInfo info = {.settings = {{"a", 1}, {"b", 2.5}}, .stage = "ground"};
+  WritePoints(File(), {}, info);
+  EXPECT_THAT(said("made by"), testing::StartsWith("soslam-ground of soslam "));
+  EXPECT_EQ(said("settings"), "b 2.5");
+  WriteLandmarks(File(), {}, sequence_, {.settings = {{"a", 1}}});
+  EXPECT_THAT(said("made by"), testing::StartsWith("soslam ")) << "older files name no stage";
+  EXPECT_EQ(said("settings"), "all as by default");
+}
+
 // Every kind is shown, and a field of it is.
 TEST_F(InspectionTest, AllKindsAreShown) {
   const auto says = [&](const char* fact, const std::string& text) {
@@ -248,12 +247,11 @@ TEST_F(InspectionTest, AllKindsAreShown) {
   ReconstructionSummary summary;
   summary.images_without_pose = {"a.jpg", "b.jpg"};
   summary.components = {{40, 900}, {12, 80}};
-  WriteReconstruction(File(), summary, {OptionsToJson(ReconstructOptions()), {}});
+  WriteReconstruction(File(), summary, {});
   says("images_without_pose", "a.jpg, b.jpg");
-  EXPECT_THAT(Said(Read(), "made by"), HasSubstr("soslam-reconstruct"));
-  PlanesEstimate planes;
+  PlanesReport planes;
   planes.planes.resize(1);
-  WritePlanes(File(), ReportOf(planes, sequence_), {});
+  WritePlanes(File(), planes, {});
   says("settled", "no");
   WriteAssociations(File(), {.agreement = {.objects = 3}}, {});
   says("agreement/objects", "3");
@@ -287,10 +285,10 @@ ValueTable SmallTable() {
 
 TEST(ValueTableTest, ColumnsLineUpAndEmptyOnesAreLeftOut) {
   EXPECT_EQ(FormatTable(SmallTable(), false),
-            "             part/\n"
-            "label      x  count  flag          axes\n"
-            "b\xc3\xa4r     0.33     12  yes   1.000, 0.500\n"
-            "c     -10.00      3  no               -\n");
+            "               part/\n"
+            "label       x  count  flag          axes\n"
+            "b\xc3\xa4r      0.33     12  yes   1.000, 0.500\n"
+            "c      -10.00      3  no               -\n");
 }
 
 TEST(ValueTableTest, WideTablesArePrintedInPartsWithTheirFirstColumns) {
