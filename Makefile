@@ -42,15 +42,16 @@ MAKEFLAGS += --no-print-directory
 .DELETE_ON_ERROR:
 
 # What ./soslam is told.
-TOLD := DATASET VARIANT STAGE DATA_ROOT RESULTS PIPELINES THREADS BUILD BIN OUTSIDE_PATHS LAUNCH DOWNLOADS ANNOTATIONS \
-  NETWORKS WITHOUT MIRROR MAPS IMAGES NETWORK DETECTIONS CAMERA MODEL SCALE CAMERA_HEIGHT NAME
+TOLD := DATASET VARIANT STAGE $(if $(filter file,$(origin DATA_ROOT)),,DATA_ROOT) RESULTS PIPELINES THREADS BUILD BIN \
+  OUTSIDE_PATHS LAUNCH DOWNLOADS ANNOTATIONS NETWORKS WITHOUT MIRROR MAPS IMAGES NETWORK DETECTIONS CAMERA MODEL SCALE \
+  CAMERA_HEIGHT NAME
 SOSLAM = SETTINGS_OF_MAKE=yes $(foreach name,$(TOLD),$(name)='$(subst ','\'',$(value $(name)))') MAKE='$(MAKE)' ./soslam
 
 # A variable that is misspelt would be ignored without a word. A make above this one has variables of its own.
 ifeq ($(MAKELEVEL),0)
 given-names = $(foreach name,$(.VARIABLES),$(if $(filter command,$(origin $(name))),$(name)))
-KNOWN := $(TOLD) CMAKE_ARGS DATASETS SCENES SEEDS SBATCH QUIET CC CXX SHELL %FLAGS CMAKE_% SOSLAM_% MAKE% CTEST_% \
-  GTEST_% VERBOSE %_proxy TMPDIR DEBIAN_FRONTEND
+KNOWN := $(TOLD) DATA_ROOT CMAKE_ARGS DATASETS SCENES SEEDS SBATCH QUIET CC CXX SHELL %FLAGS CMAKE_% SOSLAM_% MAKE% \
+  CTEST_% GTEST_% VERBOSE %_proxy TMPDIR DEBIAN_FRONTEND
 $(foreach name,$(filter-out $(KNOWN) -%,$(given-names)), \
   $(error $(name)=...: no variable of this Makefile has this name))
 endif

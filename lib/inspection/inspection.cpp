@@ -6,7 +6,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 
 #include "artefact/hdf5_artefact.h"
 #include "artefact/json_file.h"

@@ -115,7 +115,7 @@ TEST_F(DatasetChecksTest, LabelsThatNoBoxHasAreNamed) {
   ExpectWarning({"no box has the label Botle (bottle?), sofa of `labels`",
                  "expected labels of boxes: ball, bottle, bowl"});
   options_.labels = "Botle";
-  ExpectError<NothingUsableError>([&] { Import(); }, {"115 other_label", "Botle", "bottle"});
+  ExpectError<NothingUsableError>([&] { Import(); }, {"115 other label", "Botle", "bottle"});
 }
 
 class ClassNamesTest : public DatasetChecksTest {

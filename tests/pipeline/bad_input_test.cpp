@@ -271,7 +271,8 @@ TEST(UnusualInputTest, WhatCannotBeInitialisedIsCountedWithItsReason) {
 TEST(UnusableInputTest, NoLabelInTheTable) {
   const StageChain& chain = StageChain::Finished();
   TableOf({"sofa"})(chain);
-  EXPECT_THAT(ExpectExit(4, chain.Run("initialise")).errors, HasSubstr("12 no_ratio_for_label"));
+  EXPECT_THAT(ExpectExit(4, chain.Run("initialise")).errors,
+              HasSubstr("12 of a label that the semantic table does not have"));
 }
 
 }  // namespace

@@ -165,12 +165,32 @@ TEST_F(ProvenanceTest, NothingIsWrittenOutsideOfTheResults) {
   }
 }
 
-// The project's Makefile, up to what would build the executables.
-TEST_F(ProvenanceTest, FrontDoor) {
-  EXPECT_THAT(ExpectSuccess(RunMake({"-n", "-C", SOSLAM_SOURCE_DIR, "verify", "reproduce",
-                                     "RESULTS=some", "DATA_ROOT=elsewhere"})),
-              AllOf(HasSubstr("soslam-verify --results some --data_root elsewhere"),
-                    ContainsRegex("soslam-reproduce --results some .*--data_root elsewhere")));
+TEST_F(ProvenanceTest, DatasetsAreWhereTheyWereUnlessTheCallerSaysOtherwise) {
+  const TemporaryFolder programs;
+  for (const std::string name : {"soslam-verify", "soslam-reproduce"}) {
+    WriteBytes(programs / name, "#!/bin/sh\necho \"$@\"\n");
+    fs::permissions(programs / name, fs::perms::owner_all);
+  }
+  const std::string build = fs::path(SOSLAM_BINARY_DIR).parent_path();
+  for (const std::string command : {"verify", "reproduce"}) {
+    const std::vector<std::string> words = {SOSLAM_SOURCE_DIR "/soslam",
+                                            command,
+                                            "--results",
+                                            "some",
+                                            "--build",
+                                            build,
+                                            "--bin",
+                                            programs.path()};
+    EXPECT_THAT(ExpectSuccess(RunCommand(words)),
+                AllOf(HasSubstr("--results "), Not(HasSubstr("--data_root"))));
+    const std::vector<std::string> settings = {
+        command, "RESULTS=some",   "BUILD=" + build, "BIN=" + programs.path().string(),
+        "-C",    SOSLAM_SOURCE_DIR};
+    EXPECT_THAT(ExpectSuccess(RunCommand(MakeWords(settings))), Not(HasSubstr("--data_root")));
+    std::vector<std::string> elsewhere = settings;
+    elsewhere.emplace_back("DATA_ROOT=data");
+    EXPECT_THAT(ExpectSuccess(RunCommand(MakeWords(elsewhere))), HasSubstr("--data_root data"));
+  }
 }
 
 }  // namespace
