@@ -7,6 +7,7 @@
 #include "geometry/angles.h"
 #include "inspection/inspection.h"
 #include "model/describe_estimates.h"
+#include "model/metric_catalogue.h"
 
 namespace soslam {
 namespace {
@@ -17,17 +18,15 @@ const std::vector<ValueColumn> kColumns = {
     {"sigma_yaw_deg", "standard deviation of the yaw"},
     {"sigma_size_percent", "root mean square of the standard deviations of the half axes"}};
 
-std::vector<Value> CellsOf(const std::optional<Landmark>& landmark,
-                           const std::optional<Covariance9>& covariance) {
+std::vector<Value> CellsOf(const ObjectEstimate& estimate) {
   std::vector<Value> cells(kColumns.size());
-  if (!landmark) return cells;
-  const Eigen::Quaterniond& rotation = landmark->frame_from_object.rotation;
-  const Eigen::Vector3d up = rotation * Eigen::Vector3d::UnitZ();
-  cells[0] = kDegPerRad * Yaw(up, rotation);
-  if (!covariance) return cells;
-  cells[1] = std::sqrt(covariance->block<3, 3>(3, 3).trace());
-  cells[2] = kDegPerRad * std::sqrt(up.dot(covariance->topLeftCorner<3, 3>() * up));
-  cells[3] = 100.0 * std::sqrt(covariance->bottomRightCorner<3, 3>().trace() / 3.0);
+  if (!estimate.landmark_in_world) return cells;
+  const Eigen::Quaterniond& rotation = estimate.landmark_in_world->frame_from_object.rotation;
+  cells[0] = kDegPerRad * Yaw(rotation * Eigen::Vector3d::UnitZ(), rotation);
+  if (!estimate.covariance) return cells;
+  cells[1] = std::sqrt(estimate.covariance->block<3, 3>(3, 3).trace());
+  cells[2] = *YawSigmaDeg(estimate);
+  cells[3] = 100.0 * std::sqrt(estimate.covariance->bottomRightCorner<3, 3>().trace() / 3.0);
   return cells;
 }
 
@@ -43,13 +42,11 @@ void AddDerivedColumns(const std::string& kind, const nlohmann::json& document,
   }
   std::vector<std::vector<Value>> observations, objects;
   for (const ObservationEstimate& one : estimates.observations) {
-    std::optional<Landmark> best;
-    if (!one.hypotheses.empty()) best = one.hypotheses.front().landmark_in_camera;
-    observations.push_back(CellsOf(best, {}));
+    ObjectEstimate best;
+    if (!one.hypotheses.empty()) best.landmark_in_world = one.hypotheses.front().landmark_in_camera;
+    observations.push_back(CellsOf(best));
   }
-  for (const ObjectEstimate& one : estimates.objects) {
-    objects.push_back(CellsOf(one.landmark_in_world, one.covariance));
-  }
+  for (const ObjectEstimate& one : estimates.objects) objects.push_back(CellsOf(one));
   for (const auto& [name, cells] :
        {std::pair("observations", observations), {"objects", objects}}) {
     const auto table = std::ranges::find(inspection->tables, name, &ValueTable::name);

@@ -20,7 +20,6 @@ namespace soslam {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
 // True if the centre may be farther off in a horizontal direction than its body reaches there,
 // along a principal axis of the horizontal part of its covariance.
@@ -65,12 +64,6 @@ std::map<int, Sightings> ReadSightings(const fs::path& file) {
 }
 
 }  // namespace
-
-const json& TrackAt(const json& tracks, const json& index, const std::string& file) {
-  if (index.is_number() && index.get<size_t>() < tracks.size()) return tracks[index.get<size_t>()];
-  throw InputError(fmt::format("{}: found track {} of {}; expected one in the list", file,
-                               index.dump(), tracks.size()));
-}
 
 std::string RarelyDetectedInWords(int frames, int frames_in_sight) {
   return fmt::format("detected in only {} of the {} images that should show it", frames,

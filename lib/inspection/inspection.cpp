@@ -212,34 +212,4 @@ std::string FormatWholeTable(const ValueTable& table, bool is_coloured) {
          "\n" + FormatFacts(columns, is_coloured);
 }
 
-std::map<std::string, int> CountsBy(const char* field, const json& rows) {
-  std::map<std::string, int> counts;
-  for (const json& row : rows) ++counts[row.at(field)];
-  counts.erase("");
-  return counts;
-}
-
-std::string FillIn(std::string_view text, const json& fields) {
-  std::string filled;
-  for (size_t begin = text.find('{'); begin != text.npos; begin = text.find('{')) {
-    const size_t end = text.find('}', begin);
-    const std::string_view hole = text.substr(begin + 1, end - begin - 1);
-    const size_t colon = hole.find(':');
-    const json& value = fields.at(json::json_pointer(fmt::format("/{}", hole.substr(0, colon))));
-    filled += text.substr(0, begin);
-    if (value.is_null()) {
-      filled += kNoValue;
-    } else if (value.is_string()) {
-      filled += value.get<std::string>();
-    } else if (colon == hole.npos) {
-      filled += value.dump();
-    } else {
-      const std::string format = fmt::format("{{{}}}", hole.substr(colon));
-      filled += fmt::format(fmt::runtime(format), value.get<double>());
-    }
-    text.remove_prefix(end + 1);
-  }
-  return filled += text;
-}
-
 }  // namespace soslam

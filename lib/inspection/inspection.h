@@ -95,12 +95,4 @@ Inspection ContentsOf(const Hdf5File& file);
 void AddDerivedColumns(const std::string& kind, const nlohmann::json& document,
                        Inspection* inspection);
 
-// Number of rows for each value of a field, except empty ones.
-std::map<std::string, int> CountsBy(const char* field, const nlohmann::json& rows);
-
-// The text with each "{field}" replaced by that field of a JSON object, "-" if it is null. Fields
-// of parts are "part/field"; a number may have a format, "{field:.3f}". Throws json::exception for
-// a field that is missing.
-std::string FillIn(std::string_view text, const nlohmann::json& fields);
-
 }  // namespace soslam

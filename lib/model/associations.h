@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/description.h"
@@ -204,11 +205,19 @@ void Describe(Visitor& visit, Associations& associations) {
   visit.Field("agreement", &associations.agreement, "of the objects with the given ones");
   visit.Check([&] {
     const auto tracks = std::ssize(associations.tracks);
+    std::vector<std::pair<std::string, int>> named;
     for (const Associations::ObjectRow& row : associations.objects) {
-      if (row.track >= tracks) {
-        return fmt::format("object {} is of track {} of {}; expected one in the list", row.object,
-                           row.track, tracks);
-      }
+      named.emplace_back(fmt::format("object {} is of", row.object), row.track);
+    }
+    for (const Associations::DetectionRow& row : associations.detections) {
+      if (row.track) named.emplace_back("a detection is of", *row.track);
+    }
+    for (const Associations::TrackRow& row : associations.tracks) {
+      if (row.merge) named.emplace_back("a track was merged into", row.merge->into_track);
+    }
+    for (const auto& [what, track] : named) {
+      if (track < tracks) continue;
+      return fmt::format("{} track {} of {}; expected one in the list", what, track, tracks);
     }
     return std::string();
   });

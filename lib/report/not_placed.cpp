@@ -8,7 +8,6 @@
 #include <set>
 
 #include "artefact/files.h"
-#include "artefact/json_file.h"
 #include "base/error.h"
 #include "base/paths.h"
 #include "inspection/doubts.h"
@@ -21,15 +20,12 @@ namespace soslam {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 
-constexpr const char* kAssociations = "associations.json";
-
-// The row of the track that has the boxes of this one after merging.
-const json& AfterMerging(const json& tracks, const json& index) {
-  const json* row = &TrackAt(tracks, index, kAssociations);
-  for (size_t merges = 0; merges < tracks.size() && row->at("merge").is_object(); ++merges) {
-    row = &TrackAt(tracks, row->at("merge").at("into_track"), kAssociations);
+// The track that has the boxes of this one after merging.
+const Associations::TrackRow& AfterMerging(const Associations& associations, int track) {
+  const Associations::TrackRow* row = &associations.tracks.at(track);
+  for (size_t merges = 0; merges < associations.tracks.size() && row->merge; ++merges) {
+    row = &associations.tracks.at(row->merge->into_track);
   }
   return *row;
 }
@@ -38,12 +34,10 @@ std::string MostFrequent(const std::map<std::string, int>& counts) {
   return std::ranges::max_element(counts, {}, [](const auto& pair) { return pair.second; })->first;
 }
 
-// Why association left out a track, by its row in associations.json.
-std::string FateInWords(const json& track) {
-  const auto fate = track.at("fate").get<std::string>();
-  if (fate != NameOf(TrackFate::kRarelyDetected)) return ReasonOf(fate).words;
-  return RarelyDetectedInWords(track.at("detections").get<int>(),
-                               track.at("frames_in_sight").get<int>());
+// Why association left out a track.
+std::string FateInWords(const Associations::TrackRow& track) {
+  if (track.fate != TrackFate::kRarelyDetected) return ReasonOf(NameOf(track.fate)).words;
+  return RarelyDetectedInWords(track.detections, track.frames_in_sight.value_or(0));
 }
 
 // Rejected detections have no record of the edges that are cut off.
@@ -65,27 +59,27 @@ std::vector<SeenBox> BoxesOf(const Sequence& sequence, const std::vector<int>& d
   return boxes;
 }
 
-std::vector<NotPlaced> TracksLeftOut(const json& associations, const Sequence& sequence) {
+std::vector<NotPlaced> TracksLeftOut(const Associations& associations, const Sequence& sequence) {
   std::vector<const RejectedDetection*> rejected;
   for (const RejectedDetection& detection : sequence.rejected) {
     if (detection.stage == RejectingStage::kAssociate) rejected.push_back(&detection);
   }
   if (rejected.empty()) return {};
-  std::map<const json*, NotPlaced> left_out;  // by row of the track, in the order of the list
-  std::map<const json*, std::map<std::string, int>> labels;
+  // What is left out of each track, in the order of the list.
+  std::map<const Associations::TrackRow*, NotPlaced> left_out;
+  std::map<const Associations::TrackRow*, std::map<std::string, int>> labels;
   auto next = rejected.begin();  // unused detections are in the same order in both files
   const InputError other("associations.json: its unused detections are not those of sequence.json");
-  for (const json& detection : associations.at("detections")) {
-    if (!detection.at("object").is_null()) continue;
+  for (const Associations::DetectionRow& detection : associations.detections) {
+    if (detection.object) continue;
     if (next == rejected.end()) throw other;
     const RejectedDetection& seen = **next++;
-    const Frame& frame = sequence.frames[seen.frame_index];
-    if (detection.at("frame") != frame.id) throw other;
-    if (detection.at("track").is_null()) continue;  // a second box of something
-    const json* track = &AfterMerging(associations.at("tracks"), detection.at("track"));
-    if (track->at("fate") == "object") continue;
-    left_out[track].boxes.push_back(BoxOf(sequence, seen));
-    ++labels[track][seen.label];
+    if (detection.name.frame != sequence.frames[seen.frame_index].id) throw other;
+    if (!detection.track) continue;  // a second box of something
+    const Associations::TrackRow& track = AfterMerging(associations, *detection.track);
+    if (track.fate == TrackFate::kObject) continue;
+    left_out[&track].boxes.push_back(BoxOf(sequence, seen));
+    ++labels[&track][seen.label];
   }
   if (next != rejected.end()) throw other;
   std::vector<NotPlaced> things;
@@ -160,8 +154,8 @@ std::vector<NotPlaced> ThingsNotPlaced(const fs::path& folder, const MapEstimate
                                        const Sequence& sequence) {
   std::vector<NotPlaced> things = ObjectsLeftOut(folder, map, sequence);
   std::ranges::move(LeftOutByPlanes(sequence), std::back_inserter(things));
-  if (Exists(folder / kAssociations)) {
-    const json associations = ReadArtefact(folder / kAssociations, "associations");
+  if (Exists(folder / "associations.json")) {
+    const Associations associations = ReadAssociations(folder / "associations.json").body;
     std::ranges::move(TracksLeftOut(associations, sequence), std::back_inserter(things));
   }
   std::ranges::stable_sort(things, std::greater<>(),

@@ -18,6 +18,7 @@
 #include "geometry/camera.h"
 #include "geometry/landmark.h"
 #include "inspection/projection.h"
+#include "model/associations.h"
 #include "model/estimates.h"
 #include "model/sequence.h"
 #include "report/results_tree.h"
@@ -105,7 +106,7 @@ struct NotPlaced {
 // The tracks that association left out, by associations.json. `sequence` is the one that it wrote,
 // or one that later stages made of it; InputError if it is not. None where the sequence is of a
 // version before 1.7, which does not have their boxes.
-std::vector<NotPlaced> TracksLeftOut(const nlohmann::json& associations, const Sequence& sequence);
+std::vector<NotPlaced> TracksLeftOut(const Associations& associations, const Sequence& sequence);
 
 // What a variant's folder has no landmark for, with the most boxes first: tracks that association
 // left out, and objects without a landmark in the map.

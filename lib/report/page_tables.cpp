@@ -201,7 +201,7 @@ std::string ObjectsTable(const Sequence& sequence, const PageVariant& variant,
       for (auto& value : values) value = value ? OnPage(*value) : value;
       row.emplace_back(metric.Text(values, kDash));
     }
-    if (has_failures) row.emplace_back(WithBlanks(estimate.failure));
+    if (has_failures) row.emplace_back(ReasonOf(estimate.failure).words);
     table.rows.push_back(std::move(row));
     indices.push_back(index);
   }

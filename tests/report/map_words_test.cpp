@@ -168,33 +168,32 @@ TEST_F(SupportInWordsTest, IsTheFloorWhereSomethingTallIsOnIt) {
   EXPECT_EQ(Words(0, {.up_is_in_doubt = true}), "on the lowest plane");
 }
 
-json Track(const std::string& fate, const json& merged_into = {}) {
-  json merge;
-  if (!merged_into.is_null()) merge = {{"into_track", merged_into}};
-  return {{"fate", fate}, {"merge", merge}, {"detections", 3}, {"frames_in_sight", 58}};
+Associations::TrackRow Track(TrackFate fate, std::optional<int> merged_into = {}) {
+  Associations::TrackRow track = {.fate = fate, .detections = 3, .frames_in_sight = 58};
+  if (merged_into) track.merge = Associations::MergeRow{.into_track = *merged_into};
+  return track;
 }
 
 // Associations of seven detections, and the sequence that has those that were not used.
 class TracksLeftOutTest : public testing::Test {
  protected:
   TracksLeftOutTest() {
-    associations_ = {{"tracks",
-                      {Track("object"), Track("never_whole"), Track("merged", 1),
-                       Track("merged", 0), Track("moves")}},
-                     {"detections", json::array()}};
-    Add(0, 1, "chair");            // used
-    Add(1, nullptr, "cup");        // of a track that was left out
-    Add(2, nullptr, "mug");        // of one that was merged into it
-    Add(nullptr, nullptr, "cup");  // a duplicate
-    Add(2, nullptr, "mug");
-    Add(3, nullptr, "chair");  // a worse box of the object
-    Add(4, nullptr, "cat");
+    associations_.tracks = {Track(TrackFate::kObject), Track(TrackFate::kNeverWhole),
+                            Track(TrackFate::kMerged, 1), Track(TrackFate::kMerged, 0),
+                            Track(TrackFate::kMoves)};
+    Add(0, 1, "chair");  // used
+    Add(1, {}, "cup");   // of a track that was left out
+    Add(2, {}, "mug");   // of one that was merged into it
+    Add({}, {}, "cup");  // a duplicate
+    Add(2, {}, "mug");
+    Add(3, {}, "chair");  // a worse box of the object
+    Add(4, {}, "cat");
   }
-  void Add(const json& track, const json& object, const std::string& label) {
-    const int frame = static_cast<int>(associations_["detections"].size());
-    associations_["detections"].push_back(
-        {{"frame", sequence_.frames[frame].id}, {"track", track}, {"object", object}});
-    if (!object.is_null()) return;
+  void Add(std::optional<int> track, std::optional<int> object, const std::string& label) {
+    const int frame = static_cast<int>(associations_.detections.size());
+    associations_.detections.push_back(
+        {.name = {.frame = sequence_.frames[frame].id}, .track = track, .object = object});
+    if (object) return;
     const Box box = {10.0 * frame, 10.0, 10.0 * frame + 20.0, 40.0};
     // Import has rejected others before.
     sequence_.rejected.push_back({frame, "far", 0.1, box, {}, RejectingStage::kImport, "low"});
@@ -202,7 +201,7 @@ class TracksLeftOutTest : public testing::Test {
   }
 
   Sequence sequence_ = CuboidSequence(3, 8);
-  json associations_;
+  Associations associations_;
 };
 
 TEST_F(TracksLeftOutTest, HaveTheBoxesOfAllThatWasMergedIntoThem) {
@@ -222,19 +221,16 @@ TEST_F(TracksLeftOutTest, AreRefusedWhereTheSequenceIsAnother) {
   const auto refused = [&] { TracksLeftOut(associations_, sequence_); };
   sequence_.rejected.pop_back();
   ExpectError<InputError>(refused, {"associations.json", "sequence.json"});
-  associations_["detections"].erase(6);
+  associations_.detections.pop_back();
   EXPECT_EQ(TracksLeftOut(associations_, sequence_).size(), 1u);
-  associations_["detections"].erase(5);
+  associations_.detections.pop_back();
   ExpectError<InputError>(refused, {"associations.json", "sequence.json"});
-  associations_["detections"].push_back(associations_["detections"].back());
+  associations_.detections.push_back(associations_.detections.back());
   ExpectError<InputError>(refused, {"associations.json", "sequence.json"});
 }
 
-TEST_F(TracksLeftOutTest, AreRefusedWithATrackThatIsNotThere) {
-  associations_["detections"][1]["track"] = 5;
-  ExpectError<InputError>([&] { TracksLeftOut(associations_, sequence_); }, {"track 5 of 5"});
-  associations_["detections"][1]["track"] = 1;
-  associations_["tracks"][1]["merge"] = {{"into_track", 2}};  // a circle
+TEST_F(TracksLeftOutTest, EndWhereMergesGoInACircle) {
+  associations_.tracks[1].merge = Associations::MergeRow{.into_track = 2};
   EXPECT_EQ(TracksLeftOut(associations_, sequence_).size(), 3u);
 }
 

@@ -69,10 +69,23 @@ TEST_F(RunAssociateTest, SaysWhatItDecided) {
   }
 }
 
+TEST_F(RunAssociateTest, TracksThatAreNotThereAreRefused) {
+  Run();
+  const json associations = Associations();
+  for (const std::string place : {"/detections/0/track", "/objects/0/track"}) {
+    json damaged = associations;
+    damaged[json::json_pointer(place)] = 999;
+    WriteBytes(File("associations"), damaged.dump());
+    ExpectError<InputError>([&] { ReadAssociations(File("associations")); },
+                            {"associations.json", "track 999 of"});
+  }
+}
+
 TEST_F(RunAssociateTest, PagesFindTheBoxesOfWhatItLeftOut) {
   options_.moving_labels = "other";
   Run();
-  const std::vector<NotPlaced> things = TracksLeftOut(Associations(), ReadSequence(File("output")));
+  const std::vector<NotPlaced> things =
+      TracksLeftOut(ReadAssociations(File("associations")).body, ReadSequence(File("output")));
   ASSERT_EQ(things.size(), 2u);  // every other one of four objects
   const auto detections = DetectionsByObject(sequence_);
   for (size_t i = 0; i < things.size(); ++i) {
