@@ -171,7 +171,7 @@ TEST_F(SlowFaultyDiskTest, ReadOnlyDisk) {
   const CommandResult run = Run();
   EXPECT_NE(run.exit_code, 0);
   EXPECT_THAT(run.output + run.errors, HasSubstr("Read-only file system"));
-  EXPECT_THAT(run.output + run.errors, HasSubstr("expected RESULTS="));
+  EXPECT_THAT(run.output + run.errors, HasSubstr("expected a folder that you may write to"));
   EXPECT_EQ(Artefacts(), before);
 }
 
