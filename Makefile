@@ -45,7 +45,11 @@ MAKEFLAGS += --no-print-directory
 TOLD := DATASET VARIANT STAGE $(if $(filter file,$(origin DATA_ROOT)),,DATA_ROOT) RESULTS PIPELINES THREADS BUILD BIN \
   OUTSIDE_PATHS LAUNCH DOWNLOADS ANNOTATIONS NETWORKS WITHOUT MIRROR MAPS IMAGES NETWORK DETECTIONS CAMERA MODEL SCALE \
   CAMERA_HEIGHT NAME
-SOSLAM = SETTINGS_OF_MAKE=yes $(foreach name,$(TOLD),$(name)='$(subst ','\'',$(value $(name)))') MAKE='$(MAKE)' ./soslam
+SOSLAM = SETTINGS_OF_MAKE=yes $(foreach name,$(TOLD),$(name)='$(subst ','\'',$(value $(name)))') JOBS= MAKE='$(MAKE)' ./soslam
+
+# What make itself uses; ./soslam checks what it is told.
+$(foreach name,RESULTS BUILD DATA_ROOT PIPELINES,$(if $(filter-out 1,$(words $(value $(name)))), \
+  $(error $(name)='$(value $(name))': expected one folder without spaces in its path)))
 
 # A variable that is misspelt would be ignored without a word. A make above this one has variables of its own.
 ifeq ($(MAKELEVEL),0)
@@ -56,13 +60,14 @@ $(foreach name,$(filter-out $(KNOWN) -%,$(given-names)), \
   $(error $(name)=...: no variable of this Makefile has this name))
 endif
 
-COMMANDS := map data network doctor export explain check-minima status report tables results-page verify reproduce
+COMMANDS := clean map data network doctor export explain check-minima status report tables results-page verify reproduce
 .PHONY: $(COMMANDS) help demo run run-built plan ablation scenes sweep submit setup build test test-slow test-build \
   test-slurm bench formatter format format-check clean distclean
 
 help: ## List the targets
 	@echo 'make <target> [NAME=value ...]; ./soslam help says what values there are: --data_root is DATA_ROOT'
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 16 | sed 's/^/  /'
+	@echo 'OUTSIDE_PATHS=--allow_outside_paths (images may lie outside their dataset: see docs/datasets.md)'
 	@echo 'Sweeps (see docs/sweeps.md): DATASETS="<name> <name>", SCENES="<scene file> ...", SEEDS="1 2 3" of the'
 	@echo 'noise in scenes, SBATCH="<arguments of sbatch>", LAUNCH=<command that starts each stage, as srun>'
 	@cd $(PIPELINES)/variants && echo Variants: *.json | sed 's/\.json//g'
@@ -78,6 +83,7 @@ run: ## Run DATASET=<name> through VARIANT=<name>|all; only what is out of date,
 run run-built plan:
 	+@$(SOSLAM) $@
 
+clean: ## Delete what runs wrote to RESULTS
 map: ## Make a map of IMAGES=<folder of photos, or a video> with NETWORK=<file.onnx>; see docs/photos-to-map.md
 data: ## Fetch DATASET=<name> from its publishers, check it, lay our annotation over it: DATA_ROOT/<name>
 network: ## Fetch the detector network YOLOX-nano, check it and show its licence: NETWORKS/yolox_nano
@@ -100,7 +106,12 @@ ablation: ## Run DATASET=<name> through the ablations of docs/shapes.md, into RE
 # A sweep: datasets, and each scene rendered with each seed of its noise, as dataset <scene>-seed<seed> in DATA_ROOT.
 scene-name = $(basename $(notdir $(1)))
 SEEDED = $(foreach scene,$(SCENES),$(SEEDS:%=$(call scene-name,$(scene))-seed%))
-SWEEP = $(notdir $(DATASETS:%/=%)) $(SEEDED)
+in-data-root = $(if $(filter $(abspath $(DATA_ROOT)),$(abspath $(dir $(1)))),$(notdir $(1)), \
+  $(error dataset '$(1)': expected a folder in DATA_ROOT = $(DATA_ROOT)))
+SWEEP = $(foreach name,$(DATASETS:%/=%),$(if $(findstring /,$(name)),$(call in-data-root,$(name)),$(name))) $(SEEDED)
+ifneq ($(filter-out $(COMMANDS) run run-built plan,$(if $(NAME),$(MAKECMDGOALS))),)
+$(error make $(MAKECMDGOALS) takes no NAME)
+endif
 ifneq ($(filter sweep submit,$(MAKECMDGOALS)),)
 $(if $(DATASETS)$(SCENES),,$(error expected DATASETS='<name> ...', SCENES='<file> ...' or both))
 $(if $(filter-out $(words $(sort $(SEEDED))),$(words $(SEEDED))),$(error SCENES or SEEDS='$(SEEDS)' has a name twice))
@@ -181,10 +192,6 @@ format: formatter ## Format the sources
 
 format-check: formatter ## Fail when a source is not formatted
 	@clang-format-14 --dry-run -Werror $(SOURCES)
-
-clean: ## Delete what runs wrote to RESULTS
-	@for plan in $(RESULTS)/*/plan.mk; do test ! -e "$$plan" || rm -rf "$${plan%/plan.mk}"; done
-	@rm -rf $(addprefix $(RESULTS)/,tables.md tables timing.json run.json report.html bench.json bench.md .*.lock)
 
 distclean: clean ## Delete the build as well
 	@rm -rf $(BUILD)

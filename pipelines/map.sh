@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
+# shellcheck shell=bash
 # map.sh: what `soslam map` does, by which it is read: its settings are those of IMAGES, NETWORK, DETECTIONS, CAMERA and
 # MODEL, paths which may be empty and have any characters; SCALE and CAMERA_HEIGHT, numbers, which may be empty. The
 # steps, and the files that tell that they are done, are in map.mk.
@@ -17,7 +18,6 @@ fi
 [[ -n $NETWORK || -n $DETECTIONS ]] ||
   refuse "expected a network, as yolox_nano.onnx (\`make network\` fetches it), or detections, a CSV file"
 [[ -z $NETWORK || -z $DETECTIONS ]] || refuse "found a network and detections; expected one of them"
-[[ $IMAGES$NETWORK$DETECTIONS$CAMERA$MODEL != *$'\n'* ]] || refuse "a path has several lines; expected a path of one line"
 for file in "$NETWORK" "$DETECTIONS" "$CAMERA"; do
   [[ -z $file || -f $file ]] || refuse "'$file': no such file" 3
 done
@@ -27,7 +27,7 @@ done
 variants=$VARIANT
 for variant in $variants; do
   [[ -f pipelines/variants/$variant.json || -f $MAPS/$NAME/pipelines/variants/$variant.json ]] ||
-    refuse "variant '$variant': no such variant; \`soslam help\` lists them"
+    refuse "variant '$variant': no such variant; \`./soslam help\` lists them"
 done
 makes_no_map="variant '$VARIANT': the first one makes no map; expected one that does, as OursSP"
 own=pipelines/variants/${VARIANT%% *}.json
@@ -122,4 +122,5 @@ locked_run all
 
 map=$RESULTS/$DATASET/${VARIANT%% *}/map.json
 [[ -e $map ]] || refuse "$makes_no_map" 4
-echo "$("$BIN/soslam-inspect" "$map" --headline), page: $RESULTS/$DATASET/report.html"
+headline=$("$BIN/soslam-inspect" "$map" --headline)
+echo "$headline, page: $RESULTS/$DATASET/report.html"

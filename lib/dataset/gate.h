@@ -91,7 +91,7 @@ struct Rejections {
   void Add(const DetectionRow& row, RejectReason reason);
 };
 
-// "12 detections rejected: 10 too near the image border, 2 duplicate of another one".
+// "12 detections rejected: 10 too near the image border, 2 repeating another one".
 std::string DescribeRejections(const RejectionCounts& rejected);
 
 // True if the object of a rejected row is still in view and may occlude others.

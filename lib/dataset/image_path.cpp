@@ -102,6 +102,7 @@ FrameLookup::FrameLookup(const std::vector<ListedImage>& images) {
   for (const ListedImage& image : images) {
     const fs::path path = image.image;
     const std::set<std::string> names = {path.string(), path.filename().string(),
+                                         (path.parent_path() / path.stem()).string(),
                                          path.stem().string()};
     const auto row = static_cast<int>(folders_.size());
     for (const std::string& name : names) rows_by_name_[name].push_back(row);
@@ -142,10 +143,12 @@ std::optional<int> FrameLookup::Find(const FrameKey& key, const std::string& pla
   const auto find = [&](const fs::path& image) {
     const auto found = rows_by_name_.find(image.string());
     const bool has_another_ending = found == rows_by_name_.end() && HasNameOfImage(image);
-    return has_another_ending ? rows_by_name_.find(image.stem().string()) : found;
+    return has_another_ending ? rows_by_name_.find((image.parent_path() / image.stem()).string())
+                              : found;
   };
   const bool has_own_name = rows_by_name_.contains(name) || rows_by_name_.contains(file_name);
-  auto found = rows_by_name_.find(name);
+  auto found = rows_by_name_.find(has_own_name && !rows_by_name_.contains(name) ? file_name : name);
+  if (found == rows_by_name_.end()) found = find(name);
   if (found == rows_by_name_.end()) found = find(file_name);
   if (found == rows_by_name_.end()) found = find(NameOfOriginal(file_name));
   if (found == rows_by_name_.end()) return std::nullopt;
@@ -168,7 +171,7 @@ std::optional<int> FrameLookup::Find(const FrameKey& key, const std::string& pla
   if (other_names_.try_emplace(row, other_name).first->second != other_name) {
     throw InputError(
         fmt::format("{}: image '{}' would be row {} of the list, as another copy of it or itself "
-                    "is; expected one name of each image: export boxes without augmentation",
+                    "is; expected one name of each image, as exported without augmentation",
                     place, name, row));
   }
   return row;

@@ -15,6 +15,7 @@
 #include "geometry/angles.h"
 #include "ground/ground_checks.h"
 #include "mapping/input_alternatives.h"
+#include "model/estimates.h"
 #include "model/label_groups.h"
 
 namespace soslam {
@@ -168,7 +169,7 @@ std::vector<Finding> CheckFailures(const LandmarkEstimates& estimates) {
     if (!has_failed) return;
     ++failed;
     ++reasons[reason];
-    if (reason == "fewer_than_three_measured_edges") ++cut_off;
+    if (reason == kFewerThanThreeMeasuredEdges) ++cut_off;
   };
   for (const auto& observation : estimates.observations) {
     count(observation.hypotheses.empty(), observation.failure);

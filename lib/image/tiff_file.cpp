@@ -194,7 +194,8 @@ bool IsTiff(std::string_view first_bytes) { return OrderOf(first_bytes.substr(0,
 // Header of the first page. libtiff, too, takes the first of two entries with the same tag; it
 // allocates whole tiles. What is packed in an unknown way becomes black without an error.
 std::optional<ImageHeader> Header(const ImageBytes& file) {
-  constexpr std::uint64_t kMaxBits = 16, kMaxTileSide = 1 << 13;
+  constexpr std::uint64_t kMaxTileSide = 1 << 13;
+  constexpr std::uint64_t kBits[] = {1, 8, 16};
   constexpr std::uint64_t kCompressions[] = {1, 5, 7, 8, 32773, 32946};  // none, LZW, JPEG, ...
   const auto directory = TiffDirectory::Read(file);
   if (!directory) return std::nullopt;
@@ -203,11 +204,13 @@ std::optional<ImageHeader> Header(const ImageBytes& file) {
   };
   const auto width = directory->Number(kWidth);
   const auto height = directory->Number(kHeight);
-  const auto compression =
-      directory->Count(kCompression) == 0 ? 1 : directory->Number(kCompression).value_or(0);
-  if (!width || !height || !is_at_most(kBitsPerSample, kMaxBits) ||
-      std::ranges::count(kCompressions, compression) == 0 ||
-      !is_at_most(kTileWidth, kMaxTileSide) || !is_at_most(kTileHeight, kMaxTileSide)) {
+  const auto is_one_of = [&](std::uint64_t tag, const auto& known) {
+    const auto number = directory->Count(tag) == 0 ? 1 : directory->Number(tag).value_or(0);
+    return std::ranges::count(known, number) > 0;
+  };
+  if (!width || !height || !is_one_of(kBitsPerSample, kBits) ||
+      !is_one_of(kCompression, kCompressions) || !is_at_most(kTileWidth, kMaxTileSide) ||
+      !is_at_most(kTileHeight, kMaxTileSide)) {
     return std::nullopt;
   }
   return ImageHeader{{static_cast<std::int64_t>(*width), static_cast<std::int64_t>(*height)},

@@ -7,6 +7,7 @@
 
 #include "geometry/angles.h"
 #include "geometry/triangulation.h"
+#include "model/estimates.h"
 
 namespace soslam {
 namespace {
@@ -96,7 +97,7 @@ ObjectEvidence EvidenceInCamera(const Sequence& sequence, const Detection& detec
 std::string WhyNoSolution(const ObjectEvidence& evidence) {
   const auto measured =
       std::ranges::count(evidence.views.front().edges, false, &BoxEdge::is_one_sided);
-  return measured < 3 ? "fewer_than_three_measured_edges" : "no_solution";
+  return measured < 3 ? kFewerThanThreeMeasuredEdges : "no_solution";
 }
 
 double HeightAtUnitDepth(const BoxView& view) {

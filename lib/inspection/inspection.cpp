@@ -201,8 +201,13 @@ const ValueTable& TableOf(const Inspection& inspection, const std::optional<std:
     if (!name || table.name == *name) return table;
     known.push_back(table.name);
   }
-  throw SettingsError(fmt::format("--table {}: {} has no such table; expected one of {}",
-                                  name.value_or(""), inspection.title, fmt::join(known, ", ")));
+  if (!name) {
+    throw SettingsError(
+        fmt::format("--csv: {} has no tables; its values are shown without", inspection.title));
+  }
+  throw SettingsError(
+      fmt::format("--table {}: {} has no such table; expected one of {}", *name, inspection.title,
+                  known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", "))));
 }
 
 std::string FormatWholeTable(const ValueTable& table, bool is_coloured) {

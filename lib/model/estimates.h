@@ -36,6 +36,7 @@ struct ObservationEstimate {
 
 // Failure of an object that is not known to be static and thus has no place in the map.
 inline constexpr const char* kMovingObject = "moving";
+inline constexpr const char* kFewerThanThreeMeasuredEdges = "fewer_than_three_measured_edges";
 
 using Covariance9 = Eigen::Matrix<double, 9, 9>;
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "model/estimates.h"
+
 namespace soslam {
 namespace {
 
@@ -31,7 +33,7 @@ const Reason kReasons[] = {
     {"near_border", "too near the image border",
      "objects that the image cuts, which the paper's protocol drops",
      "a smaller border_px keeps them, with the cut edges as one-sided ones"},
-    {"duplicate", "duplicate of another one",
+    {"duplicate", "repeating another one",
      "several boxes of one object in one image, or one id for several objects",
      "an id for each object, or no ids and estimated association"},
     {"too_few_observations", "of an object with too few boxes",
@@ -49,7 +51,7 @@ const Reason kReasons[] = {
     {"no_finite_quadric", "without a body that fits its boxes"},
     {"no_start", "without an initial estimate"},
     {"no_ratio_for_label", "of a label that the semantic table does not have"},
-    {"fewer_than_three_measured_edges", "with too many edges cut off"},
+    {kFewerThanThreeMeasuredEdges, "with too many edges cut off"},
     {"not_determined_by_its_views", "seen from too few sides to tell how far away it is"},
     {"collapsed", "shrunk to a point in the optimisation"},
 };

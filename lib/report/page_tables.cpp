@@ -10,6 +10,7 @@
 
 #include "base/table.h"
 #include "base/text.h"
+#include "model/reasons.h"
 #include "report/page.h"
 #include "report/page_html.h"
 #include "report/page_parts.h"
@@ -268,7 +269,8 @@ std::string StagesSection(const DatasetPage& page) {
       landmarks += estimate.landmark_in_world ? 1 : 0;
       if (!estimate.failure.empty()) ++failures[estimate.failure];
     }
-    std::vector<Cell> row = {variant.name, std::to_string(landmarks), ListOf(failures)};
+    std::vector<Cell> row = {variant.name, std::to_string(landmarks),
+                             ListOf(ReasonsInWords(failures))};
     if (const auto& solver = variant.solver) {
       row.insert(row.end(), {std::to_string(solver->iterations), solver->converged ? "yes" : "no",
                              ListOf(solver->residuals), ListOf(solver->gated)});
@@ -357,7 +359,7 @@ std::string DatasetTables(const DatasetPage& page) {
   const size_t shown = main.selection.shown.size();
   if (shown < main.sequence.frames.size()) counts += fmt::format("; {} frames are shown", shown);
   const auto& rejected = main.sequence.rejected_detections;
-  if (!rejected.empty()) counts += "; not used: " + ListOf(rejected);
+  if (!rejected.empty()) counts += "; not used: " + ListOf(ReasonsInWords(rejected));
   std::string notes;
   for (const std::string& note : page.notes) notes += Faint(note);
   return fmt::format("<h1>{}</h1>\n", HtmlText(page.name)) + Faint(counts) + LinkToFindings(page) +

@@ -8,6 +8,7 @@
 #include "artefact/atomic_file.h"
 #include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
+#include "artefact/json_file.h"
 #include "base/error.h"
 #include "base/paths.h"
 #include "base/text.h"
@@ -198,8 +199,8 @@ std::string RunInspect(const InspectRequest& request, bool is_coloured) {
   if (request.image && !request.csv && !request.table) return "";
   std::optional<Sequence> sequence;
   if (request.sequence) sequence = ReadSequence(*request.sequence, PlaneNeed::kNotNeeded);
-  const json header = ReadArtefactHeader(request.file);
-  const PipelineStage* stage = FindStage(header.value("stage", ""));
+  const PipelineStage* stage = FindStage(
+      ReadDocument<FileHeader>(ReadArtefactHeader(request.file), request.file.string()).stage);
   const Inspection inspection =
       Inspect(request.file, sequence,
               stage == nullptr ? json::object() : stage->resolve(json::object(), stage->name));

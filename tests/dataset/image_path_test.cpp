@@ -124,6 +124,7 @@ TEST_F(FrameLookupTest, AnotherEndingIsTheSameImage) {
   EXPECT_EQ(lookup_.Find("12.jpg", ""), std::nullopt);
   EXPECT_EQ(lookup_.Find("12.51.txt", ""), std::nullopt);
   ExpectError<InputError>([&] { lookup_.Find("0.jpg", "images.txt:5"); }, {"2, 3"});
+  EXPECT_EQ(lookup_.Find("b/0.jpg", ""), 3);
 }
 
 TEST_F(FrameLookupTest, SeveralCopiesOfAnImageAreRefused) {

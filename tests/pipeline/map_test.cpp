@@ -212,7 +212,7 @@ TEST_F(MapTest, RefusesWhatIsMissing) {
   for (const std::string& network : {"$(shell touch " + marker + ")", "`touch " + marker + "`"}) {
     expect_refused({photos_, "--network", network}, 3, "no such file");
   }
-  expect_refused({photos_, "--network", "a\ntouch " + marker}, 2, "expected a path of one line");
+  expect_refused({photos_, "--network", "a\ntouch " + marker}, 2, "several lines; expected one");
   expect_refused({"/nowhere's", "--network", detections_}, 3, "'/nowhere's'; there is no such");
   expect_refused_for_photos({"--detections", detections_}, "found a network and detections");
   expect_refused_for_photos({"--scale", "2m"}, "scale is '2m'; expected a number");
@@ -229,6 +229,23 @@ TEST_F(MapTest, RefusesWhatIsMissing) {
     expect_refused_for_photos({"--name", name}, "expected letters and digits");
   }
   EXPECT_FALSE(fs::exists(marker));
+}
+
+TEST_F(MapTest, TheVariantIsOursSpUnlessGiven) {
+  const fs::path results = maps_ / "room/results/room";
+  fs::create_directories(results / "OursSP");
+  fs::create_directories(results / "OursS");
+  // Ends where the images are another map's, with the folders of the variants of this command.
+  WriteBytes(programs_ / "soslam-frames", "#!/bin/sh\nexit 7\n");
+  fs::permissions(programs_ / "soslam-frames", fs::perms::owner_all);
+  for (const std::string variant : {"", " OursSP "}) {
+    EXPECT_NE(RunCommand(Words("map", {photos_, "--detections", detections_, "--name", "room",
+                                       "--variant", variant, "--bin", programs_}))
+                  .exit_code,
+              0);
+    EXPECT_TRUE(fs::exists(results / "OursSP")) << variant;
+  }
+  EXPECT_FALSE(fs::exists(results / "OursS"));
 }
 
 // Make and the door are told the same.

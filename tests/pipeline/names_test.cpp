@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -77,6 +78,33 @@ TEST_F(NamesTest, OfTheCallerAreNeitherSplitNorOptions) {
               HasSubstr("expected a value after it"));
   EXPECT_THAT(ExpectExit(2, Make("run-built", {"VARIANTS=OursS"})).errors,
               HasSubstr("VARIANTS=...: no variable of this Makefile"));
+}
+
+TEST_F(NamesTest, WhatIsNotThereIsSaid) {
+  EXPECT_THAT(ExpectExit(3, Command("doctor", {"--dataset", "nowhere"})).errors,
+              HasSubstr("nowhere: no such dataset folder"));
+  fs::create_directories(pipeline_.Results() / "OursS");
+  WriteBytes(pipeline_.Results() / "OursS/map.json", "{}");
+  for (const std::string command : {"export", "check-minima"}) {
+    EXPECT_THAT(ExpectExit(2, Command(command, {"--variant", "Typo"})).errors,
+                HasSubstr("no map.json of variant 'Typo'"));
+  }
+  EXPECT_THAT(ExpectExit(2, Command("reproduce", {})).errors, HasSubstr("about all datasets"));
+}
+
+TEST_F(NamesTest, MakeRefusesWhatItWouldSplitOrIgnore) {
+  fs::create_directories(pipeline_.Results());
+  WriteBytes(pipeline_.Results() / "plan.mk", "");
+  for (const auto& [goal, setting, expected] : std::vector<std::array<std::string, 3>>{
+           {"clean", "RESULTS=a b", "expected one folder without spaces"},
+           {"clean", "RESULTS=", "expected one folder without spaces"},
+           {"distclean", "BUILD=a b", "expected one folder without spaces"},
+           {"demo", "NAME=room", "takes no NAME"},
+           {"clean", "NAME=room", "no such map"},
+           {"sweep", "DATASETS=/elsewhere/small", "expected a folder in DATA_ROOT"}}) {
+    EXPECT_THAT(ExpectExit(2, Make(goal, {setting})).errors, HasSubstr(expected)) << setting;
+  }
+  EXPECT_TRUE(fs::exists(pipeline_.Results() / "plan.mk"));
 }
 
 TEST_F(NamesTest, ADatasetMayBeNamedByItsPath) {

@@ -147,6 +147,14 @@ TEST(FrontDoorTest, DryRunAndStatusFollowTheRun) {
   EXPECT_THAT(make({"explain", "VARIANT=InitP", "STAGE=evaluate"}), HasSubstr("is done"));
 }
 
+TEST(FrontDoorTest, DryRunsNeedNeitherProgramsNorData) {
+  const SmallPipeline pipeline;
+  EXPECT_THAT(ExpectSuccess(RunCommand(pipeline.WordsOfProject(
+                  {"-n", "run-built", "BIN=" + pipeline.Folder().string()}))),
+              HasSubstr("then the stages that"));
+  EXPECT_FALSE(fs::exists(pipeline.Folder() / "results"));
+}
+
 TEST(FrontDoorTest, SeveralVariantsRunSideBySideUnlessToldOtherwise) {
   const SmallPipeline pipeline;
   const auto are_side_by_side = [&](const std::vector<std::string>& arguments) {

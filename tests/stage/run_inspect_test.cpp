@@ -6,6 +6,7 @@
 
 #include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
+#include "artefact/json_file.h"
 #include "base/error.h"
 #include "base/options.h"
 #include "ground/ground_checks.h"
@@ -54,6 +55,14 @@ class RunInspectTest : public FolderTest {
 
   Sequence sequence_ = SyntheticSequence(RandomScene(1, 3, 5), false);
 };
+
+TEST_F(RunInspectTest, ADamagedStageIsRefused) {
+  nlohmann::json document = ReadArtefact(File("metrics.json"), "metrics");
+  document["artefact"]["stage"] = 5;
+  WriteBytes(File("metrics.json"), document.dump());
+  ExpectError<InputError>([&] { RunInspect(RequestOf("metrics.json"), false); },
+                          {"metrics.json", "stage"});
+}
 
 TEST_F(RunInspectTest, WordsAndTableAreReturned) {
   const std::string text = RunInspect(RequestOf("sequence.json"), false);
