@@ -50,7 +50,7 @@ TEST(DatasetTables, HaveTheNumbersOfAllVariantsTheBestBold) {
   const std::string html = DatasetTables(Page());
   EXPECT_THAT(html, AllOf(HasSubstr("<h1>a &amp; b</h1>"),
                           HasSubstr("2 frames, 2 objects, 1 detection used; "
-                                    "1 frames are shown; not used: 3 near border")));
+                                    "1 frames are shown; not used: 3 too near the image border")));
   // Both read the same; of single frames there is no trajectory.
   EXPECT_THAT(html, HasSubstr("<td>OursP</td><td>2</td><td>9</td><td class=\"best\">0.500</td><td "
                               "class=\"best\">0.0123</td>"));

@@ -293,7 +293,7 @@ TEST_F(RunFramesTest, RefusesWhatMakesNoDataset) {
   ExpectError<InputError>([&] { Run(photos_); }, {photos_.string(), "has 1 image(s)"});
   WritePhoto(photos_ / "2.jpg", DrawnView(0));
   ExpectError<NothingUsableError>([&] { Run(photos_); },
-                                  {photos_.string(), "1 of 2 images", "1 duplicate"});
+                                  {photos_.string(), "1 of 2 images", "1 repeating another one"});
   WritePhoto(photos_ / "2.jpg", DrawnView(0), ExifOf(1));
   ExpectError<NothingUsableError>([&] { Run(photos_); },
                                   {photos_.string(), "1 of 2 images", "1 no motion"});
