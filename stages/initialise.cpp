@@ -12,6 +12,10 @@ int main(int argc, char** argv) {
                   {"table", "semantic table with the size ratio of each label"},
                   {"edges", "edges.h5 of soslam-edges; needed when method = cuboid_proposals",
                    false},
+                  {"appearance",
+                   "appearance.h5 of soslam-appearance; needed when the setting picture_evidence "
+                   "is true",
+                   false},
                   {"points",
                    "points.h5 of soslam-track or soslam-reconstruct; needed when the setting "
                    "point_evidence is true, with method = yaw_sweep",

@@ -13,6 +13,10 @@ int main(int argc, char** argv) {
                   {"table", "semantic table with the size ratio of each label"},
                   {"initial", "initial.json of soslam-initialise"},
                   {"edges", "edges.h5 of soslam-edges"},
+                  {"appearance",
+                   "appearance.h5 of soslam-appearance; needed when the setting picture_evidence "
+                   "is true",
+                   false},
                   {"points",
                    "points.h5 of soslam-track or soslam-reconstruct; needed when the setting "
                    "point_evidence is true, with method = profile",

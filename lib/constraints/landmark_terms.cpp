@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "constraints/landmark_terms.h"
 
+#include <algorithm>
+#include <numbers>
+
 #include "constraints/loss.h"
 #include "constraints/parameters.h"
 
@@ -66,6 +69,40 @@ void YawTerm::Evaluate(const Landmark& landmark, Residuals residuals, Jacobian* 
   if (jacobian == nullptr) return;
   jacobian->setZero();
   jacobian->leftCols<3>() = YawJacobian(normal_, rotation) / prior_.sigma;
+}
+
+namespace {
+
+constexpr int kPadding = 2;  // of cubic interpolation
+
+std::vector<double> Padded(const std::vector<double>& costs) {
+  std::vector<double> padded(costs.end() - kPadding, costs.end());
+  padded.insert(padded.end(), costs.begin(), costs.end());
+  padded.insert(padded.end(), costs.begin(), costs.begin() + kPadding);
+  return padded;
+}
+
+}  // namespace
+
+YawCostTerm::YawCostTerm(const Plane& plane, const std::vector<double>& costs)
+    : normal_(plane.normal),
+      padded_(Padded(costs)),
+      grid_(padded_.data(), 0, static_cast<int>(padded_.size())),
+      interpolator_(grid_) {}
+
+void YawCostTerm::Evaluate(const Landmark& landmark, Residuals residuals,
+                           Jacobian* jacobian) const {
+  constexpr double kLeast = 1e-8;  // of a cost: the root has no derivative at zero
+  const Eigen::Quaterniond& rotation = landmark.frame_from_object.rotation;
+  const double steps = static_cast<double>(padded_.size() - 2 * kPadding) / std::numbers::pi;
+  double yaw = Yaw(normal_, rotation);
+  if (yaw < 0.0) yaw += std::numbers::pi;
+  double cost, slope;
+  interpolator_.Evaluate(kPadding + steps * yaw, &cost, &slope);
+  residuals[0] = std::sqrt(2.0 * std::max(cost, kLeast));
+  if (jacobian == nullptr) return;
+  jacobian->setZero();
+  jacobian->leftCols<3>() = slope * steps / residuals[0] * YawJacobian(normal_, rotation);
 }
 
 void LeaningTerm::Evaluate(const Landmark& landmark, Residuals residuals,

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <ceres/cost_function.h>
+#include <ceres/cubic_interpolation.h>
 
 #include <Eigen/Core>
 #include <cmath>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "constraints/landmark_cost.h"
 #include "constraints/standing_on_plane.h"
@@ -111,6 +113,21 @@ class YawTerm final : public LandmarkTerm {
  private:
   Eigen::Vector3d normal_;
   YawPrior prior_;
+};
+
+// Cost over the yaw modulo half a turn, periodic and none below zero: residual sqrt(2 cost).
+class YawCostTerm final : public LandmarkTerm {
+ public:
+  // Costs at yaws (rad, see Yaw) of pi i / n.
+  YawCostTerm(const Plane& plane, const std::vector<double>& costs);
+  int NumResiduals() const override { return 1; }
+  void Evaluate(const Landmark& landmark, Residuals residuals, Jacobian* jacobian) const override;
+
+ private:
+  Eigen::Vector3d normal_;
+  std::vector<double> padded_;  // costs with two more at either end
+  ceres::Grid1D<double> grid_;
+  ceres::CubicInterpolator<ceres::Grid1D<double>> interpolator_;
 };
 
 // The residuals of StandingOnPlane of a body that may lean, on a constant plane.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "geometry/angles.h"
@@ -60,6 +61,69 @@ std::array<BoxEdge, 4> EdgesOf(const Sequence& sequence, const Detection& detect
                   options.detection_sigma_fraction, prior ? prior->edge_bias : EdgeBias());
 }
 
+std::vector<PictureView> PicturesInWorld(const Sequence& sequence, const std::vector<int>& detections) {
+  std::vector<PictureView> pictures;
+  for (const int index : detections) {
+    const Detection& detection = sequence.detections[index];
+    if (!detection.appearance) continue;
+    pictures.push_back({detection.appearance,
+                        sequence.FrameOf(detection).world_from_camera.rotation *
+                            sequence.CameraOf(detection).Ray(detection.box.Centre())});
+  }
+  return pictures;
+}
+
+std::vector<double> PictureCosts(const std::vector<PictureView>& pictures, const Plane& plane) {
+  if (pictures.empty()) return {};
+  std::vector<Eigen::Vector3d> rays;
+  for (const PictureView& picture : pictures) rays.push_back(picture.ray_in_reference);
+  const auto weights = DirectionWeights(
+      rays, pictures.front().appearance->direction_correlation_deg * kRadPerDeg);
+  const Eigen::Quaterniond reference_from_ground = UprightRotation(plane.normal, 0.0);
+  std::vector<double> costs(kYawsOfPictures, 0.0);
+  for (size_t i = 0; i < pictures.size(); ++i) {
+    const Eigen::Vector3d to_camera = -(reference_from_ground.conjugate() * rays[i]);
+    const double bearing = std::atan2(to_camera.y(), to_camera.x());
+    const AzimuthCosts& of_azimuth = pictures[i].appearance->azimuth_costs;
+    for (int yaw = 0; yaw < kYawsOfPictures; ++yaw) {
+      const double azimuth = bearing - 2.0 * std::numbers::pi * yaw / kYawsOfPictures;
+      const double turns = azimuth / (2.0 * std::numbers::pi);
+      const double place = kAzimuthBins * (turns - std::floor(turns));
+      const int low = static_cast<int>(place) % kAzimuthBins;
+      const double part = place - std::floor(place);
+      costs[yaw] += weights[i] * ((1.0 - part) * of_azimuth[low] +
+                                  part * of_azimuth[(low + 1) % kAzimuthBins]);
+    }
+  }
+  return costs;
+}
+
+std::vector<double> HalfTurnCosts(const std::vector<double>& picture_costs) {
+  const size_t half = picture_costs.size() / 2;
+  std::vector<double> costs;
+  for (size_t i = 0; i < half; ++i) {
+    const auto [lower, higher] = std::minmax(picture_costs[i], picture_costs[i + half]);
+    costs.push_back(lower - std::log1p(std::exp(lower - higher)));
+  }
+  const double lowest = costs.empty() ? 0.0 : *std::ranges::min_element(costs);
+  for (double& cost : costs) cost -= lowest;
+  return costs;
+}
+
+double FrontProbability(const std::vector<double>& picture_costs, const Plane& plane,
+                        const Landmark& landmark) {
+  const auto count = static_cast<int>(picture_costs.size());
+  const double turns =
+      Yaw(plane.normal, landmark.frame_from_object.rotation) / (2.0 * std::numbers::pi);
+  const double place = count * (turns - std::floor(turns));
+  const auto at = [&](double index) {
+    const int low = static_cast<int>(index) % count;
+    const double part = index - std::floor(index);
+    return (1.0 - part) * picture_costs[low] + part * picture_costs[(low + 1) % count];
+  };
+  return 1.0 / (1.0 + std::exp(at(place) - at(place + 0.5 * count)));
+}
+
 ObjectEvidence EvidenceInWorld(const Sequence& sequence, const std::vector<int>& detections,
                                const std::optional<ShapePrior>& prior,
                                const UprightOptions& options) {
@@ -78,6 +142,7 @@ ObjectEvidence EvidenceInWorld(const Sequence& sequence, const std::vector<int>&
     evidence.views.push_back({EdgesOf(sequence, detection, prior, options),
                               sequence.FrameOf(detection).world_from_camera.Inverse()});
   }
+  evidence.picture_costs = PictureCosts(PicturesInWorld(sequence, detections), evidence.plane);
   return evidence;
 }
 
@@ -91,6 +156,10 @@ ObjectEvidence EvidenceInCamera(const Sequence& sequence, const Detection& detec
   evidence.scene_axis = SceneAxisInCamera(sequence, detection);
   evidence.axes_weight = options.axes_weight;
   evidence.huber_delta = std::numeric_limits<double>::infinity();
+  if (detection.appearance) {
+    const Eigen::Vector3d ray = sequence.CameraOf(detection).Ray(detection.box.Centre());
+    evidence.picture_costs = PictureCosts({{detection.appearance, ray}}, evidence.plane);
+  }
   return evidence;
 }
 
@@ -165,6 +234,10 @@ std::vector<std::unique_ptr<const LandmarkTerm>> PriorTerms(const ObjectEvidence
   if (evidence.scene_axis && evidence.axes_weight > 0.0) {
     terms.push_back(
         std::make_unique<AxisTerm>(evidence.plane, *evidence.scene_axis, evidence.axes_weight));
+  }
+  if (!evidence.picture_costs.empty()) {
+    terms.push_back(
+        std::make_unique<YawCostTerm>(evidence.plane, HalfTurnCosts(evidence.picture_costs)));
   }
   if (evidence.yaw_prior) {
     terms.push_back(std::make_unique<YawTerm>(evidence.plane, *evidence.yaw_prior));

@@ -47,6 +47,9 @@ struct ObjectEvidence {
   std::optional<Eigen::Vector3d> scene_axis = std::nullopt;
   double axes_weight = 0.0;  // see AxisTerm
   std::optional<YawPrior> yaw_prior = std::nullopt;
+  // Costs over the whole circle from pictures, at yaws of 2 pi i / kYawsOfPictures; empty without
+  // any. Fits use them modulo half a turn (HalfTurnCosts).
+  std::vector<double> picture_costs = {};
   double huber_delta = 1.0;  // of the boxes; infinite: no loss
   StandingSigmas standing;   // of bodies that may lean
   std::vector<FurtherEvidence> further = {};
@@ -62,6 +65,30 @@ struct ObjectEvidence {
     return prior ? prior->shape_exponents : ShapeExponents(kCuboidExponent);
   }
 };
+
+inline constexpr int kYawsOfPictures = 72;
+
+// What the picture in a box tells, and the ray through the box's centre.
+struct PictureView {
+  std::shared_ptr<const BoxAppearance> appearance;
+  Eigen::Vector3d ray_in_reference;
+};
+
+// The pictures of detections (indices into Sequence::detections) that have one, in the world, with
+// the frames' estimated poses.
+std::vector<PictureView> PicturesInWorld(const Sequence& sequence, const std::vector<int>& detections);
+
+// Negative logarithm of the likelihood of each yaw of an object about a plane's normal. Pictures
+// are weighted by the DirectionWeights of their rays. Empty without pictures.
+std::vector<double> PictureCosts(const std::vector<PictureView>& pictures, const Plane& plane);
+
+// Cost of either of two opposite yaws, on half the circle; the lowest is zero.
+std::vector<double> HalfTurnCosts(const std::vector<double>& picture_costs);
+
+// Probability that the landmark's x axis is its front, and not its back, from costs over the whole
+// circle.
+double FrontProbability(const std::vector<double>& picture_costs, const Plane& plane,
+                        const Landmark& landmark);
 
 // The edges of a detection's box, without the bias of its label, for fits and the back end.
 std::array<BoxEdge, 4> EdgesOf(const Sequence& sequence, const Detection& detection,

@@ -31,6 +31,7 @@ struct InitialiseOptions {
   UprightOptions upright;
   YawPriorOptions yaw_prior;
   PointOptions points;
+  bool picture_evidence = false;
   CuboidOptions cuboids;
 
   void Describe(OptionVisitor& visit) {
@@ -52,6 +53,9 @@ struct InitialiseOptions {
                     [&] { upright.DescribeViewCorrelation(visit); });
     visit.OnlyWhere({{"method", {"yaw_sweep"}}}, [&] { yaw_prior.Describe(visit); });
     points.Describe(visit);
+    visit.OnlyWhere({{"method", {"yaw_sweep", "multi_view"}}}, [&] {
+      DescribePictureEvidence(visit, &picture_evidence);
+    });
     visit.OnlyWhere({{"method", {"cuboid_proposals"}}}, [&] { cuboids.Describe(visit); });
   }
 };

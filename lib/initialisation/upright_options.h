@@ -6,6 +6,12 @@
 
 namespace soslam {
 
+// The flag that asks for Detection::appearance.
+inline void DescribePictureEvidence(OptionVisitor& visit, bool* picture_evidence) {
+  visit.Flag("picture_evidence", picture_evidence,
+             "use what soslam-appearance says of the yaw of objects from their pictures");
+}
+
 // How boxes and the axes of the scene count as evidence for an upright body, and the grid on which
 // it is searched. Each stage describes those of them that it has, at their places in its own
 // options; one without an option of the scene's axes gives them no weight.

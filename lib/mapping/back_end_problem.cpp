@@ -55,6 +55,7 @@ BackEndProblem::BackEndProblem(const BackEndInput& input, const OptimiseOptions&
     : input_(input),
       options_(options),
       threads_(threads),
+      detections_by_object_(DetectionsByObject(input.sequence)),
       variables_(input),
       loss_(options.upright.huber_delta),
       problem_({.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP,  // they outlive it
@@ -78,10 +79,9 @@ Landmark BackEndProblem::LandmarkInCamera(const Detection& detection) const {
 
 void BackEndProblem::WeighViews() {
   view_weights_.assign(input_.sequence.detections.size(), 1.0);
-  const auto detections_by_object = DetectionsByObject(input_.sequence);
-  for (size_t i = 0; i < detections_by_object.size(); ++i) {
+  for (size_t i = 0; i < detections_by_object_.size(); ++i) {
     if (!input_.initial_landmarks[i]) continue;
-    const std::vector<int>& detections = detections_by_object[i];
+    const std::vector<int>& detections = detections_by_object_[i];
     std::vector<Eigen::Vector3d> directions;
     for (const int index : detections) {
       directions.push_back(
@@ -173,6 +173,8 @@ void BackEndProblem::AddLandmark(size_t object_index) {
   if (prior) evidence.prior = OnFace(*prior, initial.rests_on);
   evidence.scene_axis = support.scene_axis_in_world;
   evidence.axes_weight = options_.upright.axes_weight;
+  evidence.picture_costs = PictureCosts(
+      PicturesInWorld(input_.sequence, detections_by_object_[object_index]), plane);
   // No loss: a ratio far from the prior is as unlikely as its spread says.
   for (auto& term : PriorTerms(evidence)) {
     problem_.AddResidualBlock(new LandmarkTermResidual(std::move(term), initial.shape_exponents),

@@ -95,6 +95,7 @@ class BackEndProblem {
   const BackEndInput& input_;
   const OptimiseOptions& options_;
   int threads_;
+  std::vector<std::vector<int>> detections_by_object_;  // indices
   std::vector<double> view_weights_;  // one per detection
   BackEndVariables variables_;
   ceres::HuberLoss loss_;

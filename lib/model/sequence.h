@@ -5,6 +5,7 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -17,6 +18,7 @@
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
 #include "geometry/rigid3.h"
+#include "model/appearance.h"
 #include "model/finding.h"
 
 namespace soslam {
@@ -159,6 +161,8 @@ struct Detection {
   std::optional<Landmark> true_landmark_in_camera = std::nullopt;
   // Id of the object in Sequence::true_objects, where the dataset gives it.
   std::optional<int> true_object_id = std::nullopt;
+  // What the picture tells, where a stage uses it (AddAppearance). Not stored with the sequence.
+  std::shared_ptr<const BoxAppearance> appearance = nullptr;
 };
 
 // A frame withheld from all estimates, with its detections, to evaluate landmarks. Its boxes pass

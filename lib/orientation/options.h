@@ -144,6 +144,7 @@ struct ProfileOptions {
   EdgeOptions edges;
   TextureOptions texture;
   PointOptions points;
+  bool picture_evidence = false;
 
   void Describe(OptionVisitor& visit) {
     visit.Group("Orientation profile");
@@ -155,6 +156,7 @@ struct ProfileOptions {
     visit.OnlyWhere({{"edge_alignment", {"true"}}}, [&] { edges.Describe(visit); });
     visit.OnlyWhere({{"texture_symmetry", {"true"}}}, [&] { texture.Describe(visit); });
     points.Describe(visit);
+    DescribePictureEvidence(visit, &picture_evidence);
   }
 };
 

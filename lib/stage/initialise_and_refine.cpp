@@ -107,7 +107,9 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
   CheckPointEvidence(options.points,
                      kInitialisationMethodNames[static_cast<size_t>(options.method)], "yaw_sweep",
                      files);
-  const Sequence sequence = ReadSequence(files.at("sequence"));
+  Sequence sequence = ReadSequence(files.at("sequence"));
+  std::vector<std::filesystem::path> inputs = {files.at("sequence"), files.at("table")};
+  AddPictureEvidence(options.picture_evidence, files, &sequence, &inputs);
   const SemanticTable table = ReadSemanticTable(files.at("table"));
   std::vector<Finding> of_labels;
   const bool has_ratios = options.method != InitialisationMethod::kSvd &&
@@ -135,7 +137,6 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
   std::ranges::move(CheckCollapsed(estimates), std::back_inserter(findings));
   ReportFindings("initialise", findings);
   std::ranges::move(of_labels, std::back_inserter(findings));
-  std::vector<std::filesystem::path> inputs = {files.at("sequence"), files.at("table")};
   if (uses_images) inputs.push_back(files.at("edges"));
   if (options.points.point_evidence) inputs.push_back(files.at("points"));
   WriteLandmarks(files.at("output"), estimates, sequence,
@@ -203,7 +204,10 @@ void RunRefine(const OrientationOptions& options, const StageFiles& files, int t
   CheckPointEvidence(point_options, kRefinementMethodNames[static_cast<size_t>(options.method)],
                      "profile", files);
   CheckWasMadeOf(files.at("initial"), "landmarks", files.at("sequence"));
-  const Sequence sequence = ReadSequence(files.at("sequence"));
+  Sequence sequence = ReadSequence(files.at("sequence"));
+  std::vector<std::filesystem::path> inputs = {files.at("sequence"), files.at("table"),
+                                               files.at("initial"), files.at("edges")};
+  AddPictureEvidence(options.profile.picture_evidence, files, &sequence, &inputs);
   const auto priors = ObjectPriors(sequence, ReadSemanticTable(files.at("table")),
                                    options.turn.ratio_prior, options.profile.shape);
   LandmarkEstimates estimates = ReadLandmarks(files.at("initial"), sequence);
@@ -227,10 +231,7 @@ void RunRefine(const OrientationOptions& options, const StageFiles& files, int t
   }
   std::ranges::stable_sort(to_refine, {},
                            [&](const auto* observation) { return frame_of(observation).id; });
-  ArtefactInfo info = {
-      .settings = OptionsToJson(options),
-      .inputs = {files.at("sequence"), files.at("table"), files.at("initial"), files.at("edges")},
-      .stage = "refine"};
+  ArtefactInfo info = {.settings = OptionsToJson(options), .inputs = inputs, .stage = "refine"};
   if (point_options.point_evidence) info.inputs.push_back(files.at("points"));
 
   const auto points = PointsInFramesOf(point_options, sequence, files);

@@ -135,7 +135,11 @@ std::vector<std::optional<Landmark>> LandmarksOf(const MapEstimate& map, const S
 void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int threads) {
   CheckEvidence(options, files);
   CheckWasMadeOf(files.at("landmarks"), "landmarks", files.at("sequence"));
-  const Sequence sequence = ReadSequence(files.at("sequence"));
+  Sequence sequence = ReadSequence(files.at("sequence"));
+  ArtefactInfo info = {.settings = OptionsToJson(options),
+                       .inputs = {files.at("sequence"), files.at("landmarks"), files.at("table")},
+                       .stage = "optimise"};
+  AddPictureEvidence(options.picture_evidence, files, &sequence, &info.inputs);
   const SemanticTable table = ReadSemanticTable(files.at("table"));
   const LandmarkEstimates estimates = ReadLandmarks(files.at("landmarks"), sequence);
   BackEndInput input = ReadInput(sequence, options, files, threads);
@@ -146,9 +150,6 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
                            [](const auto& start) { return start.has_value(); })) {
     throw NothingUsableError(files.at("landmarks").string() + ": no landmark to start from");
   }
-  ArtefactInfo info = {.settings = OptionsToJson(options),
-                       .inputs = {files.at("sequence"), files.at("landmarks"), files.at("table")},
-                       .stage = "optimise"};
   if (UsesEdges(options)) info.inputs.push_back(files.at("edges"));
   if (options.points.point_evidence) info.inputs.push_back(files.at("points"));
   MapEstimate map = OptimiseMap(input, options, threads);

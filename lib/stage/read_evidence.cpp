@@ -7,6 +7,7 @@
 #include <memory>
 #include <set>
 
+#include "appearance/appearance_file.h"
 #include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
 #include "base/error.h"
@@ -36,6 +37,16 @@ void CheckHasPoints(const PointOptions& options, const StageFiles& files) {
   if (options.point_evidence && !files.contains("points")) {
     throw SettingsError("point_evidence = true needs --points FILE; found none");
   }
+}
+
+void AddPictureEvidence(bool is_asked, const StageFiles& files, Sequence* sequence,
+                        std::vector<std::filesystem::path>* inputs) {
+  if (!is_asked) return;
+  if (!files.contains("appearance")) {
+    throw SettingsError("picture_evidence = true needs --appearance FILE; found none");
+  }
+  AddAppearance(files.at("appearance"), sequence);
+  inputs->push_back(files.at("appearance"));
 }
 
 std::vector<MapPoint> ReadPointsOf(const Sequence& sequence, const StageFiles& files) {

@@ -27,6 +27,7 @@ struct OrientationOptions;
 struct PlanesOptions;
 struct ReconstructOptions;
 struct TrackOptions;
+struct TrainingCropsOptions;
 
 // soslam-import: reads the folder "dataset", writes the sequence artefact "output" and prints a
 // one-line summary of how much is used. Errors as ImportDataset and WriteSequence.
@@ -54,6 +55,14 @@ void RunSynthesise(const SynthesiseOptions& options, const StageFiles& files, in
 // models of these objects are excluded from learning. Throws NothingUsableError when the table has
 // no row.
 void RunLearnPriors(const LearnPriorsOptions& options, const StageFiles& files, int threads);
+
+// soslam-appearance: writes what the inner layers of "network" and the "head" on them say of each box
+// in the images of "dataset". Throws InputError, also for a head of another network.
+void RunAppearance(const NoOptions& options, const StageFiles& files, int threads);
+
+// soslam-training-crops: renders models of "groups" from "furniture" and writes to "output" what
+// "network" says of the crops. Throws InputError.
+void RunTrainingCrops(const TrainingCropsOptions& options, const StageFiles& files, int threads);
 
 // soslam-frames: chooses frames from "images", a folder of photos or a video, and writes the
 // dataset folder "output": rgb/, rgb.txt, frames.json and README.md. With "detections", a

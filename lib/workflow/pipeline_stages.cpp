@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "association/options.h"
+#include "cli/command_line.h"
 #include "dataset/import_options.h"
 #include "evaluation/alignment.h"
 #include "ground/options.h"
@@ -52,6 +53,7 @@ std::vector<PipelineStage> MakeStages() {
   const StageInput edges_of_symmetry = {
       "edges", {"edges"}, {{"symmetry", true}, {"edge_alignment", true}}};
   const StageInput points = {"points", {"track"}, {{"point_evidence", true}}};
+  const StageInput appearance = {"appearance", {"appearance"}, {{"picture_evidence", true}}};
   const StageInput start = {"landmarks", {"refine", "initialise"}};
   const StageInput landmarks = {"landmarks", {"optimise", "refine", "initialise"}};
   const StageOutput sequence_file = {"output", "sequence.json"};
@@ -68,11 +70,15 @@ std::vector<PipelineStage> MakeStages() {
       // Neither edge maps nor points depend on the world or its unit.
       Stage<EdgesOptions>("edges", {imported}, {dataset}, {{"output", "edges.h5"}}),
       Stage<TrackOptions>("track", {imported}, {dataset}, {{"output", "points.h5"}}),
-      Stage<InitialiseOptions>("initialise", {sequence, edges_of_cuboids, points}, {table},
+      Stage<NoOptions>("appearance", {sequence},
+                       {dataset, {"head", "$(pipelines)/heads/yolox_nano.h5"},
+                        {"network", "$(network)"}},
+                       {{"output", "appearance.h5"}}),
+      Stage<InitialiseOptions>("initialise", {sequence, edges_of_cuboids, points, appearance}, {table},
                                {{"output", "initial.json"}}),
-      Stage<OrientationOptions>("refine", {sequence, edges, initial, points}, {table},
+      Stage<OrientationOptions>("refine", {sequence, edges, initial, points, appearance}, {table},
                                 {{"output", "refined.json"}, {"curves", "symmetry.h5"}}),
-      Stage<OptimiseOptions>("optimise", {sequence, edges_of_symmetry, start, points}, {table},
+      Stage<OptimiseOptions>("optimise", {sequence, edges_of_symmetry, start, points, appearance}, {table},
                              {{"output", "map.json"}}),
       Stage<EvaluateOptions>("evaluate", {sequence, landmarks}, {}, {{"output", "metrics.json"}})};
 }

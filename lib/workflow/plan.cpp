@@ -91,6 +91,9 @@ std::vector<std::filesystem::path> PrerequisitesOf(const StageInstance& instance
   if (FindStage(instance.stage)->other_inputs.contains("dataset")) {
     files.push_back(folders.results / kImagesListing);
   }
+  if (FindStage(instance.stage)->other_inputs.contains("head")) {
+    files.push_back(folders.pipelines / "heads/yolox_nano.h5");
+  }
   if (!instance.semantic_table.empty()) {
     files.push_back(folders.pipelines / instance.semantic_table);
   }

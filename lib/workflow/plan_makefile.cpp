@@ -67,6 +67,7 @@ results := {results}
 dataset := {dataset_folder}
 pipelines := {pipelines}
 BIN ?= build/bin
+network ?= networks/yolox_nano/yolox_nano.onnx
 THREADS ?= 0
 QUIET ?=
 OUTSIDE_PATHS ?=

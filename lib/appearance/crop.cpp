@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "appearance/crop.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace soslam {
+namespace {
+
+constexpr double kMargin = 1.2;  // side of the crop over the longer side of the box
+constexpr int kGrey = 114;       // padding in the training of YOLO networks
+
+// Axes of the level camera: z along the ray, x horizontal.
+Eigen::Matrix3d LevelFromCamera(const Eigen::Vector3d& ray, const Eigen::Vector3d& up) {
+  Eigen::Vector3d x = ray.cross(up);
+  if (x.norm() < 1e-6) x = Eigen::Vector3d::UnitX() - ray.x() * ray;  // straight up or down
+  Eigen::Matrix3d level_from_camera;
+  level_from_camera.row(0) = x.normalized();
+  level_from_camera.row(2) = ray;
+  level_from_camera.row(1) = ray.cross(x.normalized());
+  return level_from_camera;
+}
+
+}  // namespace
+
+Crop CropOf(const cv::Mat& image, const Camera& camera, const Box& box,
+            const Eigen::Vector3d& up_in_camera, int side) {
+  const Eigen::Vector3d ray = camera.Ray(box.Centre()).normalized();
+  const Eigen::Matrix3d level_from_camera = LevelFromCamera(ray, up_in_camera);
+
+  // The box's extent in the level view, at unit depth, from the middles of its edges: corners that
+  // no part of the object touches would make it larger.
+  Eigen::AlignedBox2d extent;
+  for (const Eigen::Vector2d& middle :
+       {Eigen::Vector2d(box.x_min, box.Centre().y()), Eigen::Vector2d(box.x_max, box.Centre().y()),
+        Eigen::Vector2d(box.Centre().x(), box.y_min),
+        Eigen::Vector2d(box.Centre().x(), box.y_max)}) {
+    const Eigen::Vector3d in_level = level_from_camera * camera.Ray(middle);
+    extent.extend(Eigen::Vector2d(in_level.head<2>() / std::max(in_level.z(), 1e-3)));
+  }
+  const Eigen::Vector2d size = extent.sizes().cwiseMax(1e-6);
+
+  // The homography from pixels of the image to pixels of the crop.
+  const double scale = side / (kMargin * size.maxCoeff());  // pixels of the crop at unit depth
+  const double middle = 0.5 * (side - 1);
+  Eigen::Matrix3d crop_from_level;
+  crop_from_level << scale, 0, middle - scale * extent.center().x(), 0, scale,
+      middle - scale * extent.center().y(), 0, 0, 1;
+  const Eigen::Matrix3d crop_from_image =
+      crop_from_level * level_from_camera * camera.Intrinsics().inverse();
+  cv::Matx33d homography;
+  for (int i = 0; i < 9; ++i) homography.val[i] = crop_from_image(i / 3, i % 3);
+
+  // Where the crop is smaller than the box, the image is blurred before it is sampled.
+  const double shrinking = kMargin * std::max(box.Width(), box.Height()) / side;
+  cv::Mat source = image;
+  if (shrinking > 1.0) {
+    // Only the neighbourhood of the box is seen.
+    const cv::Rect all(0, 0, image.cols, image.rows);
+    const double reach = 1.5 * std::max(box.Width(), box.Height());
+    const Eigen::Vector2d centre = box.Centre();
+    const cv::Rect near =
+        cv::Rect(
+            cv::Point(static_cast<int>(centre.x() - reach), static_cast<int>(centre.y() - reach)),
+            cv::Point(static_cast<int>(centre.x() + reach), static_cast<int>(centre.y() + reach))) &
+        all;
+    if (near.area() > 0) {
+      source = image.clone();
+      cv::Mat part = source(near);
+      cv::GaussianBlur(image(near), part, {}, 0.5 * shrinking);
+    }
+  }
+  Crop crop;
+  cv::warpPerspective(source, crop.image, homography, cv::Size(side, side), cv::INTER_LINEAR,
+                      cv::BORDER_CONSTANT, cv::Scalar::all(kGrey));
+  crop.direction = {ray, -std::asin(std::clamp(ray.dot(up_in_camera), -1.0, 1.0)),
+                    std::log(size.x() / size.y())};
+  return crop;
+}
+
+}  // namespace soslam

@@ -1,0 +1,220 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Trains the head that says from which side an object is seen and which proportions it has.
+
+Reads files of soslam-training-crops; writes the head, and prints what it is worth on models that it was not trained on.
+"""
+import argparse
+import hashlib
+import json
+import sys
+
+import h5py
+import numpy as np
+import torch
+from torch import nn
+
+BINS = 36  # of azimuth, about 0, 10 ... 350 degrees
+CELLS = 49
+SYMMETRIC = 0.15  # share of the largest difference below which a turned model counts as the same
+PLAIN = 10.0  # grey levels: differences that are smaller tell nothing
+
+
+def text_of(attribute):
+    return attribute.decode() if isinstance(attribute, bytes) else str(attribute)
+
+
+def read_crops(path):
+    file = h5py.File(path, "r")
+    features = np.concatenate([file["features"][name][:] for name in sorted(file["features"])])
+    return {
+        "features": features.reshape(len(features) // 2, 2, -1, CELLS),  # plain and mirrored
+        "quantum": float(file["features"].attrs["quantum"]),
+        "facts": file["facts"][:],
+        "model": file["model_of_crop"][:],
+        "look": file["look_of_crop"][:] if "look_of_crop" in file else np.arange(len(features) // 2),
+        "group_of_model": file["group_of_model"][:],
+        "turned": file["difference_from_turned"][:],
+        "names": [line.split("\t") for line in text_of(file.attrs["models"]).strip().split("\n")],
+        "attributes": dict(file.attrs),
+    }
+
+
+def is_left_out(name):
+    """One model in five, by its name alone: the same in every run."""
+    return hashlib.sha256("/".join([name[0], name[3]]).encode()).digest()[0] % 5 == 0
+
+
+def equivalent_turns(difference):
+    """Turns (in bins) of a model that look the same: [0] of one with a front."""
+    largest = max(difference.max(), PLAIN)
+    return [turn for turn in range(BINS) if difference[turn] <= SYMMETRIC * largest or turn == 0]
+
+
+def azimuth_targets(azimuth, turns):
+    """Distributions over the bins, with the mass of each azimuth shared by the nearest two bins."""
+    targets = np.zeros((len(azimuth), BINS), np.float32)
+    place = np.mod(azimuth / (2 * np.pi) * BINS, BINS)
+    low = np.floor(place).astype(int)
+    part = place - low
+    for i, equivalent in enumerate(turns):
+        for turn in equivalent:
+            targets[i, (low[i] + turn) % BINS] += (1 - part[i]) / len(equivalent)
+            targets[i, (low[i] + 1 + turn) % BINS] += part[i] / len(equivalent)
+    return targets
+
+
+class Head(nn.Module):
+    """1 x 1 convolution over the cells, two layers. Outputs: logarithms of the probabilities of azimuth; means of the log
+    ratios, and logarithms of the standard deviations."""
+
+    def __init__(self, channels, groups, narrow=32, hidden=128):
+        super().__init__()
+        self.narrow = nn.Linear(channels, narrow)
+        self.hidden = nn.Linear(narrow * CELLS + 2 + groups, hidden)
+        self.output = nn.Linear(hidden, BINS + 4)
+        self.dropout = nn.Dropout(0.4)
+
+    def forward(self, features, direction, group):
+        x = torch.relu(self.narrow(features.transpose(1, 2)))  # [crops, cells, narrow]
+        x = torch.cat([self.dropout(x.flatten(1)), direction, group], 1)
+        x = self.output(self.dropout(torch.relu(self.hidden(x))))
+        return torch.log_softmax(x[:, :BINS], 1), x[:, BINS:BINS + 2], x[:, BINS + 2:]
+
+
+def batch_of(data, rows, flip, mean, scale):
+    features = data["features"][rows, flip].astype(np.float32) * data["quantum"]
+    features = torch.from_numpy((features - mean[:, None]) / scale[:, None])
+    return features, torch.from_numpy(data["direction"][rows]), torch.from_numpy(data["one_hot"][rows])
+
+
+def predict(head, data, rows, mean, scale):
+    """Probabilities [rows, BINS], of the crop and its mirror image together; log ratios; their log sigmas."""
+    head.eval()
+    results = []
+    with torch.no_grad():
+        for begin in range(0, len(rows), 512):
+            part = rows[begin:begin + 512]
+            log_p, ratio, sigma = head(*batch_of(data, part, 0, mean, scale))
+            log_m, ratio_m, sigma_m = head(*batch_of(data, part, 1, mean, scale))
+            mirrored = torch.roll(torch.flip(log_m, [1]), 1, 1)
+            results.append(((log_p.exp() + mirrored.exp()) / 2, (ratio + ratio_m) / 2, (sigma + sigma_m) / 2))
+    return [torch.cat(parts).numpy() for parts in zip(*results)]
+
+
+def errors_deg(p, azimuth, turns):
+    """Angle between the most probable azimuth, between bins by a parabola, and the nearest right one."""
+    best = p.argmax(1)
+    rows = np.arange(len(p))
+    left, middle, right = (np.log(p[rows, (best + k) % BINS] + 1e-9) for k in (-1, 0, 1))
+    shift = np.clip(0.5 * (left - right) / np.minimum(left - 2 * middle + right, -1e-6), -0.5, 0.5)
+    found = (best + shift) * 2 * np.pi / BINS
+    errors = []
+    for f, a, equivalent in zip(found, azimuth, turns):
+        candidates = a + np.array(equivalent) * 2 * np.pi / BINS
+        errors.append(np.degrees(np.abs((f - candidates + np.pi) % (2 * np.pi) - np.pi).min()))
+    return np.array(errors)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--crops", nargs="+", required=True, help="files of soslam-training-crops, of one catalogue")
+    parser.add_argument("--groups", required=True, help="groups.json")
+    parser.add_argument("--output", required=True, help="head.h5 to write")
+    parser.add_argument("--epochs", type=int, default=30)
+    parser.add_argument("--seed", type=int, default=1)
+    arguments = parser.parse_args()
+    torch.manual_seed(arguments.seed)
+    random = np.random.default_rng(arguments.seed)
+    groups = json.load(open(arguments.groups, encoding="utf8"))["groups"]
+
+    files = [read_crops(path) for path in arguments.crops]
+    data = {key: np.concatenate([file[key] for file in files]) for key in ("features", "facts", "model")}
+    data["quantum"] = files[0]["quantum"]
+    names, group_of_model, turned = (files[0][key] for key in ("names", "group_of_model", "turned"))
+    group = group_of_model[data["model"]]
+    data["one_hot"] = np.eye(len(groups), dtype=np.float32)[group]
+    data["direction"] = np.ascontiguousarray(data["facts"][:, 3:5])
+    turns_of_model = [equivalent_turns(difference) for difference in turned]
+    turns = [turns_of_model[model] for model in data["model"]]
+    azimuth = data["facts"][:, 0]
+    targets = torch.from_numpy(azimuth_targets(azimuth, turns))
+    mirrored_targets = torch.roll(torch.flip(targets, [1]), 1, 1)
+    left_out = np.array([is_left_out(name) for name in names])[data["model"]]
+    train, test = np.flatnonzero(~left_out), np.flatnonzero(left_out)
+    print(f"{len(train)} crops of models to train on, {len(test)} of models left out")
+
+    sample = data["features"][random.choice(train, min(len(train), 3000), replace=False), 0].astype(np.float32) * data["quantum"]
+    mean, scale = sample.mean((0, 2)), sample.std((0, 2)) + 1e-3
+    spread = sample.mean(2).std(0) + 1e-3  # of the crops' mean features
+    # Ratios are learned relative to the mean of the group's models.
+    log_ratios = data["facts"][:, 1:3]
+    of_models = np.array([log_ratios[data["model"] == m].mean(0) if (data["model"] == m).any() else [np.nan] * 2 for m in range(len(names))])
+    known = np.array([not is_left_out(name) for name in names])
+    ratio_mean = np.array([np.nanmean(of_models[(group_of_model == g) & known], 0) for g in range(len(groups))])
+    relative = torch.from_numpy((log_ratios - ratio_mean[group]).astype(np.float32))
+
+    head = Head(data["features"].shape[2], len(groups))
+    optimiser = torch.optim.AdamW(head.parameters(), lr=2e-3, weight_decay=0.02)
+    steps = arguments.epochs * (len(train) // 128)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, 2e-3, total_steps=steps)
+    step = 0
+    for epoch in range(arguments.epochs):
+        head.train()
+        order = random.permutation(train)
+        total = 0.0
+        for begin in range(0, len(order) - 127, 128):
+            rows = order[begin:begin + 128]
+            flip = int(random.integers(2))
+            log_p, ratio, log_sigma = head(*batch_of(data, rows, flip, mean, scale))
+            target = (mirrored_targets if flip else targets)[rows]
+            residual = (ratio - relative[rows]) / log_sigma.exp()
+            of_ratios = (0.5 * residual.clamp(-4, 4) ** 2 + log_sigma).sum(1)
+            loss = -(target * log_p).sum(1).mean() + 0.3 * of_ratios.mean()
+            optimiser.zero_grad()
+            loss.backward()
+            optimiser.step()
+            if step < steps:
+                schedule.step()
+            step += 1
+            total += loss.item()
+        if epoch % 5 == 4 or epoch == arguments.epochs - 1:
+            print(f"epoch {epoch + 1}: loss {total / (len(order) // 128):.3f}", flush=True)
+
+    p, ratio, log_sigma = predict(head, data, test, mean, scale)
+    error = errors_deg(p, azimuth[test], [turns[i] for i in test])
+    print("models left out, single crops: mean, median error (deg), share below 30; log ratios: error, that of the group's mean")
+    for g, name in enumerate(groups):
+        own = group[test] == g
+        if not own.any():
+            continue
+        found = np.abs(ratio[own] - relative[test][own].numpy()).mean(0)
+        prior = np.abs(relative[test][own].numpy()).mean(0)
+        print(f"{name['name']:10} {len(set(data['model'][test][own])):3} models {own.sum():5} crops  {error[own].mean():5.1f} {np.median(error[own]):5.1f} "
+              f"{(error[own] < 30).mean():.2f}   {found[0]:.3f} {found[1]:.3f}  {prior[0]:.3f} {prior[1]:.3f}")
+    pt, _, _ = predict(head, data, train[:2000], mean, scale)
+    et = errors_deg(pt, azimuth[train[:2000]], [turns[i] for i in train[:2000]])
+    print(f"trained models: {et.mean():.1f} {np.median(et):.1f} {(et < 30).mean():.2f}")
+
+    weights = {name: value.detach().numpy() for name, value in head.named_parameters()}
+    # The scaling of the features is part of the first layer.
+    arrays = {"narrow/weights": weights["narrow.weight"] / scale,
+              "narrow/bias": weights["narrow.bias"] - weights["narrow.weight"] @ (mean / scale),
+              "ratio_mean": ratio_mean, "feature_mean": mean, "feature_scale": spread}
+    for name in ("hidden", "output"):
+        arrays[f"{name}/weights"], arrays[f"{name}/bias"] = weights[f"{name}.weight"], weights[f"{name}.bias"]
+    with h5py.File(arguments.output, "w") as file:
+        for name, array in arrays.items():  # as soslam's own files
+            file.create_dataset(name, data=array.astype(np.float32), chunks=array.shape, shuffle=True, compression="gzip")
+        for key in ("side_px", "rgb_0_1"):
+            file.attrs[key] = float(files[0]["attributes"][key])
+        file.attrs["exponent"], file.attrs["floor"], file.attrs["direction_correlation_deg"] = 0.5, 0.05, 20.0
+        of_groups = [{"name": g["name"], "labels": g["labels"], "tells_ratios": g["name"] == "chair"} for g in groups]
+        header = {"kind": "head", "schema_version": [1, 0]}
+        for key, text in (("artefact", json.dumps(header)), ("groups", json.dumps(of_groups)),
+                          ("network_sha256", text_of(files[0]["attributes"]["network_sha256"])), ("layers", text_of(files[0]["attributes"]["layers"]))):
+            file.attrs[key] = np.bytes_(text.encode())
+
+
+if __name__ == "__main__":
+    sys.exit(main())
