@@ -7,9 +7,9 @@ int main(int argc, char** argv) {
   return soslam::StageMain<soslam::DetectorOptions>(
       argc, argv,
       {.name = "soslam-detect",
-       .purpose = "Runs a YOLO network on every image of a dataset.",
+       .purpose = "Runs a detector network on every image of a dataset.",
        .inputs = {{"dataset", "dataset folder with rgb.txt and the images"},
-                  {"network", "ONNX file of a YOLO network"},
+                  {"network", "ONNX file of a network: YOLO, DETR or PaddleDetection"},
                   {"labels",
                    "names of its classes, one a line; those in the network's file, or COCO's 80, "
                    "when absent",

@@ -4,7 +4,8 @@
 #include <string>
 
 #include "base/options.h"
-#include "image/yolo_output.h"
+#include "image/network.h"
+#include "image/network_output.h"
 
 namespace soslam {
 
@@ -14,7 +15,8 @@ enum class BoxOrientation { kUpright, kStored, kSurer };
 inline constexpr const char* kBoxOrientationNames[] = {"upright", "stored", "surer"};
 
 struct DetectorOptions {
-  YoloLayout output_layout = YoloLayout::kAuto;
+  NetworkBackend backend = NetworkBackend::kOpenCv;
+  OutputLayout output_layout = OutputLayout::kAuto;
   PixelValues pixel_values = PixelValues::kAuto;
   int input_width = 0;  // 0 for automatic, as the height
   int input_height = 0;
@@ -28,16 +30,23 @@ struct DetectorOptions {
 
   void Describe(OptionVisitor& visit) {
     visit.Group("Network");
-    visit.Choice("output_layout", &output_layout, kYoloLayoutNames,
-                 "the network's output: v5 [1, N, 5 + classes], v8 [1, 4 + classes, N], yolox (v5 "
+    visit.Choice("backend", &backend, kNetworkBackendNames,
+                 "what runs the network; onnxruntime also runs transformers, and is there if the "
+                 "software was built with it");
+    visit.Choice("output_layout", &output_layout, kOutputLayoutNames,
+                 "the network's outputs: v5 [1, N, 5 + classes], v8 [1, 4 + classes, N], yolox (v5 "
                  "with boxes in cells of its grids, as YOLOX is published), end_to_end [1, N, 6]; "
-                 "auto: as the file and the output say");
-    visit.Choice("pixel_values", &pixel_values, kPixelValuesNames,
-                 "what the network takes: rgb_0_1 (Ultralytics) or bgr_0_255 (YOLOX); auto: as the "
-                 "file and the output say");
+                 "detr (logits and boxes), detr_softmax (the last logit is that of no object), "
+                 "detr_boxes (labels, boxes, scores: RT-DETR, D-FINE); paddle (boxes and scores), "
+                 "paddle_nms [N, 6]; auto: as the file and the outputs say");
+    visit.Choice(
+        "pixel_values", &pixel_values, kPixelValuesNames,
+        "what the network takes: rgb_0_1 (Ultralytics, RT-DETR, D-FINE), bgr_0_255 (YOLOX) "
+        "or rgb_imagenet (rgb_0_1 with ImageNet's mean and deviation: RF-DETR, DETR, "
+        "PicoDet); auto: as the file and the outputs say");
     visit.Integer("input_width_px", &input_width, {0, 8192},
                   "width of the network's input; 0: as it was exported, or the shape of the images "
-                  "if the network takes any");
+                  "if a YOLO network takes any");
     visit.Integer("input_height_px", &input_height, {0, 8192},
                   "height of the network's input, likewise");
     visit.Group("Images");

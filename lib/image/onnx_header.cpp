@@ -100,7 +100,7 @@ OnnxValue ValueOf(const onnx::ValueInfoProto& info) {
   constexpr std::int64_t kLargest = std::numeric_limits<std::int32_t>::max();
   const onnx::TypeProto::Tensor& tensor = info.type().tensor_type();
   if (tensor.shape().dim_size() > kMostSides) throw InputError("a shape has too many sides");
-  OnnxValue value{tensor.elem_type(), {}};
+  OnnxValue value{info.name(), tensor.elem_type(), {}};
   for (const auto& side : tensor.shape().dim()) {  // 0 for one that has a name in place of a number
     const bool is_fixed = side.dim_value() > 0 && side.dim_value() <= kLargest;
     value.shape.push_back(is_fixed ? side.dim_value() : 0);

@@ -12,8 +12,9 @@ namespace soslam {
 
 // An input or output of a network, as its file declares it.
 struct OnnxValue {
-  static constexpr int kFloat = 1, kHalf = 10;  // of TensorProto.DataType
+  static constexpr int kFloat = 1, kInt64 = 7, kHalf = 10;  // of TensorProto.DataType
 
+  std::string name;
   int type = 0;                     // TensorProto.DataType; 0 if the file does not state it
   std::vector<std::int64_t> shape;  // 0 for a side that is fixed only when the network runs
 };

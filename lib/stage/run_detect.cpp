@@ -19,10 +19,10 @@
 #include "dataset/image_path.h"
 #include "dataset/labelled_box.h"
 #include "dataset/trajectories.h"
+#include "image/detector.h"
 #include "image/detector_options.h"
 #include "image/image_turn.h"
 #include "image/read_image.h"
-#include "image/yolo_detector.h"
 #include "model/label_groups.h"
 #include "stage/stages.h"
 
@@ -83,22 +83,22 @@ DetectorLabels LabelsForDetector(std::vector<std::string> classes, const Detecto
 namespace {
 
 // The detections of each image, and the number of all boxes that were found. Each worker has its
-// own network, which OpenCV runs on one thread, so that the result does not depend on the number of
+// own network, which runs on one thread, so that the result does not depend on the number of
 // workers.
 struct AllDetections {
-  std::vector<std::vector<YoloDetection>> of_image;
+  std::vector<std::vector<NetworkDetection>> of_image;
   BoxTally tally;
 };
 AllDetections DetectAll(const std::vector<fs::path>& images, const NetworkFile& network,
-                        const YoloFormat& format, const DetectorLabels& labels,
+                        const NetworkFormat& format, const DetectorLabels& labels,
                         const DetectorOptions& options, ImageOrientation orientation, int threads) {
   const int count = static_cast<int>(images.size());
   const int workers = std::min(threads, count);
-  AllDetections all{std::vector<std::vector<YoloDetection>>(images.size()), {}};
+  AllDetections all{std::vector<std::vector<NetworkDetection>>(images.size()), {}};
   std::vector<BoxTally> tallies(static_cast<size_t>(workers));
   Progress progress("images", count);
   ParallelFor(workers, workers, [&](int worker) {
-    YoloDetector detector(network, format, labels.groups, options);
+    Detector detector(network, format, labels.groups, options);
     for (int i = worker; i < count; i += workers) {
       all.of_image[i] = detector.Detect(ReadImage(images[i], cv::IMREAD_COLOR, orientation));
       progress.Step();
@@ -109,9 +109,9 @@ AllDetections DetectAll(const std::vector<fs::path>& images, const NetworkFile& 
   return all;
 }
 
-double SumOfScores(const std::vector<YoloDetection>& detections) {
+double SumOfScores(const std::vector<NetworkDetection>& detections) {
   double sum = 0.0;
-  for (const YoloDetection& detection : detections) sum += detection.score;
+  for (const NetworkDetection& detection : detections) sum += detection.score;
   return sum;
 }
 
@@ -126,7 +126,7 @@ AllDetections DetectInBoth(const std::vector<fs::path>& images, const DetectIn& 
                            BoxOrientation* orientation) {
   AllDetections all = detect(images, ImageOrientation::kUpright);
   std::vector<fs::path> turned;
-  std::vector<std::vector<YoloDetection>*> detections;
+  std::vector<std::vector<NetworkDetection>*> detections;
   double sum = 0.0;
   for (size_t i = 0; i < images.size(); ++i) {
     if (ReadImageHeader(images[i]).value().orientation == 1) continue;
@@ -145,7 +145,7 @@ AllDetections DetectInBoth(const std::vector<fs::path>& images, const DetectIn& 
     if (*orientation == found_in) continue;
     const ImageHeader header = ReadImageHeader(turned[i]).value();
     const ImageTurn turn = ExifTurn(header.orientation);
-    for (YoloDetection& detection : *detections[i]) {
+    for (NetworkDetection& detection : *detections[i]) {
       detection.box = is_stored ? Turned(detection.box, header.stored, turn)
                                 : Turned(detection.box, header.Size(ImageOrientation::kUpright),
                                          turn.Inverse());
@@ -155,8 +155,9 @@ AllDetections DetectInBoth(const std::vector<fs::path>& images, const DetectIn& 
 }
 
 // The artefact header as comments: one line, then one per input.
-std::string Comments(const ArtefactInfo& info) {
+std::string Comments(const ArtefactInfo& info, NetworkBackend backend) {
   nlohmann::json header = ArtefactHeader("detections", info);
+  header["backend"] = BackendVersion(backend);
   const nlohmann::json inputs = header["inputs"];
   header.erase("inputs");
   std::string text = fmt::format("# {}\n", JsonText(header));
@@ -187,7 +188,7 @@ std::vector<std::string> NamesIn(const NetworkFile& network) {
 
 void RunDetect(const DetectorOptions& options, const StageFiles& files, int threads) {
   const fs::path& dataset = files.at("dataset");
-  const NetworkFile network = ReadNetworkFile(files.at("network"));
+  const NetworkFile network = ReadNetworkFile(files.at("network"), options.backend);
   const DetectorLabels labels = LabelsForDetector(
       files.contains("labels") ? ReadLabelFile(files.at("labels")) : NamesIn(network), options);
   const fs::path list = dataset / "rgb.txt";
@@ -195,8 +196,8 @@ void RunDetect(const DetectorOptions& options, const StageFiles& files, int thre
   for (const ListedImage& image : ReadImageList(list)) {
     images.push_back(ImagePath(dataset, image.image, list.string()));
   }
-  const YoloFormat format = FindFormat(network, static_cast<int>(labels.names.size()), options,
-                                       ReadImage(images.front(), cv::IMREAD_COLOR).size());
+  const NetworkFormat format = FindFormat(network, static_cast<int>(labels.names.size()), options,
+                                          ReadImage(images.front(), cv::IMREAD_COLOR).size());
   const auto detect = [&](const std::vector<fs::path>& some, ImageOrientation orientation) {
     return DetectAll(some, network, format, labels, options, orientation, threads);
   };
@@ -206,7 +207,7 @@ void RunDetect(const DetectorOptions& options, const StageFiles& files, int thre
   CheckBoxesArePossible(all.tally, format, network.name);
   std::vector<LabelledBox> boxes;
   for (size_t i = 0; i < images.size(); ++i) {
-    for (const YoloDetection& found : all.of_image[i]) {
+    for (const NetworkDetection& found : all.of_image[i]) {
       const int index = found.class_index;
       if (!labels.are_kept[index]) continue;
       boxes.push_back({"", static_cast<int>(i), labels.names[index], found.score, found.box});
@@ -230,7 +231,8 @@ void RunDetect(const DetectorOptions& options, const StageFiles& files, int thre
   found.input_width = format.input.width;
   found.input_height = format.input.height;
   WriteTextFile(files.at("output"),
-                Comments({OptionsToJson(found), inputs, {}, "detect"}) + LabelledBoxesText(boxes));
+                Comments({OptionsToJson(found), inputs, {}, "detect"}, options.backend) +
+                    LabelledBoxesText(boxes));
   fmt::print("{}: {}\n{}: {} images, {} detections\n", network.name, format.Text(),
              dataset.string(), images.size(), boxes.size());
 }

@@ -83,12 +83,14 @@ struct DetectorLabels {
 // network's classes. Throws SettingsError for malformed options and for labels that no class has.
 DetectorLabels LabelsForDetector(std::vector<std::string> classes, const DetectorOptions& options);
 
-// soslam-detect: runs a YOLO network on every image of a dataset. Files: "dataset", the folder with
-// rgb.txt; "network", ONNX; "labels" (optional), the names of its classes, one per line: without
-// it those in the network's file, or COCO's; "output", a detections.csv without object ids, with
-// its provenance as comments above the header. Prints the format that the network was found to
-// have, and a one-line summary. Throws InputError for a bad list, image, network or label file, and
-// for a network whose boxes cannot be; NothingUsableError when nothing was detected.
+// soslam-detect: runs a detector network on every image of a dataset. Files: "dataset", the folder
+// with rgb.txt; "network", ONNX; "labels" (optional), the names of its classes, one per line:
+// without it those in the network's file, or COCO's; "output", a detections.csv without object ids,
+// with its provenance as comments above the header. Prints the format that the network was found to
+// have, and a one-line summary. Throws SettingsError for a
+// backend that is not there and for what must be set; InputError for a bad list, image, network or
+// label file, and for a network whose boxes cannot be; NothingUsableError when nothing was
+// detected.
 void RunDetect(const DetectorOptions& options, const StageFiles& files, int threads);
 
 // soslam-reconstruct: poses, calibration and sparse points by structure from motion. Files:

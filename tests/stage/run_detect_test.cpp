@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "dataset/labelled_box.h"
 #include "image/detector_options.h"
+#include "image/network.h"
 #include "stage/stages.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
@@ -78,7 +79,8 @@ TEST_F(RunDetectTest, CommentsSayWhatItWasMadeFrom) {
   const std::string text = FileBytes(folder_ / "detections.csv");
   const auto header = nlohmann::json::parse(text.substr(2, text.find('\n') - 2));
   EXPECT_EQ(header["kind"], "detections");
-  options_.output_layout = YoloLayout::kV5;
+  EXPECT_EQ(header["backend"], std::string("OpenCV ") + CV_VERSION);
+  options_.output_layout = OutputLayout::kV5;
   options_.pixel_values = PixelValues::kRgbUnit;
   options_.input_width = options_.input_height = 64;
   EXPECT_EQ(header["settings"], OptionsToJson(options_));
@@ -92,6 +94,19 @@ TEST_F(RunDetectTest, SameBytesForAnyNumberOfThreads) {
   const std::string bytes = FileBytes(folder_ / "detections.csv");
   Run(50);  // more than images
   EXPECT_EQ(FileBytes(folder_ / "detections.csv"), bytes);
+}
+
+TEST_F(RunDetectTest, TheBackendIsTheOneThatIsAskedFor) {
+  options_.backend = NetworkBackend::kOnnxRuntime;
+  if (OnnxRuntimeVersion().empty()) {
+    ExpectError<SettingsError>([&] { Run(); }, {"onnxruntime", "libonnxruntime-dev", "opencv"});
+    EXPECT_FALSE(std::filesystem::exists(files_.at("output")));
+    return;
+  }
+  ExpectSameBytesForThreads([&](int threads) { Run(threads); }, {folder_ / "detections.csv"});
+  EXPECT_EQ(ReadDetectionsCsv(folder_ / "detections.csv").size(), 5u);
+  EXPECT_THAT(FileBytes(folder_ / "detections.csv"),
+              HasSubstr("\"backend\":\"ONNX Runtime " + OnnxRuntimeVersion()));
 }
 
 TEST_F(RunDetectTest, BadInputIsNamedAndNothingIsWritten) {

@@ -89,8 +89,8 @@ class OnnxGraph {
     graph_.Message(11, Value(name, shape, type));
     return *this;
   }
-  OnnxGraph& Output(const std::string& name, const Shape& shape) {
-    graph_.Message(12, Value(name, shape, kFloat));
+  OnnxGraph& Output(const std::string& name, const Shape& shape, int type = kFloat) {
+    graph_.Message(12, Value(name, shape, type));
     return *this;
   }
 
@@ -163,6 +163,50 @@ struct MeanNetwork {
     return graph;
   }
   std::string Onnx() const { return Graph().Onnx(metadata, opset); }
+};
+
+// A network with outputs that do not depend on the image, in the order of a transformer's or
+// PaddleDetection's export.
+struct ConstantNetwork {
+  struct Output {
+    std::string name;
+    std::vector<std::int64_t> shape;
+    std::vector<float> numbers;
+    bool is_integer = false;
+  };
+  std::vector<Output> outputs;
+  std::string scaled = "";  // the output that is multiplied by size_input, twice over, [1, 1, 4]
+  std::string size_input = "";  // an input [1, 2]
+  bool has_integer_sizes = true;
+  int input_side = 64;  // px; 0 for one that the file does not fix
+
+  OnnxGraph Graph() const {
+    OnnxGraph graph;
+    graph.Input("images", {1, 3, input_side, input_side});
+    if (!size_input.empty()) {
+      graph.Input(size_input, {1, 2}, has_integer_sizes ? OnnxGraph::kInt64 : OnnxGraph::kFloat);
+      const auto to_float = OnnxGraph::Integer("to", OnnxGraph::kFloat);
+      graph.Node("Cast", {size_input}, "sizes", {to_float})
+          .Node("Concat", {"sizes", "sizes"}, "four_sizes", {OnnxGraph::Integer("axis", 1)})
+          .Node("Reshape", {"four_sizes", "shape_of_sizes"}, "factors")
+          .Int64s("shape_of_sizes", {1, 1, 4});
+    }
+    for (const Output& output : outputs) {
+      const std::string& name = output.name;
+      AddMeans(name + "_numbers", output.numbers, {}, name + "_numbers_weights", &graph);
+      graph.Int64s(name + "_shape", output.shape)
+          .Node("Reshape", {name + "_numbers", name + "_shape"}, name + "_shaped");
+      const int type = output.is_integer ? OnnxGraph::kInt64 : OnnxGraph::kFloat;
+      if (name == scaled) {
+        graph.Node("Mul", {name + "_shaped", "factors"}, name);
+      } else {
+        graph.Node("Cast", {name + "_shaped"}, name, {OnnxGraph::Integer("to", type)});
+      }
+      graph.Output(name, output.shape, type);
+    }
+    return graph;
+  }
+  std::string Onnx() const { return Graph().Onnx(); }
 };
 
 // The end of a YOLOv8 graph with masks and two classes, as far as boxes go, for an input of

@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <fstream>
 #include <new>
 #include <opencv2/core.hpp>
-#include <opencv2/core/utils/logger.hpp>
 #include <opencv2/dnn.hpp>
 #include <optional>
-#include <utility>
 
 #include "base/error.h"
 #include "base/paths.h"
 #include "base/run_log.h"
-#include "image/onnx_header.h"
-#include "image/yolo_detector.h"
+#include "image/network.h"
 
 namespace soslam {
 namespace {
@@ -24,7 +22,7 @@ namespace fs = std::filesystem;
 // OpenCV before 4.7, as in Debian 12, which CertainlyFails is about.
 constexpr bool kIsOldOpenCv = CV_VERSION_MAJOR == 4 && CV_VERSION_MINOR < 7;
 
-// OpenCV's error message, in one line.
+// The error message of a backend, in one line.
 std::string Reason(const std::exception& error) {
   const auto* of_opencv = dynamic_cast<const cv::Exception*>(&error);
   std::string text = of_opencv != nullptr ? of_opencv->err : error.what();
@@ -32,16 +30,6 @@ std::string Reason(const std::exception& error) {
   const size_t begin = text.find_first_not_of("> ");
   const size_t end = text.find_last_not_of("> ");
   return begin == text.npos ? "no reason given" : text.substr(begin, end - begin + 1);
-}
-
-// Throws std::bad_alloc if `error` is that, or OpenCV's equivalent: the network file is not at
-// fault.
-void RethrowOutOfMemory(const std::exception& error) {
-  const auto* of_opencv = dynamic_cast<const cv::Exception*>(&error);
-  if ((of_opencv != nullptr && of_opencv->code == cv::Error::StsNoMem) ||
-      dynamic_cast<const std::bad_alloc*>(&error) != nullptr) {
-    throw std::bad_alloc();
-  }
 }
 
 bool HasAny(const OnnxHeader& header, const std::vector<const char*>& operators) {
@@ -57,7 +45,7 @@ bool IsHalf(const OnnxHeader& header) {
 
 // The command of Ultralytics that exports a network that OpenCV runs.
 std::string ExportCommand(const NetworkFile& file, const std::string& further = "") {
-  const cv::Size size = file.header.inputs.empty() ? cv::Size() : file.InputSize();
+  const cv::Size size = file.InputSize();
   return fmt::format(
       "yolo export model={}.pt format=onnx opset=12 imgsz={} half=False dynamic=False{}",
       fs::path(file.name).stem().string(),
@@ -68,7 +56,9 @@ std::string ExportCommand(const NetworkFile& file, const std::string& further = 
 std::optional<std::string> CertainlyFails(const NetworkFile& file) {
   if (HasAny(file.header, {"GridSample"})) {
     return "it is a transformer with deformable attention (RT-DETR, D-FINE, DEIM, RF-DETR), whose "
-           "GridSample OpenCV lacks; run it in its own software and import its boxes from a file";
+           "GridSample OpenCV lacks; run it with ONNX Runtime (--backend onnxruntime), or in its "
+           "own "
+           "software and import its boxes from a file";
   }
   if (HasAny(file.header, {"DynamicQuantizeLinear", "ConvInteger", "MatMulInteger"})) {
     return "its weights are quantised (int8); export it with " + ExportCommand(file, " int8=False");
@@ -85,12 +75,13 @@ std::optional<std::string> CertainlyFails(const NetworkFile& file) {
 
 // The likely reason why OpenCV failed with a network, from its header; empty without one.
 std::string LikelyReason(const NetworkFile& file) {
+  if (file.backend != NetworkBackend::kOpenCv) return "";
   if (const auto certain = CertainlyFails(file)) return ": " + *certain;
   constexpr int kBestOpset = 12;
   if (HasAny(file.header, {"QLinearConv", "QuantizeLinear"})) {
     return ": its weights are quantised (int8); export it with " + ExportCommand(file);
   }
-  if (std::ranges::count(file.header.inputs.front().shape, 0) > 0) {
+  if (std::ranges::count(file.ImageInput().shape, 0) > 0) {
     return ": the size of its input is not fixed; export it with " + ExportCommand(file);
   }
   if (file.header.opset > kBestOpset) {
@@ -151,7 +142,7 @@ void RefuseOtherFormats(const NetworkFile& file) {
       file.name, *format, ExportCommand(file)));
 }
 
-// OpenCV reads networks from memory.
+// Networks are read from memory.
 void RefuseExternalWeights(const NetworkFile& file) {
   if (file.header.files_of_weights.empty()) return;
   const fs::path path = file.name;
@@ -161,6 +152,18 @@ void RefuseExternalWeights(const NetworkFile& file) {
       IsFile(path.parent_path() / weights) ? "" : ", which is not beside it (copy that, too)",
       HowToJoin(path.filename())));
 }
+
+// The numbers of an input that asks for the size of the image, that of the network's input; none
+// for other inputs. With them, boxes are in pixels of that input.
+std::vector<float> SizeInput(const std::string& name, const cv::Size& size) {
+  const auto width = static_cast<float>(size.width), height = static_cast<float>(size.height);
+  if (name == "orig_target_sizes") return {width, height};  // RT-DETR, D-FINE
+  if (name == "im_shape") return {height, width};           // PaddleDetection, as the next
+  if (name == "scale_factor") return {1.0F, 1.0F};
+  return {};
+}
+
+bool IsImage(const OnnxValue& input) { return input.shape.size() == 4; }
 
 // Throws InputError for a network that is none of those that detect objects in one image.
 void CheckIsDetector(const NetworkFile& file) {
@@ -173,17 +176,24 @@ void CheckIsDetector(const NetworkFile& file) {
                     "pose, whose boxes are upright",
                     file.name, task->second));
   }
-  const std::vector<std::int64_t> shape =
-      inputs.size() == 1 ? inputs.front().shape : std::vector<std::int64_t>{};
+  const auto is_known = [](const OnnxValue& input) {
+    return IsImage(input) || !SizeInput(input.name, {}).empty();
+  };
+  const auto& shape = file.ImageInput().shape;
   const auto is = [&](size_t axis, std::int64_t side) {
     return shape[axis] == side || shape[axis] == 0;
   };
-  if (shape.size() != 4 || !is(0, 1) || !is(1, 3)) {
+  if (std::ranges::count_if(inputs, IsImage) != 1 || !std::ranges::all_of(inputs, is_known) ||
+      !is(0, 1) || !is(1, 3)) {
+    std::vector<std::string> found;
+    for (const OnnxValue& input : inputs)
+      found.push_back(input.name + " " + ShapeText(input.shape));
     throw InputError(fmt::format(
-        "{}: has {} inputs{}; expected one image of shape [1, 3, height, width]", file.name,
-        inputs.size(), inputs.size() == 1 ? ", of shape " + ShapeText(shape) : ""));
+        "{}: has {} inputs: {}; expected one image of shape [1, 3, height, width], and besides at "
+        "most orig_target_sizes, im_shape and scale_factor",
+        file.name, inputs.size(), fmt::join(found, ", ")));
   }
-  const int type = inputs.front().type;
+  const int type = file.ImageInput().type;
   if (type != 0 && type != OnnxValue::kFloat && type != OnnxValue::kHalf) {
     throw InputError(fmt::format(
         "{}: its input has numbers of ONNX's type {}; expected floating point, which is {}",
@@ -191,10 +201,52 @@ void CheckIsDetector(const NetworkFile& file) {
   }
 }
 
+// Throws the InputError for a network that a backend cannot load or run, or std::bad_alloc if
+// `error` is that, or OpenCV's equivalent: then the file is not at fault.
+[[noreturn]] void Refuse(const NetworkFile& file, const std::string& what,
+                         const std::exception& error) {
+  const auto* of_opencv = dynamic_cast<const cv::Exception*>(&error);
+  if ((of_opencv != nullptr && of_opencv->code == cv::Error::StsNoMem) ||
+      dynamic_cast<const std::bad_alloc*>(&error) != nullptr) {
+    throw std::bad_alloc();
+  }
+  throw InputError(
+      fmt::format("{}: {}{} ({})", file.name, what, LikelyReason(file), Reason(error)));
+}
+
+// The image as a network takes it, [1, 3, height, width].
+cv::Mat ImageBlob(const cv::Mat& image, PixelValues pixel_values) {
+  const bool is_unit = pixel_values != PixelValues::kBgrByte;
+  cv::Mat blob = cv::dnn::blobFromImage(image, is_unit ? 1.0 / 255.0 : 1.0, cv::Size(),
+                                        cv::Scalar(), is_unit /* swap blue and red */);
+  if (pixel_values != PixelValues::kRgbImageNet) return blob;
+  constexpr double kMean[] = {0.485, 0.456, 0.406}, kDeviation[] = {0.229, 0.224, 0.225};
+  for (int channel = 0; channel < 3; ++channel) {
+    cv::Mat plane(image.size(), CV_32FC1, blob.ptr<float>(0, channel));
+    plane.convertTo(plane, CV_32F, 1.0 / kDeviation[channel],
+                    -kMean[channel] / kDeviation[channel]);
+  }
+  return blob;
+}
+
 }  // namespace
 
+std::string BackendVersion(NetworkBackend backend) {
+  if (backend == NetworkBackend::kOpenCv) return std::string("OpenCV ") + CV_VERSION;
+  if (!OnnxRuntimeVersion().empty()) return "ONNX Runtime " + OnnxRuntimeVersion();
+  throw SettingsError(
+      "backend is onnxruntime, which this program was built without; install libonnxruntime-dev "
+      "(Debian 13 and newer) and build again, or set backend = opencv");
+}
+
+const OnnxValue& NetworkFile::ImageInput() const {
+  static const OnnxValue kNone{"", 0, {0, 0, 0, 0}};
+  const auto found = std::ranges::find_if(header.inputs, IsImage);
+  return found == header.inputs.end() ? kNone : *found;
+}
+
 cv::Size NetworkFile::InputSize() const {
-  const auto& shape = header.inputs.front().shape;
+  const auto& shape = ImageInput().shape;
   constexpr std::int64_t kMax = 1 << 15;
   const auto side = [](std::int64_t pixels) {
     return static_cast<int>(pixels > kMax ? 0 : pixels);
@@ -202,7 +254,8 @@ cv::Size NetworkFile::InputSize() const {
   return {side(shape[3]), side(shape[2])};
 }
 
-NetworkFile ReadNetworkFile(const fs::path& path) {
+NetworkFile ReadNetworkFile(const fs::path& path, NetworkBackend backend) {
+  BackendVersion(backend);
   std::ifstream stream(path, std::ios::binary);
   if (!IsFile(path) || !stream) {
     throw InputError(path.string() + ": cannot be read; expected an ONNX file");
@@ -210,86 +263,48 @@ NetworkFile ReadNetworkFile(const fs::path& path) {
   RecordInput(path);
   NetworkFile file{path.string(),
                    {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()},
-                   {}};
+                   {},
+                   backend};
   RefuseOtherFormats(file);
   file.header = ReadOnnxHeader(file.bytes, file.name);
   RefuseExternalWeights(file);
-  if (const auto reason = CertainlyFails(file); reason && kIsOldOpenCv) {
+  if (const auto reason = CertainlyFails(file);
+      reason && kIsOldOpenCv && backend == NetworkBackend::kOpenCv) {
     throw InputError(
-        fmt::format("{}: does not run in OpenCV {}: {}", file.name, CV_VERSION, *reason));
+        fmt::format("{}: does not run in {}: {}", file.name, BackendVersion(backend), *reason));
   }
   CheckIsDetector(file);
   return file;
 }
 
-YoloNetwork::YoloNetwork(const NetworkFile& file) : file_(file) {
-  // OpenCV prints the errors that it throws.
-  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+std::unique_ptr<Network> LoadNetwork(const NetworkFile& file) {
   try {
-    network_ = cv::dnn::readNetFromONNX(file.bytes.data(), file.bytes.size());
-    network_.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
-    network_.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
-  } catch (const std::exception& error) {  // from OpenCV or its libraries
-    Refuse(fmt::format("is not an ONNX network that OpenCV {} can load", CV_VERSION), error);
+    return file.backend == NetworkBackend::kOpenCv ? LoadWithOpenCv(file)
+                                                   : LoadWithOnnxRuntime(file);
+  } catch (const std::exception& error) {  // from the backend or its libraries
+    Refuse(file,
+           fmt::format("is not an ONNX network that {} can load", BackendVersion(file.backend)),
+           error);
   }
 }
 
-void YoloNetwork::Refuse(const std::string& what, const std::exception& error) const {
-  RethrowOutOfMemory(error);
-  throw InputError(
-      fmt::format("{}: {}{} ({})", file_.name, what, LikelyReason(file_), Reason(error)));
-}
-
-cv::Mat YoloNetwork::Forward(const cv::Mat& input, PixelValues pixel_values) {
-  const bool is_unit = pixel_values != PixelValues::kBgrByte;
-  const cv::Mat blob = cv::dnn::blobFromImage(input, is_unit ? 1.0 / 255.0 : 1.0, cv::Size(),
-                                              cv::Scalar(), is_unit /* swap blue and red */);
-  std::vector<cv::Mat> outputs;
-  const auto run = [&] {
-    network_.setInput(blob);
-    network_.forward(outputs, network_.getUnconnectedOutLayersNames());
-  };
+std::vector<cv::Mat> Network::Forward(const cv::Mat& image, PixelValues pixel_values) {
+  std::vector<cv::Mat> inputs;
+  for (const OnnxValue& input : file_.header.inputs) {
+    inputs.push_back(IsImage(input) ? ImageBlob(image, pixel_values)
+                                    : cv::Mat(SizeInput(input.name, image.size()), true).t());
+  }
   try {
-    try {
-      run();
-    } catch (const cv::Exception&) {
-      if (std::exchange(has_repeated_, true) || !RepeatStrides()) throw;
-      run();
-    }
-  } catch (const std::exception& error) {  // from OpenCV or its libraries
+    return Run(inputs);
+  } catch (const std::exception& error) {  // from the backend or its libraries
     const cv::Size size = file_.InputSize();
-    Refuse(fmt::format("cannot be run on an input of {} x {} pixels{}", input.cols, input.rows,
-                       size.empty() || size == input.size()
+    Refuse(file_,
+           fmt::format("cannot be run on an input of {} x {} pixels{}", image.cols, image.rows,
+                       size.empty() || size == image.size()
                            ? ""
                            : fmt::format("; its own is {} x {}", size.width, size.height)),
            error);
   }
-  const auto is_not_candidates = [](const cv::Mat& output) { return output.dims != 3; };
-  const size_t all = outputs.size();
-  std::erase_if(outputs, is_not_candidates);
-  if (outputs.size() != 1) {
-    throw InputError(fmt::format("{}: has {} outputs, {} with three dimensions; expected one",
-                                 file_.name, all, outputs.size()));
-  }
-  return outputs.front();
-}
-
-// OpenCV 4.6 does not broadcast the last product of YOLOv8's graph, of boxes in cells [1, 4, N]
-// with the pixels of a cell [1, N]: this repeats the latter. Returns whether the network has such a
-// product.
-bool YoloNetwork::RepeatStrides() {
-  for (const int id : network_.getUnconnectedOutLayers()) {
-    cv::Ptr<cv::dnn::Layer> layer = network_.getLayer(id);
-    while (layer && (layer->type == "Identity" || layer->type == "Concat")) {
-      const auto inputs = network_.getLayerInputs(network_.getLayerId(layer->name));
-      layer = inputs.empty() ? nullptr : inputs.front();
-    }
-    if (!layer || layer->type != "Scale" || layer->blobs.size() != 1) continue;
-    constexpr int kFields = 4;  // cx cy w h
-    layer->blobs[0] = cv::repeat(layer->blobs[0].reshape(1, 1), kFields, 1).reshape(1, 1);
-    return true;
-  }
-  return false;
 }
 
 }  // namespace soslam

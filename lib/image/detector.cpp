@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "image/yolo_detector.h"
+#include "image/detector.h"
 
 #include <fmt/format.h>
 
@@ -22,7 +22,9 @@ double ToImageAxis(double in_input, int start, int filled, int image) {
 
 }  // namespace
 
-Letterbox::Letterbox(const cv::Size& image, const cv::Size& input) : image_(image), input_(input) {
+Letterbox::Letterbox(const cv::Size& image, const cv::Size& input, bool is_stretched)
+    : image_(image), input_(input), filled_({0, 0}, input) {
+  if (is_stretched) return;
   const double scale = std::min(static_cast<double>(input.width) / image.width,
                                 static_cast<double>(input.height) / image.height);
   const auto scaled = [&](int side) {
@@ -47,23 +49,22 @@ Box Letterbox::ToImage(const Box& box) const {
           ToImageAxis(box.y_max, filled_.y, filled_.height, image_.height)};
 }
 
-YoloDetector::YoloDetector(const NetworkFile& file, const YoloFormat& format,
-                           std::vector<int> groups, const DetectorOptions& options)
+Detector::Detector(const NetworkFile& file, const NetworkFormat& format, std::vector<int> groups,
+                   const DetectorOptions& options)
     : name_(file.name),
-      network_(file),
+      network_(LoadNetwork(file)),
       format_(format),
       groups_(std::move(groups)),
       options_(options) {}
 
-std::vector<YoloDetection> YoloDetector::Detect(const cv::Mat& image) {
-  const Letterbox letterbox(image.size(), format_.input);
-  const cv::Mat output = network_.Forward(letterbox.Fit(image), format_.pixel_values);
-  auto found = ReadYoloOutput(output, format_, options_.min_score, name_);
-  if (format_.layout != YoloLayout::kEndToEnd) {
-    found = WithoutOverlaps(found, groups_, options_.max_overlap);
-  }
-  std::vector<YoloDetection> detections;
-  for (YoloDetection detection : found) {
+std::vector<NetworkDetection> Detector::Detect(const cv::Mat& image) {
+  const LayoutProperties layout = PropertiesOf(format_.layout);
+  const Letterbox letterbox(image.size(), format_.input, layout.is_for_stretched);
+  const auto outputs = network_->Forward(letterbox.Fit(image), format_.pixel_values);
+  auto found = ReadNetworkOutput(outputs, format_, options_.min_score, name_);
+  if (layout.may_overlap) found = WithoutOverlaps(found, groups_, options_.max_overlap);
+  std::vector<NetworkDetection> detections;
+  for (NetworkDetection detection : found) {
     const bool is_tiny = std::max(detection.box.Width(), detection.box.Height()) < kTinySide;
     detection.box = letterbox.ToImage(detection.box);
     const bool is_outside = detection.box.Width() <= 0.0 || detection.box.Height() <= 0.0;
@@ -73,7 +74,7 @@ std::vector<YoloDetection> YoloDetector::Detect(const cv::Mat& image) {
   return detections;
 }
 
-void CheckBoxesArePossible(const BoxTally& tally, const YoloFormat& format,
+void CheckBoxesArePossible(const BoxTally& tally, const NetworkFormat& format,
                            const std::string& network) {
   constexpr double kMostImpossible = 0.9;
   if (tally.tiny + tally.outside <= kMostImpossible * tally.boxes) return;
