@@ -6,9 +6,11 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "artefact/files.h"
 #include "base/error.h"
 #include "dataset/class_names.h"
 #include "support/expect_error.h"
@@ -502,6 +504,31 @@ TEST(CocoLabelsTest, EachClassHasOneCategoryId) {
   for (int i = 0; i < 80; ++i) {
     EXPECT_EQ(indices[i], i);
     EXPECT_EQ(CocoClassIndex(CocoCategoryId(i)), i);
+  }
+}
+
+// Lists of large vocabularies: a class at its number, and enough names that the semantic table
+// knows.
+TEST(ProjectLabelsTest, ListsHaveAllClassesInTheirOrder) {
+  struct List {
+    const char* file;
+    size_t classes;
+    size_t number;
+    const char* name;
+    int known;
+  };
+  const std::filesystem::path pipelines = SOSLAM_SOURCE_DIR "/pipelines";
+  const SemanticTable table = ReadSemanticTable(pipelines / "priors/semantic_table.json");
+  for (const List& list : {List{"coco_ids.txt", 91, 62, "chair", 55},
+                           List{"objects365.txt", 365, 121, "nightstand", 130},
+                           List{"open_images.txt", 601, 576, "trash can", 170},
+                           List{"lvis.txt", 1203, 19, "wardrobe", 250}}) {
+    const auto names = ReadLabelFile(pipelines / "labels" / list.file);
+    EXPECT_EQ(names.size(), list.classes) << list.file;
+    EXPECT_EQ(names.at(list.number), list.name) << list.file;
+    EXPECT_GE(std::ranges::count_if(names, [&](const auto& name) { return table.Contains(name); }),
+              list.known)
+        << list.file;
   }
 }
 
