@@ -23,7 +23,8 @@ cv::Mat AsFloats(const Ort::Value& tensor, const std::vector<int>& shape, size_t
 cv::Mat AsFloats(const Ort::Value& tensor) {
   const auto info = tensor.GetTensorTypeAndShapeInfo();
   const std::vector<std::int64_t> sides = info.GetShape();
-  const std::vector<int> shape(sides.begin(), sides.end());
+  std::vector<int> shape(sides.begin(), sides.end());
+  if (shape.empty()) shape = {1};  // one number
   const size_t count = info.GetElementCount();
   switch (info.GetElementType()) {
     case ONNX_TENSOR_ELEMENT_DATA_TYPE_FLOAT:

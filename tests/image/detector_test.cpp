@@ -157,15 +157,16 @@ TEST_F(DetectorTest, RfDetr) {
               1, 0.75);
 }
 
+// The box is asked for in pixels of the input, which is not square.
 TEST_F(DetectorTest, LabelsBoxesAndScores) {
   options_.pixel_values = PixelValues::kRgbUnit;
-  ExpectFound(Only(Detect(ConstantNetwork{{{"labels", {1, 1}, {1}, true},
-                                           {"boxes", {1, 1, 4}, {0.1875F, 0.375F, 0.3125F, 0.625F}},
-                                           {"scores", {1, 1}, {0.75F}}},
-                                          "boxes",
-                                          "orig_target_sizes"},
-                          image_)),
-              1, 0.75);
+  ConstantNetwork network = {{{"labels", {1, 1}, {1}, true},
+                              {"boxes", {1, 1, 4}, {0.1875F, 0.375F, 0.3125F, 0.625F}},
+                              {"scores", {1, 1}, {0.75F}}},
+                             "boxes",
+                             "orig_target_sizes"};
+  network.input_height = 32;
+  ExpectFound(Only(Detect(network, image_)), 1, 0.75);
 }
 
 // Two boxes on top of each other: the network without suppression leaves that to us.
@@ -179,13 +180,17 @@ TEST_F(DetectorTest, PaddleWithAndWithoutSuppression) {
   ExpectFound(Only(Detect(network, image_)), 1, 0.75);
 }
 
-TEST_F(DetectorTest, TheScaleOfPaddleIsThatOfTheInput) {
+TEST_F(DetectorTest, SizesOfPaddleAreThoseOfTheInput) {
   options_.pixel_values = PixelValues::kRgbImageNet;
   ConstantNetwork network = {
       {{"boxes", {1, 1, 4}, {12, 24, 20, 40}}, {"scores", {1, 2, 1}, {0.0F, 0.75F}}},
       "boxes",
       "scale_factor",
       false};
+  ExpectFound(Only(Detect(network, image_)), 1, 0.75);
+  network.size_input = "im_shape";  // height and width, 32 and 64
+  network.input_height = 32;
+  network.outputs[0].numbers = {12.0F / 32, 12.0F / 64, 20.0F / 32, 20.0F / 64};
   ExpectFound(Only(Detect(network, image_)), 1, 0.75);
 }
 

@@ -160,7 +160,7 @@ TEST_F(NetworkFormatTest, WhatTransformersDoNotSayIsAskedFor) {
       {"net.onnx", "pixel_values", "rgb_0_1", "rgb_imagenet"});
   options_.pixel_values = PixelValues::kRgbUnit;
   ConstantNetwork any_size = Transformer({-5, -4});
-  any_size.input_side = 0;
+  any_size.input_width = any_size.input_height = 0;
   ExpectError<SettingsError>([&] { Find(any_size.Onnx()); },
                              {"net.onnx", "not fixed", "input_width_px"});
   options_.input_width = options_.input_height = 64;

@@ -178,11 +178,12 @@ struct ConstantNetwork {
   std::string scaled = "";  // the output that is multiplied by size_input, twice over, [1, 1, 4]
   std::string size_input = "";  // an input [1, 2]
   bool has_integer_sizes = true;
-  int input_side = 64;  // px; 0 for one that the file does not fix
+  int input_width = 64;  // px; 0 for one that the file does not fix, as the height
+  int input_height = 64;
 
   OnnxGraph Graph() const {
     OnnxGraph graph;
-    graph.Input("images", {1, 3, input_side, input_side});
+    graph.Input("images", {1, 3, input_height, input_width});
     if (!size_input.empty()) {
       graph.Input(size_input, {1, 2}, has_integer_sizes ? OnnxGraph::kInt64 : OnnxGraph::kFloat);
       const auto to_float = OnnxGraph::Integer("to", OnnxGraph::kFloat);
