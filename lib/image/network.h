@@ -63,12 +63,10 @@ class Network {
 // Throws InputError when the backend cannot load the network.
 std::unique_ptr<Network> LoadNetwork(const NetworkFile& file);
 
-// Loads a network with ONNX Runtime. Throws its exceptions; SettingsError as BackendVersion.
-std::unique_ptr<Network> LoadWithOnnxRuntime(const NetworkFile& file);
-// The version of ONNX Runtime; empty where this software was built without.
-std::string OnnxRuntimeVersion();
-
-// Loads a network with OpenCV. Throws its exceptions.
+// What LoadNetwork calls, with the exceptions of the backends. Without ONNX Runtime in this
+// software, its network is null and its version empty: ReadNetworkFile has refused it.
 std::unique_ptr<Network> LoadWithOpenCv(const NetworkFile& file);
+std::unique_ptr<Network> LoadWithOnnxRuntime(const NetworkFile& file);
+std::string OnnxRuntimeVersion();
 
 }  // namespace soslam

@@ -37,31 +37,25 @@ std::optional<int> OnlyWithSides(const std::vector<OnnxValue>& outputs, size_t s
   return found;
 }
 
-// Names by which networks tell their outputs, in the order of OutputLayout.
+// Names by which networks tell their outputs, in the order of OutputLayout, and their indices.
 struct NamedOutputs {
   std::vector<std::string> names;
   bool are_of_rf_detr = false;
+  std::vector<int> indices = {};
 };
-const NamedOutputs kNamedOutputs[] = {{{"pred_boxes", "logits"}},        // Hugging Face
-                                      {{"pred_boxes", "pred_logits"}},   // DETR and successors
-                                      {{"dets", "labels"}, true},        // RF-DETR
-                                      {{"boxes", "scores", "labels"}}};  // RT-DETR, D-FINE
 
-// Indices of outputs with known names, and which ones these are; none for others.
-struct NamedIndices {
-  const NamedOutputs* named;
-  std::vector<int> outputs;
-};
-std::optional<NamedIndices> FindNamed(const std::vector<OnnxValue>& outputs) {
-  for (const NamedOutputs& named : kNamedOutputs) {
-    NamedIndices found{&named, {}};
+// The outputs with known names; none unless all of them are there.
+std::optional<NamedOutputs> FindNamed(const std::vector<OnnxValue>& outputs) {
+  for (NamedOutputs named : {NamedOutputs{{"pred_boxes", "logits"}},          // Hugging Face
+                             NamedOutputs{{"pred_boxes", "pred_logits"}},     // DETR and successors
+                             NamedOutputs{{"dets", "labels"}, true},          // RF-DETR
+                             NamedOutputs{{"boxes", "scores", "labels"}}}) {  // RT-DETR, D-FINE
     for (const std::string& name : named.names) {
       const auto output = std::ranges::find(outputs, name, &OnnxValue::name);
-      if (output != outputs.end()) {
-        found.outputs.push_back(static_cast<int>(output - outputs.begin()));
-      }
+      if (output == outputs.end()) break;
+      named.indices.push_back(static_cast<int>(output - outputs.begin()));
     }
-    if (found.outputs.size() == named.names.size()) return found;
+    if (named.indices.size() == named.names.size()) return named;
   }
   return std::nullopt;
 }
@@ -111,26 +105,19 @@ std::optional<LayoutOfShapes> FitYolo(const NetworkFile& file, const Shape& shap
 
 // The layout of outputs with known names.
 std::optional<LayoutOfShapes> FitNamed(const std::vector<OnnxValue>& outputs,
-                                       const NamedIndices& found, int classes,
+                                       const NamedOutputs& named, int classes,
                                        OutputLayout wanted) {
-  const auto may_be = [&](OutputLayout layout) {
-    return wanted == OutputLayout::kAuto || wanted == layout;
+  const auto fit = [&](OutputLayout layout, int extra) -> std::optional<LayoutOfShapes> {
+    if (wanted != OutputLayout::kAuto && wanted != layout) return std::nullopt;
+    return LayoutOfShapes{layout, extra, named.indices};
   };
-  const bool has_logits = found.outputs.size() == 2;
-  if (!has_logits && may_be(OutputLayout::kDetrBoxes)) {
-    return LayoutOfShapes{OutputLayout::kDetrBoxes, 0, found.outputs};
-  }
-  const Shape& logits = outputs[found.outputs[1]].shape;
-  if (!has_logits || logits.size() != 3) return std::nullopt;
-  const std::int64_t extra = logits[2] - classes;
-  const bool may_be_sigmoid = may_be(OutputLayout::kDetr);
-  if (may_be_sigmoid && extra == 0) return LayoutOfShapes{OutputLayout::kDetr, 0, found.outputs};
+  if (named.indices.size() == 3) return fit(OutputLayout::kDetrBoxes, 0);
+  const Shape& logits = outputs[named.indices[1]].shape;
+  const std::int64_t extra = logits.size() == 3 ? logits[2] - classes : -1;
+  if (extra == 0) return fit(OutputLayout::kDetr, 0);
   if (extra != 1) return std::nullopt;
-  if (may_be_sigmoid && (found.named->are_of_rf_detr || wanted == OutputLayout::kDetr)) {
-    return LayoutOfShapes{OutputLayout::kDetr, 1, found.outputs};
-  }
-  if (!may_be(OutputLayout::kDetrSoftmax)) return std::nullopt;
-  return LayoutOfShapes{OutputLayout::kDetrSoftmax, 0, found.outputs};
+  return named.are_of_rf_detr || wanted == OutputLayout::kDetr ? fit(OutputLayout::kDetr, 1)
+                                                               : fit(OutputLayout::kDetrSoftmax, 0);
 }
 
 // The layout of PaddleDetection's outputs, whose names say nothing.
@@ -169,8 +156,8 @@ std::optional<LayoutOfShapes> Fit(const NetworkFile& file, const std::vector<Onn
 std::int64_t ClassesOf(const std::vector<OnnxValue>& outputs) {
   constexpr std::int64_t kMost = 2000;
   std::int64_t classes = 0;
-  if (const auto named = FindNamed(outputs); named && named->outputs.size() == 2) {
-    const Shape& logits = outputs[named->outputs[1]].shape;
+  if (const auto named = FindNamed(outputs); named && named->indices.size() == 2) {
+    const Shape& logits = outputs[named->indices[1]].shape;
     if (logits.size() == 3) classes = logits[2];
   } else if (const auto only = OnlyWithSides(outputs, 3)) {
     classes = std::min(outputs[*only].shape[1] - 4, outputs[*only].shape[2] - 5);
@@ -317,14 +304,13 @@ NetworkFormat FindFormat(const NetworkFile& file, int classes, const DetectorOpt
                         !file.header.metadata.contains("names") && !HasConstantObjectness(output);
   if (is_yolox && is_auto && HasBoxesInCells(output)) format.layout = OutputLayout::kYolox;
   if (options.pixel_values != PixelValues::kAuto) return format;
-  if (PropertiesOf(layout).is_for_stretched && !(named && named->named->are_of_rf_detr)) {
+  if (named && named->are_of_rf_detr) {
+    format.pixel_values = PixelValues::kRgbImageNet;
+  } else if (PropertiesOf(layout).is_for_stretched) {
     throw SettingsError(fmt::format(
         "{}: pixel_values is auto, but networks of layout {} take rgb_0_1 (RT-DETR, D-FINE) or "
         "rgb_imagenet (DETR, PicoDet), which the file does not say; set it as in training",
         file.name, kOutputLayoutNames[static_cast<int>(layout)]));
-  }
-  if (named) {
-    format.pixel_values = PixelValues::kRgbImageNet;
   } else {
     format.pixel_values = is_yolox || format.layout == OutputLayout::kYolox ? PixelValues::kBgrByte
                                                                             : PixelValues::kRgbUnit;

@@ -214,6 +214,25 @@ TEST_F(DetectorTest, YoloxRawAndDecoded) {
   }
 }
 
+// Transformers sample their features with GridSample, and choose the best queries with TopK.
+TEST_F(DetectorTest, OnnxRuntimeRunsWhatOpenCvLacks) {
+  if (!HasOnnxRuntime()) GTEST_SKIP() << "built without ONNX Runtime";
+  OnnxGraph graph;
+  graph.Input("images", {1, 3, 64, 64}).Output("boxes", {1, 1, 4});
+  graph.Output("scores", {1, 1}).Output("labels", {1, 1}, OnnxGraph::kInt64);
+  graph.Floats<float>("centre", {1, 1, 1, 2}, {0, 0})
+      .Floats<float>("box", {1, 1, 4}, {12, 24, 20, 40});
+  graph.Int64s("row", {1, 3}).Int64s("one", {1});
+  graph.Node("GridSample", {"images", "centre"}, "colour")
+      .Node("Reshape", {"colour", "row"}, "channels")
+      .Node("TopK", {"channels", "one"}, std::vector<std::string>{"scores", "labels"}, {})
+      .Node("Identity", {"box"}, "boxes");
+  WriteBytes(folder_ / "net.onnx", graph.Onnx({}, 16));
+  options_.pixel_values = PixelValues::kRgbUnit;
+  const cv::Mat green(96, 128, CV_8UC3, cv::Scalar(0, 204, 51));
+  ExpectFound(Only(DetectWith(NetworkBackend::kOnnxRuntime, green)), 1, 0.8);
+}
+
 TEST_F(DetectorTest, BadFilesAreNamed) {
   // A network that cannot run: seven numbers do not make eight.
   ExpectError<InputError>(
