@@ -106,7 +106,6 @@ cv::Mat CandidateRows(const std::vector<cv::Mat>& outputs, const NetworkFormat& 
     }
     case OutputLayout::kPaddleNms: {
       const cv::Mat found = matrix(0, {kAny, 6});
-      if (found.empty()) return found;
       cv::hconcat(std::vector<cv::Mat>{found.colRange(2, 6), found.col(1), found.col(0)}, rows);
       return rows;
     }
@@ -251,6 +250,7 @@ bool HasNoObjectClass(const cv::Mat& logits) {
 std::vector<NetworkDetection> ReadNetworkOutput(const std::vector<cv::Mat>& outputs,
                                                 const NetworkFormat& format, double min_score,
                                                 const std::string& network) {
+  if (outputs.at(format.outputs.at(0)).empty()) return {};
   cv::Mat rows = CandidateRows(outputs, format, network);
   if (format.layout == OutputLayout::kV5) CheckInPixels(rows, format.input, network);
   if (format.layout == OutputLayout::kYolox) rows = FromYoloxGrids(rows, format.input, network);

@@ -153,14 +153,20 @@ void RefuseExternalWeights(const NetworkFile& file) {
       HowToJoin(path.filename())));
 }
 
-// The numbers of an input that asks for the size of the image, that of the network's input; none
-// for other inputs. With them, boxes are in pixels of that input.
-std::vector<float> SizeInput(const std::string& name, const cv::Size& size) {
+// What an input beside the image takes; empty for unknown ones. Networks are told that the image
+// has the size of their input, so that boxes are in its pixels, and that none of these is padding.
+cv::Mat FurtherInput(const OnnxValue& input, const cv::Size& size) {
   const auto width = static_cast<float>(size.width), height = static_cast<float>(size.height);
-  if (name == "orig_target_sizes") return {width, height};  // RT-DETR, D-FINE
-  if (name == "im_shape") return {height, width};           // PaddleDetection, as the next
-  if (name == "scale_factor") return {1.0F, 1.0F};
-  return {};
+  if (input.name == "orig_target_sizes") return cv::Mat_<float>({1, 2}, {width, height});
+  if (input.name == "im_shape") return cv::Mat_<float>({1, 2}, {height, width});
+  if (input.name == "scale_factor") return cv::Mat_<float>({1, 2}, {1.0F, 1.0F});
+  if (input.name != "pixel_mask" || input.shape.size() != 3) return {};
+  const auto side = [&](size_t axis, int of_image) {
+    constexpr std::int64_t kMost = 4096;
+    const std::int64_t declared = input.shape[axis];
+    return declared > 0 && declared <= kMost ? static_cast<int>(declared) : of_image;
+  };
+  return {{1, side(1, size.height), side(2, size.width)}, CV_32FC1, cv::Scalar(1)};
 }
 
 bool IsImage(const OnnxValue& input) { return input.shape.size() == 4; }
@@ -177,7 +183,7 @@ void CheckIsDetector(const NetworkFile& file) {
                     file.name, task->second));
   }
   const auto is_known = [](const OnnxValue& input) {
-    return IsImage(input) || !SizeInput(input.name, {}).empty();
+    return IsImage(input) || !FurtherInput(input, {1, 1}).empty();
   };
   const auto& shape = file.ImageInput().shape;
   const auto is = [&](size_t axis, std::int64_t side) {
@@ -190,7 +196,7 @@ void CheckIsDetector(const NetworkFile& file) {
       found.push_back(input.name + " " + ShapeText(input.shape));
     throw InputError(fmt::format(
         "{}: has {} inputs: {}; expected one image of shape [1, 3, height, width], and besides at "
-        "most orig_target_sizes, im_shape and scale_factor",
+        "most orig_target_sizes, im_shape, scale_factor and pixel_mask",
         file.name, inputs.size(), fmt::join(found, ", ")));
   }
   const int type = file.ImageInput().type;
@@ -292,7 +298,7 @@ std::vector<cv::Mat> Network::Forward(const cv::Mat& image, PixelValues pixel_va
   std::vector<cv::Mat> inputs;
   for (const OnnxValue& input : file_.header.inputs) {
     inputs.push_back(IsImage(input) ? ImageBlob(image, pixel_values)
-                                    : cv::Mat(SizeInput(input.name, image.size()), true).t());
+                                    : FurtherInput(input, image.size()));
   }
   try {
     return Run(inputs);

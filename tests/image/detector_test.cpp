@@ -146,6 +146,12 @@ TEST_F(DetectorTest, DetrBySigmoidAndSoftmax) {
   network.outputs[1] = {"pred_boxes", {1, 2, 4}, {0.25F, 0.5F, 0.125F, 0.25F, 0.5F, 0.5F, 1, 1}};
   options_.output_layout = OutputLayout::kDetrSoftmax;
   ExpectFound(Only(Detect(network, image_)), 1, 3 / (1 + 3 + std::exp(-1.0)));
+  if (!HasOnnxRuntime()) return;  // OpenCV wants all inputs to be used
+  OnnxGraph masked = network.Graph();
+  WriteBytes(folder_ / "net.onnx",
+             masked.Input("pixel_mask", {0, 32, 0}, OnnxGraph::kInt64).Onnx());
+  ExpectFound(Only(DetectWith(NetworkBackend::kOnnxRuntime, image_)), 1,
+              3 / (1 + 3 + std::exp(-1.0)));
 }
 
 // RF-DETR names its logits "labels"; with as many classes as a box has numbers, only names tell.

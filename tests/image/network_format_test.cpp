@@ -122,6 +122,8 @@ TEST_F(NetworkFormatTest, OtherTasksAndInputsAreRefused) {
     OnnxGraph sizes = Ultralytics({1, 252, 7}).Graph();
     EXPECT_NO_THROW(Read(sizes.Input(name, {1, 2}).Onnx()));
   }
+  OnnxGraph absurd = Ultralytics({1, 252, 7}).Graph();
+  EXPECT_NO_THROW(Read(absurd.Input("pixel_mask", {1, 1 << 30, 1 << 30}).Onnx()));
   OnnxGraph bytes;
   constexpr int kUint8 = 2;
   ExpectRefused(bytes.Input("images", {1, 3, 64, 64}, kUint8).Onnx(), {"type 2"});

@@ -83,8 +83,13 @@ TEST(NetworkOutputTest, ProbabilitiesAreNotTakenForLogits) {
                           {"net.onnx", "probabilities", "sigmoid"});
 }
 
-TEST(NetworkOutputTest, NothingThatPaddleFoundIsNothing) {
+TEST(NetworkOutputTest, NoCandidatesAreNoDetections) {
   EXPECT_TRUE(Read(cv::Mat(0, 6, CV_32FC1), OutputLayout::kPaddleNms).empty());
+  NetworkFormat format = Format(OutputLayout::kDetr);
+  format.outputs = {0, 1};
+  const std::vector<cv::Mat> outputs = {cv::Mat(std::vector{1, 0, 4}, CV_32FC1),
+                                        cv::Mat(std::vector{1, 0, 2}, CV_32FC1)};
+  EXPECT_TRUE(ReadNetworkOutput(outputs, format, 0.25, "net.onnx").empty());
 }
 
 // Each message says what the output was taken for.
