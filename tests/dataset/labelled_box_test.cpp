@@ -521,6 +521,7 @@ TEST(ProjectLabelsTest, ListsHaveAllClassesInTheirOrder) {
   const SemanticTable table = ReadSemanticTable(pipelines / "priors/semantic_table.json");
   for (const List& list : {List{"coco_ids.txt", 91, 62, "chair", 55},
                            List{"objects365.txt", 365, 121, "nightstand", 130},
+                           List{"objects365_ids.txt", 366, 122, "nightstand", 130},
                            List{"open_images.txt", 601, 576, "trash can", 170},
                            List{"lvis.txt", 1203, 19, "wardrobe", 250}}) {
     const auto names = ReadLabelFile(pipelines / "labels" / list.file);
