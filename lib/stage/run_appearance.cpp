@@ -18,7 +18,7 @@
 #include "base/hash.h"
 #include "base/parallel.h"
 #include "base/progress.h"
-#include "image/yolo_detector.h"
+#include "image/network.h"
 #include "stage/read_evidence.h"
 #include "stage/stages.h"
 
