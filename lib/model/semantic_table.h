@@ -85,6 +85,16 @@ void Describe(Visitor& visit, SemanticRow& row) {
                : fmt::format("attitude is {} and mount {}; expected standing for one of the two",
                              NameOf(prior.attitude), NameOf(prior.mount));
   });
+  visit.OrAbsent("has_front", &prior.has_front,
+                 "the x axis of the thing is a front that people agree on, as that of a chair, a "
+                 "screen or a car, but not of a table, a cup or a ball");
+  visit.Check([&] {
+    return prior.has_front && prior.mount == Mount::kOnWall
+               ? std::string(
+                     "has_front is true and mount on_wall; expected one of the two, as the "
+                     "front of a thing on a wall points away from that")
+               : std::string();
+  });
   visit.OrAbsent("edge_bias", &prior.edge_bias,
                  "mean distance by which the left, top, right and bottom edges of a detector's "
                  "boxes lie outside the outline of the body, as fractions of the width or height "

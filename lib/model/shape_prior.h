@@ -51,6 +51,7 @@ struct ShapePrior {
   EdgeBias edge_bias = {};  // of detected boxes, for this shape
   Attitude attitude = Attitude::kStanding;
   RestingFace rests_on = RestingFace::kBottom;  // the face that a, b and c are for
+  bool has_front = false;  // its x axis is a front that people agree on, as that of a chair
 };
 
 // The prior in the object frame, whose z points away from the support plane, from a prior of
@@ -67,7 +68,7 @@ ShapePrior OnFace(const ShapePrior& standing, RestingFace face);
 std::vector<std::optional<ShapePrior>> OnPossibleFaces(const std::optional<ShapePrior>& standing);
 
 // Log-normal prior with the moments of a mixture of priors of one mount; the height is that of the
-// priors that have one, the attitude that of the first. Their weights have the sum 1.
+// priors that have one; attitude and has_front are those of the first. Weights have the sum 1.
 struct WeightedPrior {
   double weight;
   ShapePrior prior;

@@ -103,6 +103,15 @@ TEST_F(SemanticTableFileTest, WhatIsMountedCannotLie) {
       {"table.json: /labels/cup: attitude is any_face and mount on_wall"});
 }
 
+TEST_F(SemanticTableFileTest, TheFrontOfWhatIsOnAWallIsNotAlongX) {
+  json entry = kRatioOnly;
+  EXPECT_FALSE(Read({{"labels", {{"tv", entry}}}}).Find("tv")->has_front);
+  entry["has_front"] = true;
+  EXPECT_TRUE(Read({{"labels", {{"tv", entry}}}}).Find("tv")->has_front);
+  entry["mount"] = "on_wall";
+  ExpectRefused({{"tv", entry}}, {"table.json: /labels/tv: has_front is true and mount on_wall"});
+}
+
 TEST_F(SemanticTableFileTest, WhatIsNoTableIsRefusedByName) {
   for (const json& document : {json(), json::array({kRatioOnly}), json("chair"), json(3)}) {
     ExpectError<InputError>([&] { Read(document); }, {"table.json: the document is "});
@@ -123,6 +132,7 @@ TEST_F(SemanticTableFileTest, WrittenRowsAreReadAsTheyWere) {
   SemanticRow cup = {
       "cup", {"mug"}, {{1.2, 0.9}, {0.1, 0.2}, 1.4, 0.5, LogNormal{0.1, 0.3}}, 7, "the test"};
   cup.prior.attitude = Attitude::kFree;
+  cup.prior.has_front = true;
   cup.prior.edge_bias = {-0.02, 0.0, 0.01, -0.15};
   const SemanticRow any = {"default", {}, {{1.0, 1.0}, {0.5, 0.5}, 1.1}, 0, "no preference"};
   WriteSemanticRows(file_, {"about cups", any, {cup}}, {});
@@ -136,11 +146,14 @@ TEST_F(SemanticTableFileTest, WrittenRowsAreReadAsTheyWere) {
   EXPECT_EQ(row.prior.log_correlation, 0.5);
   EXPECT_EQ(row.prior.height_m.value().log_sigma, 0.3);
   EXPECT_EQ(row.prior.attitude, Attitude::kFree);
+  EXPECT_TRUE(row.prior.has_front);
   EXPECT_EQ(row.prior.edge_bias, cup.prior.edge_bias);
   EXPECT_EQ(row.samples, 7);
   EXPECT_EQ(row.source, "the test");
   EXPECT_EQ(rows.default_row.value().prior.shape_exponents, 1.1);
-  EXPECT_FALSE(json::parse(FileBytes(file_)).at("default").contains("edge_bias"));
+  for (const char* field : {"edge_bias", "has_front"}) {
+    EXPECT_FALSE(json::parse(FileBytes(file_)).at("default").contains(field)) << field;
+  }
 }
 
 TEST_F(SemanticTableFileTest, ArtefactsOfAnotherKindAreRefused) {
@@ -170,8 +183,26 @@ TEST(SemanticTableTest, TheProjectsTableIsWhatWasStatedAndMore) {
     EXPECT_EQ(prior.ratio, row.prior.ratio) << row.label;
     EXPECT_EQ(prior.log_sigma, row.prior.log_sigma) << row.label;
     EXPECT_EQ(prior.shape_exponents, row.prior.shape_exponents) << row.label;
+    EXPECT_EQ(prior.has_front, row.prior.has_front) << row.label;
     if (row.prior.height_m) {
       EXPECT_EQ(prior.height_m->median, row.prior.height_m->median) << row.label;
+    }
+  }
+}
+
+TEST(SemanticTableTest, TheProjectsTablesAgreeOnWhatHasAFront) {
+  const std::filesystem::path folder = SOSLAM_SOURCE_DIR "/pipelines/priors";
+  for (const char* file :
+       {"semantic_table.json", "coco_boxes/all.json", "coco_boxes/without_fr1.json",
+        "coco_boxes/without_fr2_desk.json", "coco_boxes/without_icl.json"}) {
+    const SemanticTable table = ReadSemanticTable(folder / file);
+    for (const char* label : {"chair", "couch", "bed", "tv", "laptop", "keyboard", "refrigerator",
+                              "oven", "microwave", "toilet", "car", "truck", "bus", "person"}) {
+      EXPECT_TRUE(table.Find(label)->has_front) << file << ": " << label;
+    }
+    for (const char* label : {"dining table", "bottle", "cup", "vase", "sports ball", "book",
+                              "potted plant", "picture", "no such label"}) {
+      EXPECT_FALSE(table.Find(label)->has_front) << file << ": " << label;
     }
   }
 }

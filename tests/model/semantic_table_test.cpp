@@ -44,6 +44,18 @@ TEST(ObjectPriors, TableGivesTheLabelsEntryOrTheDefault) {
               ElementsAre(Is(kCup), Is(kCup), Is(kDefault)));
 }
 
+// An object has a front if things of its most probable label have one.
+TEST(SemanticTableTest, TheFrontOfAnUncertainLabelIsThatOfTheMostProbable) {
+  ShapePrior chair = kCup;
+  chair.has_front = true;
+  const SemanticTable table{{{"cup", kCup}, {"chair", chair}}, {}};
+  Object object;
+  object.labels = {{"chair", 0.6}, {"cup", 0.4}};
+  EXPECT_TRUE(table.Find(object)->has_front);
+  object.labels = {{"cup", 0.6}, {"chair", 0.4}};
+  EXPECT_FALSE(table.Find(object)->has_front);
+}
+
 // A picture, 0.03 m deep, 0.5 m wide and 0.4 m high, on a wall: its x is up, its z out of the wall.
 TEST(TurnedToSupport, WhatIsOnAWallHasItsDepthAlongZ) {
   ShapePrior picture{{0.03 / 0.4, 0.5 / 0.4}, {0.3, 0.2}};
