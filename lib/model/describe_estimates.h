@@ -81,6 +81,15 @@ void Describe(Visitor& visit, ObjectEstimate& estimate) {
                  "probability that the x axis, modulo half a turn, is rather a quarter turn on, by "
                  "the cost of the object alone; absent where costs have the paper's units",
                  kShare);
+  visit.OrAbsent("front_probability", &estimate.front_probability,
+                 "probability that the front of the object is the direction of its x axis; absent "
+                 "where nothing tells, or its label has no front",
+                 kShare);
+  static const std::string kKnown =
+      fmt::format("this probability is at least {}", kKnownFrontProbability);
+  std::optional<bool> front_is_known;
+  if (estimate.front_probability) front_is_known = estimate.FrontIsKnown();
+  visit.OrAbsent("front_is_known", &front_is_known, kKnown.c_str());
   visit.Field("failure", &estimate.failure, "why there is no landmark; else empty");
   visit.Field("proper_ellipsoid", &estimate.proper_ellipsoid,
               "false: the dual quadric that was found is no ellipsoid, and absolute values of its "

@@ -47,6 +47,9 @@ struct PointPosterior {
   double responsibility = 0.0;  // posterior probability that it is of the object
 };
 
+// Least probability of a front that counts as known.
+inline constexpr double kKnownFrontProbability = 0.9;
+
 // Estimate of an object from all its observations. Covariance over (rotation vector in the world
 // frame, rad; centre in the world frame, m; log half axes).
 struct ObjectEstimate {
@@ -59,6 +62,11 @@ struct ObjectEstimate {
   std::vector<PointPosterior> points = {};  // evidence for the landmark, beside the detections
   // Probability that its x axis, modulo half a turn, is rather a quarter turn on, if it was asked.
   std::optional<double> quarter_turn = {};
+  // Probability that its front is the direction of its x axis. None where nothing tells the front,
+  // where its label has none (ShapePrior::has_front), and where it does not rest on its bottom.
+  std::optional<double> front_probability = {};
+
+  bool FrontIsKnown() const { return front_probability >= kKnownFrontProbability; }
 };
 
 // The landmarks that a stage found: per observation, per object, or both.

@@ -52,6 +52,24 @@ TEST_F(ArtefactFilesTest, MapsSayWhatAnObjectMayBe) {
   EXPECT_EQ(ReadMap(file, sequence).objects.size(), map.objects.size());
 }
 
+TEST_F(ArtefactFilesTest, MapsSayHowProbableAFrontIs) {
+  MapEstimate map = RandomMap();
+  map.objects[0].front_probability = kKnownFrontProbability;
+  map.objects[1].front_probability = 0.5;
+  WriteMap(file, map, sequence, {});
+  const nlohmann::json rows = nlohmann::json::parse(FileBytes(file)).at("objects");
+  EXPECT_EQ(rows[0].at("front_probability"), 0.9);
+  EXPECT_EQ(rows[0].at("front_is_known"), true);
+  EXPECT_EQ(rows[1].at("front_is_known"), false);
+  for (const char* field : {"front_probability", "front_is_known"}) {
+    EXPECT_FALSE(rows[2].contains(field)) << field;
+  }
+  WriteMap(again, ReadMap(file, sequence), sequence, {});
+  EXPECT_EQ(FileBytes(file), FileBytes(again));
+  ExpectEditsRefused(file, {{"/objects/0/front_probability", "1.5", "expected"}},
+                     [&] { ReadMap(file, sequence); });
+}
+
 TEST_F(ArtefactFilesTest, WhatASequenceMayHaveComesBack) {
   ListBoxesInView(sequence, &sequence);
   sequence.detections[1].own_in_view = 0;
