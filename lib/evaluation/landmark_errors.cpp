@@ -41,6 +41,16 @@ NearestAxes NearestAxesOf(const Eigen::Quaterniond& frame_from_estimate,
   return nearest;
 }
 
+// The yaw (rad) of the estimate's x axis in the frame of the truth; a quarter turn where it is
+// along the truth's z axis.
+double YawInTruth(const Eigen::Quaterniond& frame_from_estimate,
+                  const Eigen::Quaterniond& frame_from_truth) {
+  const Eigen::Vector3d x_axis =
+      frame_from_truth.conjugate() * (frame_from_estimate * Eigen::Vector3d::UnitX());
+  if (x_axis.head<2>().norm() < 1e-9) return std::numbers::pi / 2.0;
+  return std::atan2(x_axis.y(), x_axis.x());
+}
+
 }  // namespace
 
 double RotationError(const Eigen::Quaterniond& frame_from_estimate,
@@ -50,10 +60,7 @@ double RotationError(const Eigen::Quaterniond& frame_from_estimate,
 
 double YawError(const Eigen::Quaterniond& frame_from_estimate,
                 const Eigen::Quaterniond& frame_from_truth) {
-  const Eigen::Vector3d front =
-      frame_from_truth.conjugate() * (frame_from_estimate * Eigen::Vector3d::UnitX());
-  if (front.head<2>().norm() < 1e-9) return std::numbers::pi / 2.0;
-  return std::abs(YawDifferenceModuloPi(std::atan2(front.y(), front.x()), 0.0));
+  return std::abs(YawDifferenceModuloPi(YawInTruth(frame_from_estimate, frame_from_truth), 0.0));
 }
 
 double AttitudeError(const Landmark& estimate, const Landmark& truth_in_frame) {
@@ -163,6 +170,30 @@ LandmarkErrors CompareInCamera(const Landmark& estimate, const GroundTruth& trut
   errors.what_if->quarter_turn =
       std::max(errors.iou, iou(RotatedAboutZ(named, 0.5 * std::numbers::pi)));
   return errors;
+}
+
+FrontError CompareFronts(const ObjectEstimate& estimate, const Landmark& aligned,
+                         const GroundTruth& truth) {
+  if (!estimate.front_probability || !truth.MayHaveFront()) return {};
+  const double yaw = YawInTruth(aligned.frame_from_object.rotation,
+                                truth.landmark_in_world.frame_from_object.rotation);
+  return {kDegPerRad * std::abs(yaw), estimate.FrontIsKnown()};
+}
+
+std::optional<FrontSummary> SummariseFronts(const std::vector<FrontError>& fronts) {
+  const std::vector<double> errors = ValuesOf(fronts, &FrontError::deg);
+  if (errors.empty()) return std::nullopt;
+  const auto is_right = [](double deg) { return deg < 30.0; };
+  const auto is_wrong = [](const FrontError& front) { return front.is_known && front.deg > 45.0; };
+  FrontSummary summary;
+  summary.objects = static_cast<int>(errors.size());
+  summary.deg_mean = *MeanOf(errors);
+  summary.deg_median = *MedianOf(errors);
+  summary.share_below_30_deg =
+      static_cast<double>(std::ranges::count_if(errors, is_right)) / summary.objects;
+  summary.known = static_cast<int>(std::ranges::count_if(fronts, &FrontError::is_known));
+  summary.known_but_wrong = static_cast<int>(std::ranges::count_if(fronts, is_wrong));
+  return summary;
 }
 
 PlaneErrors ComparePlane(const Plane& plane, const Landmark& truth) {

@@ -5,10 +5,12 @@
 #include <Eigen/Geometry>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "evaluation/statistics.h"
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
+#include "model/estimates.h"
 #include "model/metrics.h"
 #include "model/sequence.h"
 
@@ -63,6 +65,12 @@ std::optional<WhatIf> MeanWhatIf(const Items& items, const WhatIfOf& what_if_of)
 
 BodyErrors CompareBodies(const Landmark& estimate, const GroundTruth& truth,
                          const Landmark& truth_in_frame);
+
+// The error of the estimate's front, whose landmark `aligned` is in the world of the truth.
+FrontError CompareFronts(const ObjectEstimate& estimate, const Landmark& aligned,
+                         const GroundTruth& truth);
+// None where there is no error.
+std::optional<FrontSummary> SummariseFronts(const std::vector<FrontError>& fronts);
 
 PlaneErrors ComparePlane(const Plane& plane, const Landmark& truth);
 

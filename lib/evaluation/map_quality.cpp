@@ -78,6 +78,11 @@ LandmarkRow RowOf(const ReasonInput& input, const TrueViews& views,
   const Landmark& truth_in_world = object.truth.landmark_in_world;
   row.errors = CompareBodies(landmark.landmark_in_world, object.truth, truth_in_world);
   row.label_agrees = AreSameLabel(label, object.label);
+  if (row.label_agrees) {
+    const auto estimate =
+        std::ranges::find(input.estimates, landmark.object_index, &ObjectEstimate::object_index);
+    row.front = CompareFronts(*estimate, landmark.landmark_in_world, object.truth);
+  }
   if (landmark.plane_in_world) row.plane = ComparePlane(*landmark.plane_in_world, truth_in_world);
   if (!row.why_false || IsWrong(row.why_false->reason)) {
     row.in_frames = CompareInFrames(input, views, detections, landmark, *row.true_index);
@@ -130,12 +135,15 @@ FoundSummary Summarise(std::vector<LandmarkRow> rows) {
   summary.plane_offset_m_abs_mean =
       plane_mean([](const PlaneErrors& plane) { return std::abs(plane.offset_m); });
   summary.plane_tilt_deg_mean = plane_mean([](const PlaneErrors& plane) { return plane.tilt_deg; });
+  std::vector<FrontError> fronts;
   for (const LandmarkRow& row : rows) {
+    fronts.push_back(row.front);
     summary.quarter_turned += row.errors->is_quarter_turned ? 1 : 0;
     summary.labels_agree += row.label_agrees ? 1 : 0;
     summary.ids_known += row.id_agrees ? 1 : 0;
     summary.ids_agree += row.id_agrees.value_or(false) ? 1 : 0;
   }
+  summary.fronts = SummariseFronts(fronts);
   return summary;
 }
 

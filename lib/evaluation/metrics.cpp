@@ -46,6 +46,9 @@ MetricsSummary Summarise(std::vector<ObjectMetrics> objects) {
   summary.yaw_error_deg_mean = MeanOf(yaws);
   summary.yaw_error_deg_median = MedianOf(yaws);
   summary.what_if = MeanWhatIf(objects, &ObjectMetrics::what_if);
+  std::vector<FrontError> fronts;
+  for (const ObjectMetrics& object : objects) fronts.push_back(object.front);
+  summary.fronts = SummariseFronts(fronts);
   return summary;
 }
 
@@ -57,13 +60,16 @@ std::vector<ObjectMetrics> EvaluateObjects(const Sequence& sequence,
     const auto& truth = sequence.objects[i].ground_truth;
     if (!truth || !sequence.objects[i].is_static) continue;
     std::vector<std::optional<LandmarkErrors>> errors;
+    FrontError front;
     for (const ObjectEstimate& estimate : estimates) {
       if (estimate.object_index == static_cast<int>(i) && estimate.landmark_in_world) {
         errors.push_back(
             CompareLandmarks(*estimate.landmark_in_world, *truth, truth->landmark_in_world));
+        front = CompareFronts(estimate, *estimate.landmark_in_world, *truth);
       }
     }
     objects.push_back(Average(static_cast<int>(i), static_cast<int>(detections[i].size()), errors));
+    objects.back().front = front;
   }
   return objects;
 }

@@ -50,6 +50,28 @@ void Describe(Visitor& visit, WhatIf& what_if) {
 }
 
 template <typename Visitor>
+void Describe(Visitor& visit, FrontError& front) {
+  visit.OrAbsent("front_deg", &front.deg,
+                 "between the x axes about the true z axis, 0 to 180; absent where the estimate "
+                 "has no front_probability, or the truth no front or another label");
+  visit.OrAbsent("front_is_known", &front.is_known, "see map.json; absent: false");
+}
+
+template <typename Visitor>
+void Describe(Visitor& visit, FrontSummary& fronts) {
+  visit.Field("objects", &fronts.objects, "that have a front_deg", kAtLeastOne);
+  visit.Field("front_deg_mean", &fronts.deg_mean, "over these");
+  visit.Field("front_deg_median", &fronts.deg_median, "over these");
+  visit.Field("share_below_30_deg", &fronts.share_below_30_deg, "of these", kShare);
+  visit.Field("known", &fronts.known, "number of these whose front is known", kNotNegative);
+  visit.Field("known_but_wrong", &fronts.known_but_wrong,
+              "number of these whose front is known and wrong by more than 45 degrees",
+              kNotNegative);
+}
+inline constexpr const char* kDocOfFronts =
+    "front_deg over all that have one; absent where none has";
+
+template <typename Visitor>
 void Describe(Visitor& visit, MetricsSummary& summary) {
   visit.Field("objects", &summary.objects, "with ground truth and observations", kNotNegative);
   visit.Field("observations", &summary.observations, "their observations", kNotNegative);
@@ -64,6 +86,7 @@ void Describe(Visitor& visit, MetricsSummary& summary) {
   visit.Field("yaw_error_deg_median", &summary.yaw_error_deg_median, "of the same");
   visit.Field("what_if", &summary.what_if,
               "of single-frame estimates: means as iou_mean; those of maps are in map_quality");
+  visit.OrAbsent("fronts", &summary.fronts, kDocOfFronts);
 }
 
 template <typename Visitor>
@@ -106,6 +129,7 @@ void Describe(Visitor& visit, ObjectMetrics& metrics) {
               "between the x axes about the true z axis, modulo half a turn");
   visit.OrDefault("attitude_error_deg", &metrics.attitude_deg, {},
                   "smallest rotation of the object's own axes onto the true ones up to half turns");
+  Describe(visit, metrics.front);
   visit.Field("what_if", &metrics.what_if,
               "of single-frame estimates: means over the observations, 0 without landmark");
 }
@@ -163,6 +187,7 @@ void Describe(Visitor& visit, FoundSummary& found) {
   visit.Field("ids_known", &found.ids_known, "the dataset says whose boxes they are", kNotNegative);
   visit.Field("ids_agree", &found.ids_agree,
               "most of these boxes are of the object that is matched", kNotNegative);
+  visit.OrAbsent("fronts", &found.fronts, kDocOfFronts);
 }
 
 template <typename Visitor>
@@ -272,6 +297,7 @@ void Describe(Visitor& visit, LandmarkRow& row) {
   if (row.errors) label_agrees = row.label_agrees;
   visit.Field("label_agrees", &label_agrees, "null where nothing is compared");
   visit.AfterReading([&] { row.label_agrees = label_agrees.value_or(false); });
+  Describe(visit, row.front);
   visit.Field("id_agrees", &row.id_agrees, "by most of its boxes; null if they have no ids");
   visit.Field("in_frames", &row.in_frames, "over its observations, in the frame of each camera");
   DescribeReason(visit, row.why_false);

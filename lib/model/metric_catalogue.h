@@ -68,9 +68,22 @@ inline constexpr ObjectMetric kRotation = {
 inline constexpr ObjectMetric kYawError = {
     {{"yaw_error", "yaw error", "deg", 2}, Get<&ObjectMetrics::yaw_deg>},
     &MetricsSummary::yaw_error_deg_mean};
-inline constexpr ObjectMetric kObjectMetrics[] = {kIou, kCentreError, kRotation, kYawError};
+inline constexpr ObjectMetric kFrontError = {
+    {{"front", "front error", "deg", 2},
+     [](const ObjectMetrics& object) -> MetricValues { return {object.front.deg}; }}};
+inline constexpr ObjectMetric kObjectMetrics[] = {kIou, kCentreError, kRotation, kYawError,
+                                                  kFrontError};
 // Those that have a mean.
 inline constexpr ObjectMetric kMeanMetrics[] = {kIou, kRotation, kYawError};
+
+// Columns of tables in which there are fronts.
+inline constexpr MetricOf<FrontSummary> kFrontMetrics[] = {
+    {kFrontError, Get<&FrontSummary::deg_mean>},
+    {{"front_median", "median front error", "deg", 2}, Get<&FrontSummary::deg_median>},
+    {{"fronts_below_30_deg", "fronts below 30 deg", "", 2, true},
+     Get<&FrontSummary::share_below_30_deg>},
+    {{"known_fronts", "known fronts", "", 0, true}, Get<&FrontSummary::known>},
+    {{"known_but_wrong", "known but wrong", "", 0}, Get<&FrontSummary::known_but_wrong>}};
 
 inline constexpr MetricOf<TrajectoryMetrics> kTrajectoryError = {
     {"ate_rmse", "ATE", "m", 4}, Get<&TrajectoryMetrics::ate_rmse_m>};
@@ -113,7 +126,8 @@ std::optional<double> YawSigmaDeg(const ObjectEstimate& estimate);
 // What an estimate says of itself.
 inline constexpr MetricOf<ObjectEstimate> kEstimateMetrics[] = {
     {{"yaw_sigma", "yaw sigma", "deg", 2},
-     [](const ObjectEstimate& estimate) { return MetricValues{YawSigmaDeg(estimate)}; }}};
+     [](const ObjectEstimate& estimate) { return MetricValues{YawSigmaDeg(estimate)}; }},
+    {{"front_probability", "front probability", "", 2}, Get<&ObjectEstimate::front_probability>}};
 
 // One landmark and its true object.
 inline constexpr MetricOf<BodyErrors> kBodyIou = {kIou, Get<&BodyErrors::iou>};

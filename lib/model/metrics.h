@@ -82,6 +82,22 @@ struct BodyErrors {
   bool is_quarter_turned = false;  // its own x axis is named y
 };
 
+// Error of an estimate that has a front_probability, against a truth that may have a front and has
+// the label of the estimate.
+struct FrontError {
+  std::optional<double> deg;  // between the x axes about the true z axis, 0 to 180
+  bool is_known = false;      // ObjectEstimate::FrontIsKnown
+};
+
+// Summary over those that have such an error.
+struct FrontSummary {
+  int objects = 0;
+  double deg_mean = 0.0, deg_median = 0.0;
+  double share_below_30_deg = 0.0;
+  int known = 0;
+  int known_but_wrong = 0;  // by more than 45 degrees
+};
+
 // Errors of a landmark's support plane against that of the true one.
 struct PlaneErrors {
   double offset_m = 0.0;  // height above the true contact point, along the plane's own normal
@@ -161,6 +177,7 @@ struct LandmarkRow {
   std::optional<InFrames> in_frames = std::nullopt;
   std::optional<Explanation> why_false = std::nullopt;
   std::string label = {};  // of the object, where the row was read
+  FrontError front = {};
 };
 
 // Summary over the found landmarks for one IoU threshold.
@@ -174,6 +191,7 @@ struct FoundSummary {
   int labels_agree = 0;
   int ids_known = 0;
   int ids_agree = 0;
+  std::optional<FrontSummary> fronts = {};
 };
 
 struct MapScore {
@@ -249,6 +267,7 @@ struct ObjectMetrics {
   std::optional<double> attitude_deg = {};
   std::optional<WhatIf> what_if = {};  // of single-frame estimates only; 0 without estimate
   std::string label = {};              // of the object, where the row was read
+  FrontError front = {};               // of landmarks over several frames only
 };
 
 // Summary over objects. Angles: over the objects that have them.
@@ -259,6 +278,7 @@ struct MetricsSummary {
   std::optional<double> rotation_deg_mean, rotation_deg_median;
   std::optional<double> yaw_error_deg_mean, yaw_error_deg_median;
   std::optional<WhatIf> what_if = {};
+  std::optional<FrontSummary> fronts = {};
 };
 
 struct TrajectoryMetrics {

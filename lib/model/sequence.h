@@ -30,6 +30,12 @@ struct GroundTruth {
   bool mirror_symmetric = true;
   bool mirror_symmetric_yz = false;
   bool rotationally_symmetric = false;
+
+  // False where its x axis cannot be a front: front and back look alike, or it does not stand.
+  bool MayHaveFront() const {
+    return !rotationally_symmetric && !mirror_symmetric_yz &&
+           landmark_in_world.rests_on == RestingFace::kBottom;
+  }
 };
 
 // An object known to exist in the scene, independent of detections and of their assignment to

@@ -30,6 +30,17 @@ std::vector<Cell> RowOf(const std::string& name, const Metrics& metrics) {
           metrics.trajectory ? kTrajectoryError.TextOf(*metrics.trajectory) : kNoValue};
 }
 
+// Adds columns of fronts to a table with these rows, unless no row has any.
+void AddFronts(const std::vector<std::optional<FrontSummary>>& of_rows, Table* table) {
+  if (std::ranges::none_of(of_rows, &std::optional<FrontSummary>::has_value)) return;
+  for (const auto& metric : kFrontMetrics) {
+    table->header.push_back(metric.Header());
+    for (size_t i = 0; i < of_rows.size(); ++i) {
+      table->rows[i].emplace_back(of_rows[i] ? metric.TextOf(*of_rows[i]) : kNoValue);
+    }
+  }
+}
+
 }  // namespace
 
 Table DatasetTable(const DatasetResult& dataset) {
@@ -43,8 +54,10 @@ Table DatasetTable(const DatasetResult& dataset) {
                   kRotation.Header() + " (first)",
                   kYawError.Header(),
                   kTrajectoryError.Header()};
+  std::vector<std::optional<FrontSummary>> fronts;
   for (const char* name : kPaperVariants) {
     const VariantResult* const variant = dataset.Evaluated(name);
+    fronts.push_back(variant ? variant->metrics->summary.fronts : std::nullopt);
     std::vector<Cell> without(table.header.size(), kNoValue);
     without.front() = name;
     table.rows.push_back(variant ? RowOf(name, *variant->metrics) : without);
@@ -53,12 +66,16 @@ Table DatasetTable(const DatasetResult& dataset) {
   for (const VariantResult& variant : dataset.variants) {
     if (!variant.metrics) continue;
     const bool has_row = std::ranges::find(kPaperVariants, variant.name) != kPaperVariants.end();
-    if (!has_row) table.rows.push_back(RowOf(variant.name, *variant.metrics));
+    if (!has_row) {
+      table.rows.push_back(RowOf(variant.name, *variant.metrics));
+      fronts.push_back(variant.metrics->summary.fronts);
+    }
     const auto& trajectory = variant.metrics->trajectory;
     if (!trajectory) continue;
     odometry.insert(fmt::format("{} {}", kTrajectoryError.Text(trajectory->odometry_ate_rmse_m),
                                 kTrajectoryError.unit));
   }
+  AddFronts(fronts, &table);
   // One value, unless variants started from different trajectories.
   if (!odometry.empty()) {
     table.notes.push_back(fmt::format("ATE of the odometry alone: {}", fmt::join(odometry, ", ")));
@@ -149,6 +166,7 @@ std::vector<Table> QualityTables(const DatasetResult& dataset) {
   const bool are_alike = std::ranges::all_of(maps, [&](const VariantResult& map) {
     return KindOfAlignment(map) == KindOfAlignment(maps.front());
   });
+  std::vector<std::optional<FrontSummary>> fronts;
   std::set<std::string> odometry_sources;
   for (const VariantResult& map : maps) {
     const std::string name =
@@ -169,8 +187,10 @@ std::vector<Table> QualityTables(const DatasetResult& dataset) {
     row.emplace_back(fmt::format("{} of {}", found.ids_agree, found.ids_known));
     for (const auto& metric : kDriftMetrics) row.emplace_back(metric.TextOf(of_map.in_frames));
     errors.rows.push_back(row);
+    fronts.push_back(found.fronts);
     odometry_sources.insert(map.metrics->odometry_source);
   }
+  AddFronts(fronts, &errors);
   odometry_sources.erase("");
   quality.notes = {
       "True objects (detectable ones), landmarks (ignored ones), recall of the detectable at IoU "

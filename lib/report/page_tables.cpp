@@ -85,6 +85,12 @@ std::string MetricsTable(const DatasetPage& page, const std::optional<VariantKin
     add(HeaderOnPage(metric), metric,
         [&](const Metrics& metrics) { return metrics.summary.*metric.mean; });
   }
+  for (const auto& metric : kFrontMetrics) {
+    add(HeaderOnPage(metric), metric, [&](const Metrics& metrics) {
+      const auto& fronts = metrics.summary.fronts;
+      return fronts ? metric.of(*fronts).front() : std::nullopt;
+    });
+  }
   add(fmt::format("{}, first view", kIou.title), kIou, [](const Metrics& metrics) {
     return metrics.first_observation.value_or(MetricsSummary()).*kIou.mean;
   });
@@ -180,31 +186,40 @@ std::string ObjectsTable(const Sequence& sequence, const PageVariant& variant,
   });
   Table table;
   table.header = {"object", "observations"};
-  if (has_true_objects) {
-    for (const ObjectMetric& metric : kObjectMetrics) table.header.push_back(HeaderOnPage(metric));
-  }
-  for (const auto& metric : kEstimateMetrics) table.header.push_back(HeaderOnPage(metric));
-  if (has_failures) table.header.emplace_back("no landmark");
   std::vector<size_t> indices;
   for (const auto& [index, metrics] : rows) {
     const Object& object = sequence.objects[index];
-    const ObjectEstimate& estimate = variant.objects[index];
-    std::vector<Cell> row = {
-        ObjectName(object.label, object.id),
-        std::to_string(metrics ? metrics->observations : estimate.observations)};
-    if (has_true_objects) {
-      for (const ObjectMetric& metric : kObjectMetrics) {
-        row.emplace_back(metrics ? metric.Text(metric.of(*metrics), kDash) : kDash);
-      }
-    }
-    for (const auto& metric : kEstimateMetrics) {
-      MetricValues values = metric.of(estimate);
-      for (auto& value : values) value = value ? OnPage(*value) : value;
-      row.emplace_back(metric.Text(values, kDash));
-    }
-    if (has_failures) row.emplace_back(ReasonOf(estimate.failure).words);
-    table.rows.push_back(std::move(row));
+    const int observations = metrics ? metrics->observations : variant.objects[index].observations;
+    table.rows.push_back({ObjectName(object.label, object.id), std::to_string(observations)});
     indices.push_back(index);
+  }
+  // Adds a column, unless no object has a value.
+  const auto add = [&](const Metric& metric, const auto& value_of) {
+    std::vector<std::optional<double>> values;
+    for (const Row& row : rows) values.push_back(value_of(row));
+    if (std::ranges::none_of(values, &std::optional<double>::has_value)) return;
+    table.header.push_back(HeaderOnPage(metric));
+    for (size_t i = 0; i < values.size(); ++i) {
+      table.rows[i].emplace_back(metric.Text(values[i], kDash));
+    }
+  };
+  for (const ObjectMetric& metric : kObjectMetrics) {
+    if (!has_true_objects) continue;
+    add(metric, [&](const Row& row) {
+      return row.metrics ? metric.of(*row.metrics).front() : std::nullopt;
+    });
+  }
+  for (const auto& metric : kEstimateMetrics) {
+    add(metric, [&](const Row& row) {
+      const std::optional<double> value = metric.of(variant.objects[row.index]).front();
+      return value ? OnPage(*value) : value;
+    });
+  }
+  if (has_failures) {
+    table.header.emplace_back("no landmark");
+    for (size_t i = 0; i < rows.size(); ++i) {
+      table.rows[i].emplace_back(ReasonOf(variant.objects[rows[i].index].failure).words);
+    }
   }
   return HtmlTable(table, indices);
 }

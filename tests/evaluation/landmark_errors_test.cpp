@@ -25,6 +25,53 @@ Landmark Standing(double x, double y, double yaw_deg, const Eigen::Vector3d& hal
 
 const Eigen::Vector3d kCamera(0.0, -4.0, 1.5);
 
+ObjectEstimate WithFront(double yaw_deg, std::optional<double> front_probability) {
+  ObjectEstimate estimate;
+  estimate.landmark_in_world = Standing(1.0, 2.0, yaw_deg, {0.4, 0.2, 0.3});
+  estimate.front_probability = front_probability;
+  return estimate;
+}
+
+FrontError FrontErrorOf(const ObjectEstimate& estimate, const GroundTruth& truth) {
+  return CompareFronts(estimate, *estimate.landmark_in_world, truth);
+}
+
+TEST(CompareFrontsTest, ErrorsAreOverTheFullCircle) {
+  const GroundTruth truth{Standing(1.0, 2.0, 20.0, {0.4, 0.2, 0.3})};
+  for (const double turn_deg : {0.0, 30.0, 90.0, 135.0, 179.0, -60.0, -150.0}) {
+    const FrontError front = FrontErrorOf(WithFront(20.0 + turn_deg, 0.95), truth);
+    EXPECT_NEAR(front.deg.value(), std::abs(turn_deg), 1e-9);
+    EXPECT_TRUE(front.is_known);
+  }
+  EXPECT_FALSE(FrontErrorOf(WithFront(20.0, 0.6), truth).is_known);
+}
+
+TEST(CompareFrontsTest, ThereIsNoErrorWithoutFronts) {
+  const GroundTruth truth{Standing(1.0, 2.0, 20.0, {0.4, 0.2, 0.3})};
+  EXPECT_FALSE(FrontErrorOf(WithFront(20.0, std::nullopt), truth).deg);
+  GroundTruth round = truth, alike = truth, lying = truth;
+  round.rotationally_symmetric = true;
+  alike.mirror_symmetric_yz = true;
+  lying.landmark_in_world.rests_on = RestingFace::kBack;
+  for (const GroundTruth& without : {round, alike, lying}) {
+    const FrontError front = FrontErrorOf(WithFront(20.0, 0.95), without);
+    EXPECT_FALSE(front.deg);
+    EXPECT_FALSE(front.is_known);
+  }
+}
+
+TEST(SummariseFrontsTest, KnownOnesThatAreWrongAreCounted) {
+  EXPECT_FALSE(SummariseFronts({{}, {}}));
+  const FrontSummary fronts =
+      SummariseFronts({{10.0, true}, {}, {30.0, false}, {45.0, true}, {175.0, true}}).value();
+  EXPECT_EQ(fronts.objects, 4);
+  EXPECT_EQ(fronts.deg_mean, 65.0);
+  EXPECT_EQ(fronts.deg_median, 37.5);
+  EXPECT_EQ(fronts.share_below_30_deg, 0.25);
+  EXPECT_EQ(fronts.known, 3);
+  EXPECT_EQ(fronts.known_but_wrong, 1);
+}
+
 class BodyErrorsTest : public testing::Test {
  protected:
   BodyErrors Compare(const Landmark& estimate) const {

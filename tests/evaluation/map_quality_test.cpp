@@ -51,6 +51,21 @@ TEST_F(MapQualityTest, WhatIfIsOfFramesAndAMeanOfLandmarks) {
   EXPECT_NEAR(quality.in_frames.what_if->yaw, 2.0 / 3.0, 1e-9);
 }
 
+TEST_F(MapQualityTest, FrontsAreThoseOfFoundObjectsOfTheSameLabel) {
+  AddFound();
+  AddFound(kCube, "chair");
+  EXPECT_FALSE(Evaluate().scores[0].of_found.fronts);
+  for (ObjectEstimate& estimate : estimates_) {
+    estimate.front_probability = 0.95;
+    estimate.landmark_in_world = RotatedAboutZ(*estimate.landmark_in_world, std::numbers::pi);
+  }
+  Move({AlignmentKind::kRigid, CameraPath::kGeneral, 1.0, {ExpRotation({0, 0, 1.0}), {}}});
+  const MapQuality quality = Evaluate(AlignmentKind::kRigid);
+  EXPECT_NEAR(quality.landmarks[0].front.deg.value(), 180.0, 1e-6);
+  EXPECT_FALSE(quality.landmarks[1].front.deg);
+  EXPECT_EQ(quality.scores[0].of_found.fronts->known_but_wrong, 1);
+}
+
 // Without true poses, with the truth of each frame, as KITTI has it.
 TEST_F(MapQualityTest, TheTruthOfAFrameGoesBeforeThatOfTheWorld) {
   const int truth = AddFound();

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "evaluation/trajectory_error.h"
 #include "support/random.h"
 #include "support/scene.h"
@@ -100,6 +102,28 @@ TEST(Metrics, AnObjectThatMovesHasNoPlaceInAMap) {
   const Metrics metrics = EvaluateMap(sequence, map);
   EXPECT_EQ(metrics.summary.objects, 3);
   EXPECT_NEAR(*metrics.summary.iou_mean, 1.0, 1e-6);
+}
+
+TEST(Metrics, FrontsAreThoseOfMapsThatSayThem) {
+  Sequence sequence = TestSequence();
+  for (Object& object : sequence.objects) {
+    object.ground_truth->rotationally_symmetric = object.ground_truth->mirror_symmetric_yz = false;
+  }
+  MapEstimate map = TrueMap(sequence);
+  EXPECT_FALSE(EvaluateMap(sequence, map).summary.fronts);
+  map.objects[1].front_probability = 1.0;
+  map.objects[2].front_probability = 0.5;
+  map.objects[2].landmark_in_world =
+      RotatedAboutZ(*map.objects[2].landmark_in_world, std::numbers::pi);
+  const Metrics metrics = EvaluateMap(sequence, map);
+  EXPECT_FALSE(metrics.objects[0].front.deg);
+  EXPECT_NEAR(metrics.objects[1].front.deg.value(), 0.0, 1e-9);
+  EXPECT_NEAR(metrics.objects[2].front.deg.value(), 180.0, 1e-9);
+  EXPECT_NEAR(metrics.objects[2].yaw_deg.value(), 0.0, 1e-6);
+  const FrontSummary fronts = metrics.summary.fronts.value();
+  EXPECT_EQ(fronts.objects, 2);
+  EXPECT_EQ(fronts.known, 1);
+  EXPECT_EQ(fronts.known_but_wrong, 0);
 }
 
 TEST(Metrics, TrajectoriesOfSeveralWorldsAreNotCompared) {

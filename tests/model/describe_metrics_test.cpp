@@ -13,6 +13,9 @@ TEST(DescribeMetricsTest, WhatIsReadIsWrittenAgain) {
   metrics.dataset = "room";
   metrics.objects = {{3, 2, 2, 0.5, 0.25, 6.0, 7.0}};
   metrics.objects.front().label = "cup";
+  EXPECT_EQ(DescribedToJson(metrics).dump().find("front"), std::string::npos);
+  metrics.objects.front().front = {170.0, true};
+  metrics.summary.fronts = {1, 170.0, 170.0, 0.0, 1, 1};
   metrics.map_quality.emplace();
   metrics.map_quality->landmarks.emplace_back().label = "tv";
   metrics.map_quality->objects.emplace_back().object_index = 4;

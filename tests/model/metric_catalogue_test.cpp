@@ -27,6 +27,7 @@ TEST(MetricCatalogueTest, KeysAreThoseOfTheFile) {
   Metrics metrics;
   ObjectMetrics& object = metrics.objects.emplace_back();
   object = {3, 2, 2, 0.5, 0.25, 6.0, 7.0};
+  object.front.deg = 8.0;
   int number = 0;
   for (const ObjectMetric& metric : kMeanMetrics) metrics.summary.*metric.mean = ++number;
   const nlohmann::json file = DescribedToJson(metrics);

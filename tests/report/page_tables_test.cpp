@@ -85,11 +85,9 @@ TEST(DatasetTables, FindingsHaveTheirPlaceAndNotesAreBelowAll) {
 TEST(DatasetTables, HaveTheObjectsOfEachVariantWorstFirst) {
   const std::string html = DatasetTables(Page());
   EXPECT_THAT(html, HasSubstr("<details open><summary>OursS</summary>"));
-  EXPECT_THAT(
-      html,
-      HasSubstr("<tr data-index=\"1\"><td>&lt;cup&gt; 6</td><td>5</td><td>0.250</td><td>–</td>"
-                "<td>3.00</td><td>–</td><td>–</td><td>too few views</td></tr>\n"
-                "<tr data-index=\"0\"><td>chair 5</td><td>4</td><td>0.750</td>"));
+  EXPECT_THAT(html, HasSubstr("<tr data-index=\"1\"><td>&lt;cup&gt; 6</td><td>5</td><td>0.250</td>"
+                              "<td>3.00</td><td>too few views</td></tr>\n"
+                              "<tr data-index=\"0\"><td>chair 5</td><td>4</td><td>0.750</td>"));
   EXPECT_THAT(html, Not(HasSubstr("<cup>")));
 }
 
@@ -112,7 +110,18 @@ TEST(DatasetTables, ObjectsWithoutTruthHaveNoErrorsAndComeLast) {
   page.variants[2].metrics.objects.erase(page.variants[2].metrics.objects.begin());
   EXPECT_THAT(DatasetTables(page),
               HasSubstr("<tr data-index=\"0\"><td>chair 5</td><td>4</td><td>–</td><td>–</td>"
-                        "<td>–</td><td>–</td><td>–</td><td></td></tr>\n</tbody>"));
+                        "<td></td></tr>\n</tbody>"));
+}
+
+TEST(DatasetTables, FrontsAreShownWhereThereAreSome) {
+  DatasetPage page = Page();
+  EXPECT_THAT(DatasetTables(page), Not(HasSubstr("front error")));
+  page.variants[2].metrics.summary.fronts = {1, 170.0, 170.0, 0.0, 1, 1};
+  page.variants[2].metrics.objects[0].front = {170.0, true};
+  page.variants[2].objects[0].front_probability = 0.95;
+  const std::string html = DatasetTables(page);
+  EXPECT_THAT(html, HasSubstr("<th>front error, °</th><th>median front error, °</th>"));
+  EXPECT_THAT(html, HasSubstr("<td>170.00</td><td>0.95</td>"));
 }
 
 TEST(DetailedVariants, AreThoseWithMostToShowFirst) {

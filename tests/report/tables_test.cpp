@@ -222,6 +222,23 @@ TEST(QualityTables, HaveARowForEachMap) {
   for (const Table& table : tables) EXPECT_EQ(table.header.size(), table.rows.front().size());
 }
 
+TEST(DatasetTable, HasColumnsOfFrontsWhereThereAreSome) {
+  const Metrics without = MapMetrics(kExact);
+  Metrics with = without;
+  with.summary.fronts = {4, 50.125, 12.0, 0.75, 3, 1};
+  with.map_quality->scores[0].of_found.fronts = {2, 5.0, 5.0, 1.0, 0, 0};
+  const DatasetResult room = {"room", {{"OursS", {}, without}, {"OursSA", {}, with}}};
+  const Table table = DatasetTable(room), errors = QualityTables(room)[1];
+  EXPECT_EQ(table.header.size(),
+            DatasetTable({"room", {{"OursS", {}, without}}}).header.size() + 5);
+  EXPECT_THAT(table.header, testing::Contains("front error deg"));
+  EXPECT_THAT(CellTexts(table), testing::Contains(testing::EndsWith(" 50.12 12.00 0.75 3 1")));
+  EXPECT_THAT(CellTexts(table), testing::Contains(testing::EndsWith(" - - - - -")));
+  EXPECT_THAT(CellTexts(errors), ElementsAre(testing::EndsWith(" - - - - -"),
+                                             testing::EndsWith(" 5.00 5.00 1.00 0 0")));
+  for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.header.size());
+}
+
 TEST(QualityTables, TitlesSayWhatAlignedTheMaps) {
   const auto title = [](const std::vector<Alignments>& alignments) {
     DatasetResult road{"road", {}};
