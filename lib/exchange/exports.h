@@ -56,8 +56,8 @@ std::string CocoDatasetText(const std::vector<World>& worlds, CocoAnnotations an
 // - a node "<label> <id>" per landmark: its pose, its body as a mesh in the object frame, a
 // material
 //   named by the label, and extras: id, label, observations, half_axes [a, b, c] in metres, yaw_deg
-//   about the support normal, shape_exponent, vertical_exponent, and the covariance of
-//   ObjectEstimate if there is one;
+//   about the support normal, shape_exponent, vertical_exponent, and of ObjectEstimate the
+//   covariance and the front_probability, where there are these;
 // - a node "trajectory": the camera centres as a line strip, if there are at least two frames.
 // `colours` must have all labels of the world.
 // JSON with the numbers as a base64 data URI (.gltf):
@@ -67,8 +67,9 @@ std::string GlbBytes(const World& world, const LabelColours& colours);
 
 // A table of all objects, one row each below a header, fields quoted as in RFC 4180. Metres, and
 // degrees if a column's name contains it; centre and quaternion are world_from_object. `yaw_deg` is
-// about the support normal. Empty are: standard deviations (`sigma_`) without a covariance, all
-// values of a missing landmark, and the verdict (`fate` and following) without an evaluation.
+// about the support normal; the front is in its direction with `front_probability`. Empty are:
+// standard deviations (`sigma_`) without a covariance, a front that nothing tells, all values of a
+// missing landmark, and the verdict (`fate` and following) without an evaluation.
 std::string LandmarksCsvText(const std::vector<World>& worlds);
 
 // The poses in the text format of the TUM RGB-D benchmark: a line "timestamp tx ty tz qx qy qz qw"

@@ -45,6 +45,9 @@ json ExtrasOf(const WorldObject& object) {
   if (landmark.rests_on != RestingFace::kBottom) {
     extras["rests_on"] = kRestingFaceNames[static_cast<size_t>(landmark.rests_on)];
   }
+  if (object.estimate.front_probability) {
+    extras["front_probability"] = *object.estimate.front_probability;
+  }
   if (object.estimate.covariance) {
     extras["covariance"] = *object.estimate.covariance;
   }

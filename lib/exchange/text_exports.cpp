@@ -17,9 +17,9 @@ constexpr const char* kHeader =
     "id,label,segment,observations,centre_x,centre_y,centre_z,qx,qy,qz,qw,half_axis_a,half_axis_b,"
     "half_axis_c,yaw_deg,shape_exponent,vertical_exponent,sigma_centre_x,sigma_centre_y,sigma_"
     "centre_z,sigma_half_axis_a,sigma_half_axis_b,sigma_half_axis_c,sigma_yaw_deg,failure,fate,"
-    "true_object,iou,reason";
+    "true_object,iou,reason,front_probability";
 constexpr size_t kFailureColumn = 24;
-constexpr size_t kColumns = kFailureColumn + 5;
+constexpr size_t kFrontColumn = kFailureColumn + 5;
 
 template <typename Numbers>
 void Append(const Numbers& numbers, std::vector<std::string>* row) {
@@ -58,7 +58,9 @@ std::vector<std::string> RowOf(const WorldObject& object) {
     row.push_back(verdict.iou ? fmt::format("{}", *verdict.iou) : "");
     row.push_back(CsvText(verdict.reason));
   }
-  row.resize(kColumns);
+  row.resize(kFrontColumn);
+  const auto& front_probability = object.estimate.front_probability;
+  row.push_back(front_probability ? fmt::format("{}", *front_probability) : "");
   return row;
 }
 

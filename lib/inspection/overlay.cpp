@@ -27,14 +27,14 @@ std::string CaptionOf(const Object& object) {
   return fmt::format("{} {}", object.id, object.label);
 }
 
-// Draws the x axis as an arrow to the front where that is known, else through the body.
-void DrawAxes(const Landmark& landmark_in_camera, bool front_is_known, const Stroke& x_axis,
+// Draws the x axis as an arrow to the front if there is one, else through the body.
+void DrawAxes(const Landmark& landmark_in_camera, bool has_front, const Stroke& x_axis,
               const Stroke& others, Canvas* canvas) {
   const Eigen::Vector3d& centre = landmark_in_camera.Centre();
   const Eigen::Vector3d front = PointAt(landmark_in_camera, Eigen::Vector3d::UnitX());
   canvas->Segment(centre, PointAt(landmark_in_camera, Eigen::Vector3d::UnitY()), others);
   canvas->Segment(centre, PointAt(landmark_in_camera, Eigen::Vector3d::UnitZ()), others);
-  if (front_is_known) {
+  if (has_front) {
     canvas->Arrow(centre, front, x_axis);
   } else {
     canvas->Segment(PointAt(landmark_in_camera, -Eigen::Vector3d::UnitX()), front, x_axis);
@@ -52,16 +52,21 @@ void DrawBody(const OverlayInput::Body& body, const Camera& camera, Canvas* canv
   const Polygon outline = OutlinePolygon(camera, body.landmark_in_camera);
   if (outline.empty()) return;
   canvas->Lines(outline, true, kLandmarkStroke);
-  DrawAxes(body.landmark_in_camera, /*front_is_known=*/false, kLandmarkStroke, kLandmarkAxis,
-           canvas);
+  DrawAxes(body.landmark_in_camera, /*has_front=*/!body.front_caption.empty(), kLandmarkStroke,
+           kLandmarkAxis, canvas);
 }
 
 // Drawn last, on top of all lines.
 void DrawCaptions(const OverlayInput& input, Canvas* canvas) {
-  for (const auto& [landmark, caption] : input.landmarks) {
+  for (const auto& [landmark, caption, front_caption] : input.landmarks) {
     const auto outline = OutlineBox(input.camera, landmark);
-    if (!outline || caption.empty()) continue;
-    canvas->Text({outline->x_min, outline->y_min}, caption, kLandmarkStroke.colour);
+    if (outline && !caption.empty()) {
+      canvas->Text({outline->x_min, outline->y_min}, caption, kLandmarkStroke.colour);
+    }
+    if (outline && !front_caption.empty()) {
+      canvas->Text(*input.camera.Project(PointAt(landmark, Eigen::Vector3d::UnitX())),
+                   front_caption, kLandmarkStroke.colour);
+    }
   }
   for (const auto& [box, caption] : input.detections) {
     canvas->Text({box.x_min, box.y_min}, caption, kDetectionStroke.colour);
@@ -118,6 +123,9 @@ std::vector<OverlayInput::Body> BodiesInImage(const Sequence& sequence,
     const Object& object = sequence.objects[estimate.object_index];
     bodies.push_back(
         {in_camera, detected.contains(estimate.object_index) ? "" : CaptionOf(object)});
+    if (!estimate.FrontIsKnown()) continue;
+    bodies.back().front_caption =
+        fmt::format("front {:.0f} %", 100.0 * *estimate.front_probability);
   }
   return bodies;
 }
@@ -132,7 +140,8 @@ OverlayInput OverlayOfFrame(const Sequence& sequence, int frame_index) {
   for (const Detection& detection : DetectionsIn(sequence, frame_index)) {
     input.detections.push_back({detection.box, CaptionOf(sequence.ObjectOf(detection))});
     if (const auto truth = TrueLandmarkInCamera(sequence, detection)) {
-      input.truths_in_camera.push_back(*truth);
+      input.truths_in_camera.push_back(
+          {*truth, sequence.ObjectOf(detection).ground_truth->MayHaveFront()});
     }
   }
   return input;
@@ -169,9 +178,9 @@ OverlayInput OverlayOfMap(const Sequence& sequence, const MapEstimate& map, int 
 void DrawOverlay(const OverlayInput& input, cv::Mat* image) {
   for (const auto& ground : input.grounds) DrawGrid(ground, input.camera, image);
   Canvas canvas(input.camera, image);
-  for (const Landmark& truth : input.truths_in_camera) {
+  for (const auto& [truth, may_have_front] : input.truths_in_camera) {
     DrawCircumscribedBox(truth, kTruthStroke, &canvas);
-    DrawAxes(truth, /*front_is_known=*/true, kTruthStroke, kTruthAxis, &canvas);
+    DrawAxes(truth, may_have_front, kTruthStroke, kTruthAxis, &canvas);
   }
   for (const auto& body : input.landmarks) DrawBody(body, input.camera, &canvas);
   for (const auto& [box, caption] : input.detections) {
@@ -186,8 +195,14 @@ std::vector<CaptionEntry> OverlayLegend(const OverlayInput& input) {
     if (count > 0) legend.push_back({fmt::format("{} {}", count, text), colour, true});
   };
   add(input.detections.size(), "detected", kDetectionStroke.colour);
-  add(input.landmarks.size(), "estimated (thick axis: front or back)", kLandmarkStroke.colour);
-  add(input.truths_in_camera.size(), "true (box around it, arrow: front)", kTruthStroke.colour);
+  const bool any_front = std::ranges::any_of(
+      input.landmarks, [](const auto& body) { return !body.front_caption.empty(); });
+  add(input.landmarks.size(),
+      any_front ? "estimated (thick axis: front or back, arrow: front)"
+                : "estimated (thick axis: front or back)",
+      kLandmarkStroke.colour);
+  add(input.truths_in_camera.size(), "true (box around it, arrow: x axis, front if it has one)",
+      kTruthStroke.colour);
   std::map<double, size_t> grounds_by_cell;
   for (const auto& [plane, feet] : input.grounds) ++grounds_by_cell[GridAround(plane, feet).cell];
   for (const auto& [cell, count] : grounds_by_cell) {

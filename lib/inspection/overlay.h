@@ -26,7 +26,12 @@ struct OverlayInput {
   };
   struct Body {
     Landmark landmark_in_camera;
-    std::string caption;  // empty if the detection has the caption
+    std::string caption;             // empty if the detection has the caption
+    std::string front_caption = {};  // empty unless its front is known
+  };
+  struct TrueBody {
+    Landmark landmark_in_camera;
+    bool may_have_front = true;  // GroundTruth::MayHaveFront
   };
   struct Ground {
     Plane plane_in_camera;
@@ -35,7 +40,7 @@ struct OverlayInput {
 
   Camera camera = {};
   std::vector<Ground> grounds = {};
-  std::vector<Landmark> truths_in_camera = {};
+  std::vector<TrueBody> truths_in_camera = {};
   std::vector<DetectedBox> detections = {};
   std::vector<Body> landmarks = {};
 };
@@ -55,8 +60,9 @@ OverlayInput OverlayOfMap(const Sequence& sequence, const MapEstimate& map, int 
 
 // Draws on `image` (CV_8UC3), which shows the view of `input`'s camera in its size or a whole
 // multiple of it (see DrawingGround): detections as boxes, landmarks by their silhouette and axes,
-// the ground truth as circumscribed boxes as for IoU, support planes as grids. An arrow marks the
-// front of a true object; the x axis of an estimate is drawn both ways, as nothing tells its front.
+// the ground truth as circumscribed boxes as for IoU, support planes as grids. The x axis of an
+// estimate whose front is known, and of a true object that may have a front, is an arrow; other x
+// axes are drawn both ways.
 void DrawOverlay(const OverlayInput& input, cv::Mat* image);
 
 // Legend of DrawOverlay, for WithCaption.

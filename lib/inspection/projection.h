@@ -22,9 +22,9 @@ Polygon CornersOf(const Box& box);
 // whole landmark is in front of the camera.
 Polygon OutlinePolygon(const Camera& camera, const Landmark& landmark_in_camera);
 
-// The x axis through the landmark, from the centre of one face to that of the other, as nothing
-// tells an estimate's front from its back, and the y and z axes from its centre to the centres of
-// these faces; none unless all of these points are in front of the camera.
+// The x axis through the landmark, from the centre of its back to that of its front, and the y and
+// z axes from its centre to the centres of these faces; none unless all of these points are in
+// front of the camera.
 std::optional<std::array<LineSegment2, 3>> ProjectedAxes(const Camera& camera,
                                                          const Landmark& landmark_in_camera);
 

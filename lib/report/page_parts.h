@@ -209,8 +209,10 @@ struct PageVariant {
   //   objects: landmark in the world or null, failure in words, observations; with a covariance
   //   also
   //     centre_covariance (3 x 3, m^2), sigma_centre (m), sigma_log_half_axes, sigma_yaw_deg;
-  //     quarter_turn: ObjectEstimate::quarter_turn, where known
-  //   outlines, one per detection that is selected: see PageOutline, or null
+  //     quarter_turn: ObjectEstimate::quarter_turn, where known; front: probability and is_known,
+  //     where there is a front_probability
+  //   outlines, one per detection that is selected: see PageOutline, or null; with the probability
+  //     of the front where that is known
   //   trajectory: poses of the map for the selected frames; solver: iterations, costs, and the
   //     counts of residuals used and left out
   //   planes: those of the map, see PageGrids, and grids, by selected frame, see PageGridInFrame;

@@ -34,6 +34,10 @@ json PageObjectEstimate(const ObjectEstimate& estimate) {
     for (const PointPosterior& point : estimate.points) of_object += point.responsibility;
     object["points"] = {{"count", estimate.points.size()}, {"of_object", PageNumber(of_object)}};
   }
+  if (estimate.front_probability) {
+    object["front"] = {{"probability", PageNumber(*estimate.front_probability)},
+                       {"is_known", estimate.FrontIsKnown()}};
+  }
   if (estimate.quarter_turn) object["quarter_turn"] = PageNumber(*estimate.quarter_turn);
   if (!estimate.covariance) return object;
   const auto numbers = [](const Eigen::Vector3d& v) { return PageNumbers({v[0], v[1], v[2]}); };
@@ -64,11 +68,15 @@ void AddOutlines(const std::vector<Rigid3d>& world_from_camera, const Sequence& 
   json& outlines = variant->data["outlines"] = json::array();
   for (const int index : selection.detections) {
     const Detection& detection = sequence.detections[index];
-    const auto& landmark = variant->objects[detection.object_index].landmark_in_world;
+    const ObjectEstimate& estimate = variant->objects[detection.object_index];
+    const auto& landmark = estimate.landmark_in_world;
     const Rigid3d& pose = world_from_camera[detection.frame_index];
     outlines.push_back(
         landmark ? PageOutline(sequence.CameraOf(detection), Transform(pose.Inverse(), *landmark))
                  : json());
+    if (landmark && estimate.FrontIsKnown()) {
+      outlines.back()["front"] = PageNumber(*estimate.front_probability);
+    }
   }
 }
 

@@ -149,6 +149,7 @@ TEST(LandmarksCsvTest, RowsHoldWhatTheMapKnows) {
   world.objects[0].verdict = LandmarkVerdict{"found", 7, 0.5};
   world.objects[1].verdict = LandmarkVerdict{"false", std::nullopt, std::nullopt, "background"};
   world.objects[3].segment.reset();
+  world.objects[1].estimate.front_probability = 0.75;
   const auto table = TableOf({world});
   ASSERT_EQ(table.size(), 4u);
   for (size_t i = 0; i < 3; ++i) {
@@ -174,7 +175,8 @@ TEST(LandmarksCsvTest, RowsHoldWhatTheMapKnows) {
   };
   expect_fields(0, {{"fate", "found"}, {"true_object", "7"}, {"iou", "0.5"}, {"reason", ""}});
   expect_fields(1, {{"fate", "false"}, {"iou", ""}, {"reason", "background"}});
-  expect_fields(1, {{"sigma_centre_x", ""}, {"sigma_yaw_deg", ""}});
+  expect_fields(1, {{"sigma_centre_x", ""}, {"sigma_yaw_deg", ""}, {"front_probability", "0.75"}});
+  expect_fields(0, {{"front_probability", ""}});
   expect_fields(2, {{"fate", ""}});
   expect_fields(3, {{"segment", ""}, {"centre_x", ""}, {"shape_exponent", ""}});
   expect_fields(3, {{"failure", "no_start"}});

@@ -94,6 +94,7 @@ TEST_F(GltfTest, NodesAreLandmarksWithTheirBodies) {
 }
 
 TEST_F(GltfTest, ExtrasSayWhatTheMapKnows) {
+  world_.objects[0].estimate.front_probability = 0.75;
   const GltfDocument document = Export();
   const json& extras = Node(document, 0).at("extras");
   const WorldObject& object = world_.objects[0];
@@ -106,7 +107,10 @@ TEST_F(GltfTest, ExtrasSayWhatTheMapKnows) {
   EXPECT_NEAR(extras.at("yaw_deg").get<double>(), YawOf(object) * kDegPerRad, 1e-9);
   EXPECT_EQ(extras.at("covariance").size(), 9u);
   EXPECT_EQ(extras.at("covariance").at(3).at(8), (*object.estimate.covariance)(3, 8));
-  EXPECT_FALSE(Node(document, 1).at("extras").contains("covariance"));
+  EXPECT_EQ(extras.at("front_probability"), 0.75);
+  for (const char* field : {"covariance", "front_probability"}) {
+    EXPECT_FALSE(Node(document, 1).at("extras").contains(field)) << field;
+  }
 }
 
 TEST_F(GltfTest, SupportNormalIsUp) {

@@ -59,7 +59,7 @@ TEST(OverlayTest, OutlinesOfAllShapesFillTheirOutlineBox) {
 }
 
 TEST(OverlayTest, TheTruthIsDrawnAsTheBoxAroundIt) {
-  const cv::Mat image = Drawn({.camera = kCamera, .truths_in_camera = {LandmarkInView(2.0)}});
+  const cv::Mat image = Drawn({.camera = kCamera, .truths_in_camera = {{LandmarkInView(2.0)}}});
   ExpectAround(Where(image, palette::kVermilion), *OutlineBox(kCamera, LandmarkInView(1.0)));
 }
 
@@ -71,8 +71,8 @@ TEST(OverlayTest, DetectionsAreDrawnWithTheirCaption) {
   EXPECT_GT(cv::countNonZero(above.reshape(1)), 0);
 }
 
-// The front of the truth is where its x axis ends; that of an estimate is there or opposite.
-TEST(OverlayTest, OnlyTheTruthHasAFront) {
+// An arrow leads from the centre to the front; without a front the x axis is drawn both ways.
+TEST(OverlayTest, FrontsAreDrawnWhereTheyAreKnown) {
   const Landmark landmark{{Eigen::Quaterniond::Identity(), {0.0, 0.0, 4.0}}, {1.0, 0.5, 0.5}};
   const auto is_drawn = [&](const OverlayInput& input, const cv::Scalar& colour, double x) {
     const cv::Mat image = Drawn(input);
@@ -80,19 +80,23 @@ TEST(OverlayTest, OnlyTheTruthHasAFront) {
     const cv::Rect near(static_cast<int>(pixel.x()) - 2, static_cast<int>(pixel.y()) - 2, 5, 5);
     return !Where(image(near), colour).empty();
   };
-  const OverlayInput truth{.camera = kCamera, .truths_in_camera = {landmark}};
-  EXPECT_TRUE(is_drawn(truth, palette::kVermilion, 0.8));
-  EXPECT_FALSE(is_drawn(truth, palette::kVermilion, -0.8));
-  const OverlayInput estimate{.camera = kCamera, .landmarks = {{landmark, ""}}};
-  EXPECT_TRUE(is_drawn(estimate, palette::kSkyBlue, 0.8));
-  EXPECT_TRUE(is_drawn(estimate, palette::kSkyBlue, -0.8));
+  for (const bool has_front : {true, false}) {
+    const OverlayInput truth{.camera = kCamera, .truths_in_camera = {{landmark, has_front}}};
+    EXPECT_TRUE(is_drawn(truth, palette::kVermilion, 0.8));
+    EXPECT_NE(is_drawn(truth, palette::kVermilion, -0.8), has_front);
+    const OverlayInput estimate{.camera = kCamera,
+                                .landmarks = {{landmark, "", has_front ? "front 97 %" : ""}}};
+    EXPECT_TRUE(is_drawn(estimate, palette::kSkyBlue, 0.8));
+    EXPECT_NE(is_drawn(estimate, palette::kSkyBlue, -0.8), has_front);
+    EXPECT_EQ(OverlayLegend(estimate)[0].text.find("arrow") != std::string::npos, has_front);
+  }
 }
 
 TEST(OverlayTest, WhatIsBehindTheCameraIsNotDrawn) {
   Landmark behind = LandmarkInView(1.0);
   behind.frame_from_object.translation.z() = -4.0;
   const cv::Mat image =
-      Drawn({.camera = kCamera, .truths_in_camera = {behind}, .landmarks = {{behind, "x"}}});
+      Drawn({.camera = kCamera, .truths_in_camera = {{behind}}, .landmarks = {{behind, "x", "y"}}});
   EXPECT_EQ(cv::countNonZero(image.reshape(1)), 0);
 }
 
@@ -108,8 +112,8 @@ TEST_F(OverlayOfSceneTest, TheTruthFillsExactDetections) {
     ASSERT_EQ(input.truths_in_camera.size(), input.detections.size());
     EXPECT_EQ(input.grounds.empty(), input.detections.empty());
     for (size_t k = 0; k < input.detections.size(); ++k, ++boxes) {
-      EXPECT_LT(OutlineEdgeRms(input.camera, input.truths_in_camera[k], input.detections[k].box),
-                1e-6);
+      const Landmark& truth = input.truths_in_camera[k].landmark_in_camera;
+      EXPECT_LT(OutlineEdgeRms(input.camera, truth, input.detections[k].box), 1e-6);
     }
   }
   EXPECT_EQ(boxes, static_cast<int>(sequence_.detections.size()));

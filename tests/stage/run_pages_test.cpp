@@ -325,6 +325,25 @@ TEST_F(RunPagesTest, PointsOfObjectsAreInTheirImages) {
                                   HasSubstr("map.json")));
 }
 
+// Only a front that is known is drawn.
+TEST_F(RunPagesTest, OutlinesSayWhichFrontsAreKnown) {
+  const Detection& seen = sequence_.detections.front();
+  MapEstimate map = Map();
+  map.objects[seen.object_index].front_probability = 0.95;
+  WriteOurs("OursA", map);
+  map.objects[seen.object_index].front_probability = 0.6;
+  WriteOurs("OursB", map);
+  WriteOurs("OursC");
+  EXPECT_EQ(Run().errors, "");
+  const json variants = PageDataIn(Page())["variants"];
+  EXPECT_EQ(variants[0]["outlines"][0].at("front"), 0.95);
+  for (const int i : {1, 2}) EXPECT_FALSE(variants[i]["outlines"][0].contains("front"));
+  const auto object = [&](int i) { return variants[i]["objects"][seen.object_index]; };
+  EXPECT_EQ(object(0).at("front"), json({{"probability", 0.95}, {"is_known", true}}));
+  EXPECT_EQ(object(1).at("front"), json({{"probability", 0.6}, {"is_known", false}}));
+  EXPECT_FALSE(object(2).contains("front"));
+}
+
 TEST_F(RunPagesTest, WithoutImagesFramesHaveOutlinesAllTheSame) {
   WriteMultiView("MultiView");
   fs::remove_all(Dataset());

@@ -52,12 +52,19 @@ function bodyMesh(landmark, name, opacity) {
   return placed(mesh, landmark.pose);
 }
 
-// The axis through front and back, of which nothing tells one from the other.
-function frontBackAxis(landmark) {
+// The axis through front and back, with the head of an arrow at the front if that is known.
+function frontBackAxis({ landmark, front }) {
   const [a] = landmark.half_axes;
-  const axis = new THREE.Mesh(new THREE.BoxBufferGeometry(2.7 * a, 0.05 * a, 0.05 * a), new THREE.MeshBasicMaterial(
-    { color: colour("front"), depthTest: false, transparent: true }));  // shows inside the body as well
-  axis.renderOrder = 1;
+  const material = new THREE.MeshBasicMaterial(
+    { color: colour("front"), depthTest: false, transparent: true });  // shows inside the body as well
+  const axis = new THREE.Mesh(new THREE.BoxBufferGeometry(2.7 * a, 0.05 * a, 0.05 * a), material);
+  if (front && front.is_known) {
+    const head = new THREE.Mesh(new THREE.ConeBufferGeometry(0.15 * a, 0.4 * a), material);
+    head.rotation.z = -Math.PI / 2;  // cones point along y
+    head.position.x = 1.5 * a;
+    axis.add(head);
+  }
+  axis.traverse((part) => { part.renderOrder = 1; });
   return placed(axis, landmark.pose);
 }
 

@@ -56,7 +56,7 @@ function framesSection(page, variants) {
   const note = Object.keys(page.images).length === 0
     ? element("p", { class: "faint" }, "There were no images of this dataset where the page was made.") : null;
   return section("frames", "Frames",
-    element("p", {}, "Detections are dashed, the thick axis of an estimate leads through its front and back, which are not told apart. " +
+    element("p", {}, "Detections are dashed, the thick axis of an estimate leads through its front and back, with an arrow head at the front where that is known. " +
       (page.has_true_objects ? "Estimates over several frames are seen from the estimated camera, the ground truth from the true one."
         : "Estimates over several frames are seen from the estimated camera.") +
       (havePoints ? " Dots are sparse points that may be of an object: the fuller, the more probably they are of it, and not of what is behind it or in front." : "")), note,

@@ -78,7 +78,7 @@ class MapView {
       const mesh = bodyMesh(estimate.landmark, "estimate", i === this.picked ? 0.85 : 0.55);
       mesh.userData.object = i;
       this.pickable.push(mesh);
-      this.content.add(mesh, frontBackAxis(estimate.landmark));
+      this.content.add(mesh, frontBackAxis(estimate));
       if (i === this.picked && estimate.centre_covariance) this.content.add(uncertaintyBody(estimate));
     });
   }
@@ -237,8 +237,8 @@ function mapRemarks(sequence) {
 function mapWithPanel(page) {
   const panel = element("div", { class: "panel", id: "picked", "aria-live": "polite" });
   const explain = () => panel.replaceChildren(element("p", { class: "faint" },
-    "Drag to turn, scroll to zoom. Click an object for its numbers. The orange line leads through front and back; " +
-    `which end is the front is not known. By keyboard: ${kMapKeys}.`));
+    "Drag to turn, scroll to zoom. Click an object for its numbers. The orange line leads through front and back, " +
+    `with an arrow head at the front where that is known. By keyboard: ${kMapKeys}.`));
   explain();
   try {
     const view = new MapView(page, (index) => {

@@ -26,6 +26,7 @@ function objectNumbers(page, variant, index) {
     rows.push(["sigma of yaw, °", number(estimate.sigma_yaw_deg, 2)]);
   }
   if (estimate.quarter_turn !== undefined) rows.push(["probability that depth and width are exchanged", number(estimate.quarter_turn, 2)]);
+  if (estimate.front) rows.push(["probability of its front", number(estimate.front.probability, 2)]);
   if (estimate.points) {
     rows.push(["points", `${estimate.points.count}, of which ${number(estimate.points.of_object, 0)} are of it`]);
   }
@@ -33,6 +34,7 @@ function objectNumbers(page, variant, index) {
   if (metrics && page.has_true_objects) {
     rows.push(["IoU", number(metrics.iou, 3)], ["Rot, °", number(metrics.rotation_deg, 2)],
       ["yaw error, °", number(metrics.yaw_error_deg, 2)], ["centre error, m", number(metrics.centre_m, 3)]);
+    if (metrics.front_deg !== undefined) rows.push(["front error, °", number(metrics.front_deg, 2)]);
   }
   return [element("strong", {}, `${object.label} ${object.id}`), quantityRows(rows),
     element("a", { href: "#evidence", onclick: () => page.showEvidence(variant, index) }, "its observations")];

@@ -36,12 +36,24 @@ function boundsOf(pixels) {
   return [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)];
 }
 
-// Outline, its box, and axes: the thick one leads from front to back, or from back to front.
+// The head of an arrow along a line, in proportion to its length.
+function arrowHead([x1, y1, x2, y2], name, title) {
+  const [dx, dy] = [(x2 - x1) / 10, (y2 - y1) / 10];
+  const head = polygon([x2 + dx, y2 + dy, x2 - dx - dy, y2 - dy + dx, x2 - dx + dy, y2 - dy - dx], name,
+    { fill: `var(--${name})` });
+  head.append(svgElement("title", {}, title));
+  return head;
+}
+
+// Outline and axes: the thick one leads through front and back, to the front where there is a head.
 function estimateShapes(shown, name) {
   if (!shown || shown.outline.length === 0) return [];
   const shapes = [polygon(shown.outline, name, { "fill": `var(--${name})`, "fill-opacity": 0.12 })];
   if (shown.axes) {
     shapes.push(line(shown.axes[0], "front", { "stroke-width": 3.5, "stroke-linecap": "round" }));
+    if (shown.front !== undefined) {
+      shapes.push(arrowHead(shown.axes[0], "front", `front, probability ${number(shown.front, 2)}`));
+    }
     for (const axis of shown.axes.slice(1)) shapes.push(line(axis, name, { "stroke-width": 1.5 }));
   }
   return shapes;
