@@ -10,10 +10,10 @@
 namespace soslam {
 
 // The part of a network that computes some of its inner tensors, which become its outputs. Tensors
-// are given by name, or as the output of the k-th node, from 0, of an operator: "Mul 36", which does
-// not depend on the program that exported the network.
+// are given by name, or as the output of the k-th node, from 0, of an operator: "Mul 36", which
+// does not depend on the program that exported the network.
 struct NetworkPart {
-  std::string bytes;  // an ONNX file
+  std::string bytes;                 // an ONNX file
   std::vector<std::string> tensors;  // names
 };
 // Throws InputError, naming the file `name`, where the network has no such tensor.

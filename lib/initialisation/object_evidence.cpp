@@ -61,14 +61,15 @@ std::array<BoxEdge, 4> EdgesOf(const Sequence& sequence, const Detection& detect
                   options.detection_sigma_fraction, prior ? prior->edge_bias : EdgeBias());
 }
 
-std::vector<PictureView> PicturesInWorld(const Sequence& sequence, const std::vector<int>& detections) {
+std::vector<PictureView> PicturesInWorld(const Sequence& sequence,
+                                         const std::vector<int>& detections) {
   std::vector<PictureView> pictures;
   for (const int index : detections) {
     const Detection& detection = sequence.detections[index];
     if (!detection.appearance) continue;
-    pictures.push_back({detection.appearance,
-                        sequence.FrameOf(detection).world_from_camera.rotation *
-                            sequence.CameraOf(detection).Ray(detection.box.Centre())});
+    pictures.push_back(
+        {detection.appearance, sequence.FrameOf(detection).world_from_camera.rotation *
+                                   sequence.CameraOf(detection).Ray(detection.box.Centre())});
   }
   return pictures;
 }
@@ -77,8 +78,8 @@ std::vector<double> PictureCosts(const std::vector<PictureView>& pictures, const
   if (pictures.empty()) return {};
   std::vector<Eigen::Vector3d> rays;
   for (const PictureView& picture : pictures) rays.push_back(picture.ray_in_reference);
-  const auto weights = DirectionWeights(
-      rays, pictures.front().appearance->direction_correlation_deg * kRadPerDeg);
+  const auto weights =
+      DirectionWeights(rays, pictures.front().appearance->direction_correlation_deg * kRadPerDeg);
   const Eigen::Quaterniond reference_from_ground = UprightRotation(plane.normal, 0.0);
   std::vector<double> costs(kYawsOfPictures, 0.0);
   for (size_t i = 0; i < pictures.size(); ++i) {
@@ -91,8 +92,8 @@ std::vector<double> PictureCosts(const std::vector<PictureView>& pictures, const
       const double place = kAzimuthBins * (turns - std::floor(turns));
       const int low = static_cast<int>(place) % kAzimuthBins;
       const double part = place - std::floor(place);
-      costs[yaw] += weights[i] * ((1.0 - part) * of_azimuth[low] +
-                                  part * of_azimuth[(low + 1) % kAzimuthBins]);
+      costs[yaw] += weights[i] *
+                    ((1.0 - part) * of_azimuth[low] + part * of_azimuth[(low + 1) % kAzimuthBins]);
     }
   }
   return costs;

@@ -76,7 +76,8 @@ struct PictureView {
 
 // The pictures of detections (indices into Sequence::detections) that have one, in the world, with
 // the frames' estimated poses.
-std::vector<PictureView> PicturesInWorld(const Sequence& sequence, const std::vector<int>& detections);
+std::vector<PictureView> PicturesInWorld(const Sequence& sequence,
+                                         const std::vector<int>& detections);
 
 // Negative logarithm of the likelihood of each yaw of an object about a plane's normal. Pictures
 // are weighted by the DirectionWeights of their rays. Empty without pictures.

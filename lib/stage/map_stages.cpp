@@ -19,6 +19,7 @@
 #include "geometry/angles.h"
 #include "mapping/back_end.h"
 #include "mapping/check_minima.h"
+#include "mapping/fronts.h"
 #include "mapping/initial_landmarks.h"
 #include "mapping/options.h"
 #include "mapping/quarter_turns.h"
@@ -162,6 +163,7 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
     for (ObjectEstimate& object : map.objects) {
       object.quarter_turn = quarter_turns[static_cast<size_t>(object.object_index)];
     }
+    FaceFront(in_map, input.priors, &map);
   }
   const LandmarkEstimates found = {{}, map.objects};
   info.findings = CheckInputs(sequence, map);
