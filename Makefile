@@ -60,7 +60,8 @@ $(foreach name,$(filter-out $(KNOWN) -%,$(given-names)), \
   $(error $(name)=...: no variable of this Makefile has this name))
 endif
 
-COMMANDS := clean map data network doctor export explain check-minima status report tables results-page verify reproduce
+COMMANDS := clean map data network doctor export explain check-minima status report tables results-page verify reproduce \
+  train-head
 .PHONY: $(COMMANDS) help demo run run-built plan ablation scenes sweep submit setup build test test-slow test-build \
   test-slurm bench formatter format format-check clean distclean
 
@@ -97,6 +98,7 @@ tables: ## Compare all variants of all datasets in RESULTS: tables.md, tables/*.
 results-page: ## Renew the tables of docs/results.md from RESULTS, with what make tables makes
 verify: ## Say which files in RESULTS, or that they were made from, are no longer what was recorded
 reproduce: ## Run what made the variants in RESULTS once more, as recorded, and compare every byte
+train-head: ## Train the head that tells which way furniture faces, for NETWORK=<file.onnx>; see docs/appearance.md
 $(COMMANDS):
 	$(if $(findstring n,$(firstword -$(MAKEFLAGS))),,+)@$(SOSLAM) $@
 

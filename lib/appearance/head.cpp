@@ -43,27 +43,35 @@ Head::Head(const std::filesystem::path& path) {
   for (const std::string_view layer : SplitFields(layers)) layers_.emplace_back(layer);
   side_ = static_cast<int>(file.ReadNumber("/", "side_px"));
   is_rgb_ = file.ReadNumber("/", "rgb_0_1") != 0.0;
-  exponent_ = static_cast<float>(file.ReadNumber("/", "exponent"));
   floor_ = static_cast<float>(file.ReadNumber("/", "floor"));
   correlation_deg_ = static_cast<float>(file.ReadNumber("/", "direction_correlation_deg"));
-  if (side_ < 32 || side_ > 1024 || !(exponent_ > 0.0F) || !(floor_ > 0.0F && floor_ < 1.0F)) {
-    throw InputError(path.string() + ": side_px, exponent or floor is out of range");
+  if (side_ < 32 || side_ > 1024) {
+    throw InputError(fmt::format("{}: side_px is {}; expected 32 to 1024", path.string(), side_));
+  }
+  if (!(floor_ > 0.0F && floor_ < 1.0F)) {
+    throw InputError(
+        fmt::format("{}: floor is {}; expected a probability in (0, 1)", path.string(), floor_));
   }
   const nlohmann::json groups =
       nlohmann::json::parse(file.ReadText("/", "groups"), nullptr, /*allow_exceptions=*/false);
   try {
     for (const nlohmann::json& group : groups) {
+      const auto index = static_cast<int>(groups_.size());
+      groups_.push_back({group.at("tells_ratios").get<bool>(), group.at("exponent").get<float>()});
+      if (!(groups_.back().exponent >= 0.0F)) throw InputError("exponent below 0");
+      if (groups_.back().exponent == 0.0F) continue;
       for (const auto& label : group.at("labels")) {
-        group_of_label_[label.get<std::string>()] = static_cast<int>(tells_ratios_.size());
+        group_of_label_[label.get<std::string>()] = index;
       }
-      tells_ratios_.push_back(group.at("tells_ratios").get<bool>());
     }
-  } catch (const nlohmann::json::exception&) {
-    throw InputError(path.string() + ": groups: expected a list of names with labels");
+  } catch (const std::exception& error) {
+    throw InputError(fmt::format(
+        "{}: groups: expected a list of objects with name, labels, exponent and tells_ratios ({})",
+        path.string(), error.what()));
   }
   narrow_weights_ = ReadWeights(file, "/narrow/weights");
   narrow_bias_ = ReadValues(file, "/narrow/bias", narrow_weights_.rows());
-  const int groups_count = static_cast<int>(tells_ratios_.size());
+  const int groups_count = static_cast<int>(groups_.size());
   hidden_weights_ =
       ReadWeights(file, "/hidden/weights",
                   static_cast<int>(narrow_weights_.rows()) * kCells + 2 + groups_count);
@@ -122,10 +130,10 @@ BoxAppearance Head::Appearance(const cv::Mat& features, const cv::Mat& mirrored,
         0.5F * (std::exp(plain.log_probabilities[i]) +
                 std::exp(mirror.log_probabilities[(kAzimuthBins - i) % kAzimuthBins]));
     appearance.azimuth_costs[i] =
-        -exponent_ * std::log((1.0F - floor_) * probability + floor_ / kAzimuthBins);
+        -groups_[group].exponent * std::log((1.0F - floor_) * probability + floor_ / kAzimuthBins);
   }
   appearance.azimuth_costs.array() -= appearance.azimuth_costs.minCoeff();
-  if (tells_ratios_[group]) {
+  if (groups_[group].tells_ratios) {
     appearance.log_ratios = {
         0.5F * (plain.log_ratios.mean + mirror.log_ratios.mean),
         (plain.log_ratios.sigma.cwiseProduct(mirror.log_ratios.sigma)).cwiseSqrt()};

@@ -27,7 +27,8 @@ class Head {
   bool IsRgb() const { return is_rgb_; }  // red, green, blue in 0 .. 1
   int Channels() const { return static_cast<int>(narrow_weights_.cols()); }
 
-  // Index of the group of things that a label belongs to; none: the head says nothing of it.
+  // Index of the group of things that a label belongs to; none: the head says nothing of it, as of
+  // groups whose fronts it did not learn.
   std::optional<int> GroupOf(const std::string& label) const;
 
   // What the features (InnerLayers::Features) of a crop and of its mirror image say.
@@ -53,8 +54,11 @@ class Head {
   int side_ = 0;
   bool is_rgb_ = false;
   std::map<std::string, int> group_of_label_;
-  std::vector<bool> tells_ratios_;  // of groups
-  float exponent_ = 1.0F;           // of the likelihoods, which are less sure than they say
+  struct Group {
+    bool tells_ratios = false;
+    float exponent = 0.0F;  // of likelihoods, which are less sure than they say; 0: tell nothing
+  };
+  std::vector<Group> groups_;
   float floor_ = 0.0F;              // probability that the head is wrong altogether
   float correlation_deg_ = 0.0F;    // see BoxAppearance
   Eigen::MatrixXf narrow_weights_, hidden_weights_, output_weights_, ratio_mean_;

@@ -20,6 +20,7 @@ struct TrainingGroup {
 };
 struct TrainingGroups {
   std::string description;
+  std::vector<std::string> left_out;
   std::vector<TrainingGroup> groups;
 };
 template <typename Visitor>
@@ -33,6 +34,7 @@ void Describe(Visitor& visit, TrainingGroup& group) {
 template <typename Visitor>
 void Describe(Visitor& visit, TrainingGroups& file) {
   visit.OrAbsent("description", &file.description, "for readers of the file");
+  visit.OrAbsent("left_out", &file.left_out, "models not to train on: collection/file");
   visit.Field("groups", &file.groups, "at least one");
 }
 
