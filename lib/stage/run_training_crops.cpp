@@ -169,17 +169,15 @@ void RunTrainingCrops(const TrainingCropsOptions& options, const StageFiles& fil
         const auto views_per_look = static_cast<std::uint64_t>(options.views);
         Random look(seed + number / views_per_look);
         Random random(seed + number + (1ULL << 40));
-        std::optional<FurnitureView> view;
-        while (!view) {
-          double place = look.Uniform(0.0, 1.0);
-          size_t group = 0;
-          while (group + 1 < of_group.size() && place > groups.groups[group].share) {
-            place -= groups.groups[group++].share;
-          }
-          const NumberedModel* model = of_group[group][look.Index(of_group[group].size())];
-          chosen[i] = static_cast<int>(model - models.data());
-          view = RandomView(model->model, all, options.side, look, &random);
+        double place = look.Uniform(0.0, 1.0);
+        size_t group = 0;
+        while (group + 1 < of_group.size() && place > groups.groups[group].share) {
+          place -= groups.groups[group++].share;
         }
+        const NumberedModel* model = of_group[group][look.Index(of_group[group].size())];
+        chosen[i] = static_cast<int>(model - models.data());
+        std::optional<FurnitureView> view;
+        while (!view) view = RandomView(model->model, all, options.side, look, &random);
         views[i] = *view;
         cv::Mat mirrored;
         cv::flip(view->crop.image, mirrored, 1);

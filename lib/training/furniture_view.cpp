@@ -229,9 +229,10 @@ std::optional<FurnitureView> RandomView(const FurnitureModel& target,
   const double diagonal = size.norm();
 
   // The camera, in the world of the target: its front is the x axis.
-  const double azimuth = random->Uniform(-kPi, kPi);
-  const double elevation = random->Uniform(-5.0, 48.0) / kDegPerRad;
-  const double distance = diagonal * random->Uniform(1.1, 5.0);
+  constexpr double kArc = 25.0 / kDegPerRad;
+  const double azimuth = look.Uniform(-kPi, kPi) + random->Uniform(-kArc, kArc);
+  const double elevation = look.Uniform(-5.0, 48.0) / kDegPerRad;
+  const double distance = diagonal * look.Uniform(1.1, 5.0);
   const double pixels = std::exp(random->Uniform(std::log(45.0), std::log(280.0)));
   const int width = static_cast<int>(1.6 * pixels) + 16;
   Camera camera{width, width, 0.0, 0.0, 0.5 * (width - 1), 0.5 * (width - 1)};
@@ -247,7 +248,7 @@ std::optional<FurnitureView> RandomView(const FurnitureModel& target,
   fine.cx = fine.cy = 0.5 * (fine.width - 1);
   Canvas canvas(fine, camera_from_world);
 
-  const Lighting lighting = RandomLighting(random);
+  const Lighting lighting = RandomLighting(&look);
   std::vector<PlacedModel> placed;
   placed.push_back({&target, Placed({0, 0}, 0.0, 0.0, stretch), RandomMaterials(target, &look)});
   canvas.Draw(placed.front(), lighting, 1);

@@ -20,9 +20,9 @@ struct FurnitureView {
       1.0;  // of the model's pixels that nothing hides; the border does not count
 };
 
-// A random view of a model among others in a random room: stretched and in random colours, which
-// `look` decides, in random light, partly hidden or cut by the border, with the errors of cameras
-// and of detectors' boxes. None if too little of it is seen.
+// A random view of a model among others in a random room: stretched, in random colours and light,
+// from a random side, which `look` decides up to 25 degrees of azimuth, partly hidden or cut by the
+// border, with the errors of cameras and of detectors' boxes. None if too little of it is seen.
 std::optional<FurnitureView> RandomView(const FurnitureModel& target,
                                         const std::vector<const FurnitureModel*>& others, int side,
                                         Random look, Random* random);

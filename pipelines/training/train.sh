@@ -20,7 +20,7 @@ render() {
     --layers "$layers" --output "$@"
 }
 render "$folder/crops.h5" --crops 24000 --sheets "$folder/sheets"
-render "$folder/calibration.h5" --crops 6000 --views_per_look 10 --seed 77
+render "$folder/calibration.h5" --crops 4000 --views_per_look 8 --seed 77
 /usr/bin/python3 "$here/train_head.py" --crops "$folder/crops.h5" --calibration "$folder/calibration.h5" \
   --groups "$here/groups.json" --output "$folder/head.h5" | tee "$folder/train.log"
 sha256sum "$folder/head.h5"

@@ -18,6 +18,8 @@ BINS = 36  # of azimuth, about 0, 10 ... 350 degrees
 CELLS = 49
 SYMMETRIC = 0.15  # share of the largest difference below which a turned model counts as the same
 RATIOS_WON = 0.85  # of the error of the group's mean: ratios of groups with more are not used
+CORRELATION_DEG = 20.0  # as that of boxes; renders, whose clutter is another in each view, would say 10
+FLOOR = 0.05  # probability that a picture tells nothing: wrong ids, labels, boxes. A guess: renders, which have none, would say 0.01
 PLAIN = 10.0  # grey levels: differences that are smaller tell nothing
 
 
@@ -70,7 +72,7 @@ class Head(nn.Module):
     """1 x 1 convolution over the cells, two layers. Outputs: logarithms of the probabilities of azimuth; means of the log
     ratios, and logarithms of the standard deviations."""
 
-    def __init__(self, channels, groups, narrow=32, hidden=128):
+    def __init__(self, channels, groups, narrow=32, hidden=160):
         super().__init__()
         self.narrow = nn.Linear(channels, narrow)
         self.hidden = nn.Linear(narrow * CELLS + 2 + groups, hidden)
@@ -133,10 +135,21 @@ def fused_costs(p, azimuth, elevation, exponent, floor, correlation_deg):
     return total, weight.sum()
 
 
-def calibrate(head, path, groups, always, mean, scale):
-    """Exponent of each group, floor and correlation of directions under which looks at models left out are most
-    probable. Each look counts with 1, 3 and all of its views. Groups that gain nothing have exponent 0."""
-    data = read_crops(path)
+def joined(paths):
+    """Crops of several files of one catalogue; looks have numbers of their own."""
+    files = [read_crops(path) for path in paths]
+    data = files[0]
+    for file in files[1:]:
+        file["look"] += data["look"].max() + 1
+        for key in ("features", "facts", "model", "look"):
+            data[key] = np.concatenate([data[key], file[key]])
+    return data
+
+
+def calibrate(head, paths, groups, always, mean, scale):
+    """Exponent of each group, at most 1, under which looks at models left out are most probable. Each look counts with 1, 3
+    and all of its views. Groups that gain nothing have exponent 0."""
+    data = joined(paths)
     left_out = np.array([is_left_out(name, always) for name in data["names"]])[data["model"]]
     rows = np.flatnonzero(left_out)
     group = data["group_of_model"][data["model"]]
@@ -148,11 +161,12 @@ def calibrate(head, path, groups, always, mean, scale):
     turns = [equivalent_turns(difference) for difference in data["turned"]]
     sets = []  # (group, model, rows)
     for look in np.unique(data["look"][rows]):
-        own = np.flatnonzero(data["look"] == look)
+        own = np.flatnonzero((data["look"] == look) & left_out)
+        own = own[data["model"][own] == data["model"][own[0]]]
         for size in (1, 3, len(own)):
             sets.append((group[own[0]], data["model"][own[0]], own[:size]))
 
-    def gain(which, exponent, floor, correlation):
+    def gain(which, exponent, floor, correlation=CORRELATION_DEG):
         gains = []
         for g, model, own in which:
             cost, _ = fused_costs(probabilities[own], data["facts"][own, 0], data["facts"][own, 3], exponent, floor, correlation)
@@ -162,9 +176,9 @@ def calibrate(head, path, groups, always, mean, scale):
         return np.array(gains)
 
     chairs = [s for s in sets if groups[s[0]]["name"] in ("chair", "couch")]
-    best = max((gain(chairs, e, f, c).mean(), e, f, c) for e in (0.3, 0.5, 0.7, 1.0) for f in (0.03, 0.1, 0.2) for c in (10.0, 20.0, 30.0, 45.0))
-    print(f"calibration of chairs and couches, {len(chairs)} sets: gain {best[0]:.2f} over chance with exponent {best[1]}, floor {best[2]}, directions {best[3]:.0f} deg")
-    floor, correlation = best[2:]
+    for correlation in (10.0, 20.0, 40.0):
+        best = max((gain(chairs, e, FLOOR, correlation).mean(), e) for e in (0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0))
+        print(f"chairs and couches, directions {correlation:.0f} deg: gain {best[0]:.2f} nats over chance with exponent {best[1]}")
     exponents = []
     for g, name in enumerate(groups):
         own = [s for s in sets if s[0] == g]
@@ -172,7 +186,7 @@ def calibrate(head, path, groups, always, mean, scale):
             exponents.append(0.0)
             print(f"{name['name']:10} too few models left out: not used")
             continue
-        choices = [(gain(own, e, floor, correlation), e) for e in (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.85, 1.0)]
+        choices = [(gain(own, e, FLOOR), e) for e in (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.85, 1.0)]
         gains, exponent = max(choices, key=lambda choice: choice[0].mean())
         # Models are what varies: the standard error is over their means.
         models = np.array([s[1] for s in own])
@@ -183,21 +197,21 @@ def calibrate(head, path, groups, always, mean, scale):
         full = [s for s in own if len(s[2]) >= 5]
         wrong = []
         for _, model, members in full:
-            cost, _ = fused_costs(probabilities[members], data["facts"][members, 0], data["facts"][members, 3], exponent, floor, correlation)
+            cost, _ = fused_costs(probabilities[members], data["facts"][members, 0], data["facts"][members, 3], exponent, FLOOR, CORRELATION_DEG)
             wrong.append(min(abs((cost.argmin() - t + BINS / 2) % BINS - BINS / 2) for t in turns[model]) * 10)
         wrong = np.array(wrong)
         print(f"{name['name']:10} {len(of_models):3} models {len(own):4} sets: gain {of_models.mean():.2f} +- {error:.2f}, exponent {exponent}{'' if used else ', not used'}; "
               f"all views of a look: median error {np.median(wrong):.0f} deg, below 30: {(wrong <= 30).mean():.2f}")
-    return exponents, floor, correlation
+    return exponents
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--crops", nargs="+", required=True, help="files of soslam-training-crops, of one catalogue")
-    parser.add_argument("--calibration", required=True, help="such a file with several views of each look")
+    parser.add_argument("--calibration", nargs="+", required=True, help="such files with several views of each look")
     parser.add_argument("--groups", required=True, help="groups.json")
     parser.add_argument("--output", required=True, help="head.h5 to write")
-    parser.add_argument("--epochs", type=int, default=30)
+    parser.add_argument("--epochs", type=int, default=36)
     parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args()
     torch.manual_seed(arguments.seed)
@@ -205,10 +219,8 @@ def main():
     settings = json.load(open(arguments.groups, encoding="utf8"))
     groups, always = settings["groups"], set(settings["left_out"])
 
-    files = [read_crops(path) for path in arguments.crops]
-    data = {key: np.concatenate([file[key] for file in files]) for key in ("features", "facts", "model")}
-    data["quantum"] = files[0]["quantum"]
-    names, group_of_model, turned = (files[0][key] for key in ("names", "group_of_model", "turned"))
+    data = joined(arguments.crops)
+    names, group_of_model, turned = (data[key] for key in ("names", "group_of_model", "turned"))
     group = group_of_model[data["model"]]
     data["one_hot"] = np.eye(len(groups), dtype=np.float32)[group]
     data["direction"] = np.ascontiguousarray(data["facts"][:, 3:5])
@@ -275,7 +287,7 @@ def main():
     et = errors_deg(pt, azimuth[train[:2000]], [turns[i] for i in train[:2000]])
     print(f"trained models: {et.mean():.1f} {np.median(et):.1f} {(et < 30).mean():.2f}")
 
-    exponents, floor, correlation_deg = calibrate(head, arguments.calibration, groups, always, mean, scale)
+    exponents = calibrate(head, arguments.calibration, groups, always, mean, scale)
     tells_ratios = [bool(r) for r in ratios_won]
     weights = {name: value.detach().numpy() for name, value in head.named_parameters()}
     # The scaling of the features is part of the first layer.
@@ -288,12 +300,12 @@ def main():
         for name, array in arrays.items():  # as soslam's own files
             file.create_dataset(name, data=array.astype(np.float32), chunks=array.shape, shuffle=True, compression="gzip")
         for key in ("side_px", "rgb_0_1"):
-            file.attrs[key] = float(files[0]["attributes"][key])
-        file.attrs["floor"], file.attrs["direction_correlation_deg"] = floor, correlation_deg
+            file.attrs[key] = float(data["attributes"][key])
+        file.attrs["floor"], file.attrs["direction_correlation_deg"] = FLOOR, CORRELATION_DEG
         of_groups = [{"name": g["name"], "labels": g["labels"], "exponent": e, "tells_ratios": r} for g, e, r in zip(groups, exponents, tells_ratios)]
         header = {"kind": "head", "schema_version": [1, 0]}
         for key, text in (("artefact", json.dumps(header)), ("groups", json.dumps(of_groups)),
-                          ("network_sha256", text_of(files[0]["attributes"]["network_sha256"])), ("layers", text_of(files[0]["attributes"]["layers"]))):
+                          ("network_sha256", text_of(data["attributes"]["network_sha256"])), ("layers", text_of(data["attributes"]["layers"]))):
             file.attrs[key] = np.bytes_(text.encode())
 
 
