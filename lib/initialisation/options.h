@@ -53,9 +53,8 @@ struct InitialiseOptions {
                     [&] { upright.DescribeViewCorrelation(visit); });
     visit.OnlyWhere({{"method", {"yaw_sweep"}}}, [&] { yaw_prior.Describe(visit); });
     points.Describe(visit);
-    visit.OnlyWhere({{"method", {"yaw_sweep", "multi_view"}}}, [&] {
-      DescribePictureEvidence(visit, &picture_evidence);
-    });
+    visit.OnlyWhere({{"method", {"yaw_sweep", "multi_view"}}},
+                    [&] { DescribePictureEvidence(visit, &picture_evidence); });
     visit.OnlyWhere({{"method", {"cuboid_proposals"}}}, [&] { cuboids.Describe(visit); });
   }
 };

@@ -121,9 +121,8 @@ struct OptimiseOptions {
       visit.OnlyWhere({{"detection_model", {"tangency"}}}, [&] { texture.Describe(visit); });
     });
     points.Describe(visit);
-    visit.OnlyWhere({{"detection_model", {"tangency"}}}, [&] {
-      DescribePictureEvidence(visit, &picture_evidence);
-    });
+    visit.OnlyWhere({{"detection_model", {"tangency"}}},
+                    [&] { DescribePictureEvidence(visit, &picture_evidence); });
     visit.Group("Solver");
     visit.Integer("max_iterations", &max_iterations, {1, 10000},
                   "Levenberg-Marquardt iterations, of all solves together");

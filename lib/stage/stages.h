@@ -56,8 +56,8 @@ void RunSynthesise(const SynthesiseOptions& options, const StageFiles& files, in
 // no row.
 void RunLearnPriors(const LearnPriorsOptions& options, const StageFiles& files, int threads);
 
-// soslam-appearance: writes what the inner layers of "network" and the "head" on them say of each box
-// in the images of "dataset". Throws InputError, also for a head of another network.
+// soslam-appearance: writes what the inner layers of "network" and the "head" on them say of each
+// box in the images of "dataset". Throws InputError, also for a head of another network.
 void RunAppearance(const NoOptions& options, const StageFiles& files, int threads);
 
 // soslam-training-crops: renders models of "groups" from "furniture" and writes to "output" what

@@ -94,7 +94,7 @@ Pattern RandomPattern(const std::vector<const FurnitureModel*>& models, Random* 
 
 // Floor and two walls behind the models.
 void DrawRoom(const std::vector<const FurnitureModel*>& models, double size, const cv::Mat& shadow,
-              double darkness, Random* random, Canvas* canvas) {
+              double darkness, Random* random, Rasteriser* canvas) {
   struct Surface {
     Eigen::Vector3f normal;
     float offset;  // normal . point = offset
@@ -246,7 +246,7 @@ std::optional<FurnitureView> RandomView(const FurnitureModel& target,
   fine.fx *= kOversampling;
   fine.fy *= kOversampling;
   fine.cx = fine.cy = 0.5 * (fine.width - 1);
-  Canvas canvas(fine, camera_from_world);
+  Rasteriser canvas(fine, camera_from_world);
 
   const Lighting lighting = RandomLighting(&look);
   std::vector<PlacedModel> placed;
@@ -345,7 +345,7 @@ cv::Mat PlainView(const FurnitureModel& model, double azimuth, double elevation,
   const double distance = 3.0 * diagonal;
   Camera camera{side, side, 0.0, 0.0, 0.5 * (side - 1), 0.5 * (side - 1)};
   camera.fx = camera.fy = 0.8 * side * distance / diagonal;
-  Canvas canvas(
+  Rasteriser canvas(
       camera, CameraFromWorld(azimuth, elevation, distance, 0.0, {0.0, 0.0, 0.5 * model.size.z()}));
   canvas.colour.setTo(cv::Scalar::all(128.0));
   const Eigen::Vector3f towards =

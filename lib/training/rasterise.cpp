@@ -21,7 +21,7 @@ Eigen::Vector3f TextureColour(const cv::Mat& texture, const Eigen::Vector2f& at)
 
 }  // namespace
 
-Canvas::Canvas(const Camera& camera, const Rigid3d& camera_from_world)
+Rasteriser::Rasteriser(const Camera& camera, const Rigid3d& camera_from_world)
     : colour(camera.height, camera.width, CV_32FC3, cv::Scalar::all(0)),
       inverse_depth(camera.height, camera.width, CV_32F, cv::Scalar(0)),
       number(camera.height, camera.width, CV_8U, cv::Scalar(0)),
@@ -29,18 +29,18 @@ Canvas::Canvas(const Camera& camera, const Rigid3d& camera_from_world)
       camera_from_world_(camera_from_world.rotation.toRotationMatrix().cast<float>()),
       translation_(camera_from_world.translation.cast<float>()) {}
 
-Eigen::Vector3f Canvas::RayInWorld(int u, int v) const {
+Eigen::Vector3f Rasteriser::RayInWorld(int u, int v) const {
   return camera_from_world_.transpose() * camera_.Ray(Eigen::Vector2d(u, v)).cast<float>();
 }
 
-Eigen::Vector3f Canvas::CentreInWorld() const {
+Eigen::Vector3f Rasteriser::CentreInWorld() const {
   return -(camera_from_world_.transpose() * translation_);
 }
 
 // Calls paint(u, v, inverse depth, weights of the corners) for each pixel whose centre is in the
 // triangle; the weights are those of the triangle in space.
 template <typename Paint>
-void Canvas::Fill(const Eigen::Vector3f (&in_camera)[3], const Paint& paint) {
+void Rasteriser::Fill(const Eigen::Vector3f (&in_camera)[3], const Paint& paint) {
   constexpr float kNearest = 0.05f;  // metres
   Eigen::Vector3f u, v, w;
   for (int i = 0; i < 3; ++i) {
@@ -73,7 +73,8 @@ void Canvas::Fill(const Eigen::Vector3f (&in_camera)[3], const Paint& paint) {
   }
 }
 
-void Canvas::Draw(const PlacedModel& placed, const Lighting& lighting, unsigned char own_number) {
+void Rasteriser::Draw(const PlacedModel& placed, const Lighting& lighting,
+                      unsigned char own_number) {
   const FurnitureModel& model = *placed.model;
   const Eigen::Matrix3f linear = placed.world_from_object.linear();
   const Eigen::Matrix3f normals = linear.inverse().transpose();
@@ -120,8 +121,8 @@ void Canvas::Draw(const PlacedModel& placed, const Lighting& lighting, unsigned 
   }
 }
 
-void Canvas::DrawShadow(const PlacedModel& placed, const Eigen::Vector3f& towards_light,
-                        cv::Mat* mask) {
+void Rasteriser::DrawShadow(const PlacedModel& placed, const Eigen::Vector3f& towards_light,
+                            cv::Mat* mask) {
   const FurnitureModel& model = *placed.model;
   for (size_t i = 0; i < model.materials_of_triangles.size(); ++i) {
     Eigen::Vector3f in_camera[3];

@@ -32,9 +32,9 @@ struct PlacedModel {
 
 // What a pinhole camera sees of models: colours (blue, green, red; 32-bit float), inverse depth (0
 // where there is nothing) and the number of the model (0 where there is none).
-class Canvas {
+class Rasteriser {
  public:
-  Canvas(const Camera& camera, const Rigid3d& camera_from_world);
+  Rasteriser(const Camera& camera, const Rigid3d& camera_from_world);
 
   // Triangles that reach behind the camera are left out.
   void Draw(const PlacedModel& placed, const Lighting& lighting, unsigned char number);

@@ -70,16 +70,16 @@ std::vector<PipelineStage> MakeStages() {
       // Neither edge maps nor points depend on the world or its unit.
       Stage<EdgesOptions>("edges", {imported}, {dataset}, {{"output", "edges.h5"}}),
       Stage<TrackOptions>("track", {imported}, {dataset}, {{"output", "points.h5"}}),
-      Stage<NoOptions>("appearance", {sequence},
-                       {dataset, {"head", "$(pipelines)/heads/yolox_nano.h5"},
-                        {"network", "$(network)"}},
-                       {{"output", "appearance.h5"}}),
-      Stage<InitialiseOptions>("initialise", {sequence, edges_of_cuboids, points, appearance}, {table},
-                               {{"output", "initial.json"}}),
+      Stage<NoOptions>(
+          "appearance", {sequence},
+          {dataset, {"head", "$(pipelines)/heads/yolox_nano.h5"}, {"network", "$(network)"}},
+          {{"output", "appearance.h5"}}),
+      Stage<InitialiseOptions>("initialise", {sequence, edges_of_cuboids, points, appearance},
+                               {table}, {{"output", "initial.json"}}),
       Stage<OrientationOptions>("refine", {sequence, edges, initial, points, appearance}, {table},
                                 {{"output", "refined.json"}, {"curves", "symmetry.h5"}}),
-      Stage<OptimiseOptions>("optimise", {sequence, edges_of_symmetry, start, points, appearance}, {table},
-                             {{"output", "map.json"}}),
+      Stage<OptimiseOptions>("optimise", {sequence, edges_of_symmetry, start, points, appearance},
+                             {table}, {{"output", "map.json"}}),
       Stage<EvaluateOptions>("evaluate", {sequence, landmarks}, {}, {{"output", "metrics.json"}})};
 }
 
