@@ -30,24 +30,27 @@ Crop CropOf(const cv::Mat& image, const Camera& camera, const Box& box,
   const Eigen::Vector3d ray = camera.Ray(box.Centre()).normalized();
   const Eigen::Matrix3d level_from_camera = LevelFromCamera(ray, up_in_camera);
 
-  // The box's extent in the level view, at unit depth, from the middles of its edges: corners that
-  // no part of the object touches would make it larger.
-  Eigen::AlignedBox2d extent;
-  for (const Eigen::Vector2d& middle :
-       {Eigen::Vector2d(box.x_min, box.Centre().y()), Eigen::Vector2d(box.x_max, box.Centre().y()),
-        Eigen::Vector2d(box.Centre().x(), box.y_min),
-        Eigen::Vector2d(box.Centre().x(), box.y_max)}) {
-    const Eigen::Vector3d in_level = level_from_camera * camera.Ray(middle);
-    extent.extend(Eigen::Vector2d(in_level.head<2>() / std::max(in_level.z(), 1e-3)));
-  }
-  const Eigen::Vector2d size = extent.sizes().cwiseMax(1e-6);
+  // The extent in the level view, at unit depth, of the ellipse that touches the box in the middles
+  // of its edges: corners that no part of the object touches would make it larger.
+  const auto in_level = [&](double x, double y) -> Eigen::Vector2d {
+    const Eigen::Vector3d point = level_from_camera * camera.Ray({x, y});
+    return point.head<2>() / std::max(point.z(), 1e-3);
+  };
+  const Eigen::Vector2d middle_px = box.Centre();
+  const Eigen::Vector2d left = in_level(box.x_min, middle_px.y());
+  const Eigen::Vector2d right = in_level(box.x_max, middle_px.y());
+  const Eigen::Vector2d top = in_level(middle_px.x(), box.y_min);
+  const Eigen::Vector2d bottom = in_level(middle_px.x(), box.y_max);
+  const Eigen::Vector2d centre = 0.25 * (left + right + top + bottom);
+  const Eigen::Vector2d size =
+      ((right - left).cwiseAbs2() + (bottom - top).cwiseAbs2()).cwiseSqrt().cwiseMax(1e-6);
 
   // The homography from pixels of the image to pixels of the crop.
   const double scale = side / (kMargin * size.maxCoeff());  // pixels of the crop at unit depth
   const double middle = 0.5 * (side - 1);
   Eigen::Matrix3d crop_from_level;
-  crop_from_level << scale, 0, middle - scale * extent.center().x(), 0, scale,
-      middle - scale * extent.center().y(), 0, 0, 1;
+  crop_from_level << scale, 0, middle - scale * centre.x(), 0, scale, middle - scale * centre.y(),
+      0, 0, 1;
   const Eigen::Matrix3d crop_from_image =
       crop_from_level * level_from_camera * camera.Intrinsics().inverse();
   cv::Matx33d homography;
