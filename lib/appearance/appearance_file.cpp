@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <map>
 #include <memory>
 #include <utility>
@@ -23,7 +24,7 @@ void WriteAppearance(const std::filesystem::path& path,
   std::vector<AzimuthCosts> azimuth_costs;
   std::vector<Eigen::Vector4f> log_ratios;
   std::vector<float> distances;
-  cv::Mat descriptors;
+  cv::Mat descriptors(0, 0, CV_32F);
   for (const AppearanceRecord& record : records) {
     frame_ids.push_back(record.frame_id);
     object_ids.push_back(record.object_id);
@@ -54,6 +55,10 @@ std::vector<AppearanceRecord> ReadAppearance(const std::filesystem::path& path) 
   const int count = static_cast<int>(frame_ids.size());
   const auto correlation_deg =
       static_cast<float>(file.ReadNumber("/", "direction_correlation_deg"));
+  if (!(correlation_deg >= 0.0F && correlation_deg <= 180.0F)) {
+    throw InputError(fmt::format("{}: direction_correlation_deg is {}; expected 0 to 180",
+                                 path.string(), correlation_deg));
+  }
   const auto object_ids = file.ReadVector<int>("/object_id", count);
   const auto azimuth_costs = file.ReadRows<AzimuthCosts>("/azimuth_cost", count);
   const auto log_ratios = file.ReadRows<Eigen::Vector4f>("/log_ratios", count);
@@ -63,15 +68,20 @@ std::vector<AppearanceRecord> ReadAppearance(const std::filesystem::path& path) 
   for (int i = 0; i < count; ++i) {
     AppearanceRecord record{
         frame_ids[i], object_ids[i], {azimuth_costs[i], {}, correlation_deg}, {}, distances[i]};
-    if (!azimuth_costs[i].allFinite() || azimuth_costs[i].minCoeff() < 0.0F) {
-      throw InputError(fmt::format(
-          "{}: /azimuth_cost: row {}: expected finite numbers of at least 0", path.string(), i));
-    }
+    const auto check = [&](bool is_right, const char* name, const char* expected) {
+      if (is_right) return;
+      throw InputError(
+          fmt::format("{}: {}: row {}: expected {}", path.string(), name, i, expected));
+    };
+    check(azimuth_costs[i].allFinite() && azimuth_costs[i].minCoeff() >= 0.0F, "/azimuth_cost",
+          "finite numbers of at least 0");
     if (log_ratios[i].tail<2>().minCoeff() > 0.0F && log_ratios[i].allFinite()) {
       record.appearance.log_ratios = {log_ratios[i].head<2>(), log_ratios[i].tail<2>()};
     }
     record.descriptor =
         Eigen::Map<const Eigen::VectorXf>(descriptors.ptr<float>(i), descriptors.cols);
+    check(record.descriptor.allFinite(), "/descriptor", "finite numbers");
+    check(std::isfinite(record.distance), "/distance", "a finite number");
     records.push_back(std::move(record));
   }
   return records;
@@ -89,6 +99,10 @@ void AddAppearance(const std::filesystem::path& path, Sequence* sequence) {
           fmt::format("{}: has object {} in frame {}, which the sequence has not; "
                       "expected what soslam-appearance made of this sequence",
                       path.string(), record.object_id, record.frame_id));
+    }
+    if (found->second->appearance) {
+      throw InputError(fmt::format("{}: has object {} in frame {} twice; expected each box once",
+                                   path.string(), record.object_id, record.frame_id));
     }
     found->second->appearance = std::make_shared<const BoxAppearance>(record.appearance);
   }

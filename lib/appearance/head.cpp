@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "appearance/inner_layers.h"
 #include "artefact/hdf5_artefact.h"
@@ -18,9 +20,39 @@ constexpr int kCells = kPooledSide * kPooledSide;
 
 using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+// A group of things of which a head knows which way they face.
+struct HeadGroup {
+  std::string name;
+  std::vector<std::string> labels;
+  double exponent = 0.0;
+  bool tells_ratios = false;
+};
+template <typename Visitor>
+void Describe(Visitor& visit, HeadGroup& group) {
+  visit.Field("name", &group.name, "what people call it", kNotEmpty);
+  visit.Field("labels", &group.labels, "labels of detections that belong to it");
+  visit.Field("exponent", &group.exponent,
+              "of likelihoods, which are less sure than they say; 0: the head tells nothing",
+              Limits{0.0, 1e3});
+  visit.Field("tells_ratios", &group.tells_ratios, "the head tells ratios of their sides");
+}
+
+[[noreturn]] void Refuse(const Hdf5File& file, const std::string& name, const std::string& words) {
+  throw InputError(fmt::format("{}: {}: {}", file.path().string(), name, words));
+}
+
+double ReadNumber(const Hdf5File& file, const std::string& name, double min, double max) {
+  const double number = file.ReadNumber("/", name);
+  if (number >= min && number <= max) return number;
+  Refuse(file, name, fmt::format("is {}; expected {} to {}", number, min, max));
+}
+
 Eigen::MatrixXf ReadWeights(const Hdf5File& file, const std::string& name,
-                            int columns = Hdf5File::kAny) {
-  const cv::Mat matrix = file.ReadMatrix(name, CV_32F, Hdf5File::kAny, columns);
+                            Eigen::Index rows = Hdf5File::kAny,
+                            Eigen::Index columns = Hdf5File::kAny) {
+  const cv::Mat matrix =
+      file.ReadMatrix(name, CV_32F, static_cast<int>(rows), static_cast<int>(columns));
+  if (matrix.empty()) Refuse(file, name, "is empty; expected weights");
   return Eigen::Map<const RowMajor>(matrix.ptr<float>(), matrix.rows, matrix.cols);
 }
 
@@ -41,58 +73,66 @@ Head::Head(const std::filesystem::path& path) {
   network_sha256_ = file.ReadText("/", "network_sha256");
   const std::string layers = file.ReadText("/", "layers");
   for (const std::string_view layer : SplitFields(layers)) layers_.emplace_back(layer);
-  side_ = static_cast<int>(file.ReadNumber("/", "side_px"));
-  is_rgb_ = file.ReadNumber("/", "rgb_0_1") != 0.0;
-  floor_ = static_cast<float>(file.ReadNumber("/", "floor"));
-  correlation_deg_ = static_cast<float>(file.ReadNumber("/", "direction_correlation_deg"));
-  if (side_ < 32 || side_ > 1024) {
-    throw InputError(fmt::format("{}: side_px is {}; expected 32 to 1024", path.string(), side_));
+  if (layers_.empty() || std::ranges::count(layers_, "") > 0) {
+    Refuse(file, "layers", fmt::format("is '{}'; expected names, commas between several", layers));
   }
-  if (!(floor_ > 0.0F && floor_ < 1.0F)) {
-    throw InputError(
-        fmt::format("{}: floor is {}; expected a probability in (0, 1)", path.string(), floor_));
-  }
-  const nlohmann::json groups =
-      nlohmann::json::parse(file.ReadText("/", "groups"), nullptr, /*allow_exceptions=*/false);
-  try {
-    for (const nlohmann::json& group : groups) {
-      const auto index = static_cast<int>(groups_.size());
-      groups_.push_back({group.at("tells_ratios").get<bool>(), group.at("exponent").get<float>()});
-      if (!(groups_.back().exponent >= 0.0F)) throw InputError("exponent below 0");
-      if (groups_.back().exponent == 0.0F) continue;
-      for (const auto& label : group.at("labels")) {
-        group_of_label_[label.get<std::string>()] = index;
-      }
+  side_ = static_cast<int>(ReadNumber(file, "side_px", 32, 1024));
+  is_rgb_ = ReadNumber(file, "rgb_0_1", 0, 1) != 0.0;
+  floor_ = static_cast<float>(ReadNumber(file, "floor", 1e-6, 1.0 - 1e-6));
+  correlation_deg_ = static_cast<float>(ReadNumber(file, "direction_correlation_deg", 0, 180));
+  const std::string of_groups = path.string() + ": groups";
+  const auto groups = ReadDocument<std::vector<HeadGroup>>(
+      nlohmann::json::parse(file.ReadText("/", "groups"), nullptr, /*allow_exceptions=*/false),
+      of_groups);
+  for (const HeadGroup& group : groups) {
+    const auto number = static_cast<int>(groups_.size());
+    for (const std::string& label : group.labels) {
+      const auto [other, is_new] = group_of_label_.emplace(label, number);
+      if (is_new) continue;
+      throw InputError(fmt::format("{}: '{}' is a label of {} and of {}; expected one group of it",
+                                   of_groups, label, groups[other->second].name, group.name));
     }
-  } catch (const std::exception& error) {
-    throw InputError(fmt::format(
-        "{}: groups: expected a list of objects with name, labels, exponent and tells_ratios ({})",
-        path.string(), error.what()));
+    groups_.push_back({group.tells_ratios, static_cast<float>(group.exponent)});
   }
+  const auto groups_count = static_cast<Eigen::Index>(groups.size());
   narrow_weights_ = ReadWeights(file, "/narrow/weights");
   narrow_bias_ = ReadValues(file, "/narrow/bias", narrow_weights_.rows());
-  const int groups_count = static_cast<int>(groups_.size());
-  hidden_weights_ =
-      ReadWeights(file, "/hidden/weights",
-                  static_cast<int>(narrow_weights_.rows()) * kCells + 2 + groups_count);
+  hidden_weights_ = ReadWeights(file, "/hidden/weights", Hdf5File::kAny,
+                                narrow_weights_.rows() * kCells + 2 + groups_count);
   hidden_bias_ = ReadValues(file, "/hidden/bias", hidden_weights_.rows());
-  output_weights_ = ReadWeights(file, "/output/weights", static_cast<int>(hidden_weights_.rows()));
+  output_weights_ = ReadWeights(file, "/output/weights", kAzimuthBins + 4, hidden_weights_.rows());
   output_bias_ = ReadValues(file, "/output/bias", kAzimuthBins + 4);
-  if (output_weights_.rows() != kAzimuthBins + 4) {
-    throw InputError(fmt::format("{}: /output/weights: has {} rows; expected {}", path.string(),
-                                 output_weights_.rows(), kAzimuthBins + 4));
-  }
-  ratio_mean_ = ReadWeights(file, "/ratio_mean", 2);
-  if (ratio_mean_.rows() != groups_count) {
-    throw InputError(path.string() + ": /ratio_mean: expected a row for each group");
-  }
+  ratio_mean_ = ReadWeights(file, "/ratio_mean", groups_count, 2);
   feature_mean_ = ReadValues(file, "/feature_mean", Channels());
   feature_scale_ = ReadValues(file, "/feature_scale", Channels());
+  const std::pair<const char*, bool> finite[] = {{"/narrow/weights", narrow_weights_.allFinite()},
+                                                 {"/narrow/bias", narrow_bias_.allFinite()},
+                                                 {"/hidden/weights", hidden_weights_.allFinite()},
+                                                 {"/hidden/bias", hidden_bias_.allFinite()},
+                                                 {"/output/weights", output_weights_.allFinite()},
+                                                 {"/output/bias", output_bias_.allFinite()},
+                                                 {"/feature_mean", feature_mean_.allFinite()},
+                                                 {"/feature_scale", feature_scale_.allFinite()}};
+  for (const auto& [name, is_finite] : finite) {
+    if (!is_finite) Refuse(file, name, "has numbers that are not finite");
+  }
+  if (!(feature_scale_.minCoeff() > 0.0F)) {
+    Refuse(file, "/feature_scale",
+           fmt::format("has {}; expected positive numbers", feature_scale_.minCoeff()));
+  }
+  for (Eigen::Index i = 0; i < groups_count; ++i) {
+    if (groups_[i].tells_ratios && !ratio_mean_.row(i).allFinite()) {
+      Refuse(file, "/ratio_mean",
+             fmt::format("row {} is not finite, and {} tells ratios", i, groups[i].name));
+    }
+  }
 }
 
 std::optional<int> Head::GroupOf(const std::string& label) const {
   const auto group = group_of_label_.find(label);
-  return group == group_of_label_.end() ? std::nullopt : std::optional(group->second);
+  const bool is_told =
+      group != group_of_label_.end() && groups_[group->second].exponent > 0.0F;
+  return is_told ? std::optional(group->second) : std::nullopt;
 }
 
 Head::Output Head::Evaluate(const cv::Mat& features, const BoxDirection& direction,

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/text.h"
 
 namespace soslam {
 
@@ -84,7 +85,7 @@ InnerLayers::InnerLayers(std::string_view bytes, const std::string& name,
     network_.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
     network_.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
   } catch (const cv::Exception& error) {
-    throw InputError(fmt::format("{}: OpenCV cannot load its part ({})", name, error.err));
+    throw InputError(fmt::format("{}: OpenCV cannot load its part ({})", name, OneLine(error.err)));
   }
 }
 
@@ -96,12 +97,15 @@ cv::Mat InnerLayers::Features(const cv::Mat& image) {
     network_.forward(outputs, tensors_);
   } catch (const cv::Exception& error) {
     throw InputError(fmt::format("{}: cannot be run on an input of {} x {} pixels ({})", name_,
-                                 image.cols, image.rows, error.err));
+                                 image.cols, image.rows, OneLine(error.err)));
   }
   cv::Mat features;
-  for (const cv::Mat& output : outputs) {
+  for (size_t i = 0; i < outputs.size(); ++i) {
+    const cv::Mat& output = outputs[i];
     if (output.dims != 4) {
-      throw InputError(fmt::format("{}: tensor has {} dimensions; expected 4", name_, output.dims));
+      throw InputError(
+          fmt::format("{}: tensor '{}' has {} dimensions; expected 4: image, channel, row, column",
+                      name_, tensors_[i], output.dims));
     }
     for (int channel = 0; channel < output.size[1]; ++channel) {
       const cv::Mat plane(output.size[2], output.size[3], CV_32F,

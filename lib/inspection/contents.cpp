@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "artefact/hdf5_artefact.h"
 #include "inspection/inspection.h"
 
 namespace soslam {
@@ -140,12 +141,28 @@ Inspection ContentsOf(const Schema& schema, const json& document) {
 Inspection ContentsOf(const Hdf5File& file) {
   file.RequireWalkable();
   Inspection contents;
+  for (const std::string& name : file.Attributes("/")) {
+    if (name == kHeaderAttribute) continue;
+    contents.facts.push_back({name, file.IsText("/", name)
+                                        ? file.ReadText("/", name)
+                                        : fmt::format("{}", file.ReadNumber("/", name))});
+  }
   for (const std::string& name : file.Children("/")) {
     const std::string place = "/" + name;
-    if (file.IsGroup(place)) {
-      contents.tables.push_back(TableOf(file, place));
-    } else {
+    if (!file.IsGroup(place)) {
       contents.facts.push_back({name, SummaryOf(file.ReadNumbers(place))});
+      continue;
+    }
+    const auto children = file.Children(place);
+    if (std::ranges::all_of(children, [&](const std::string& child) {
+          return file.IsGroup(place + "/" + child);
+        })) {
+      contents.tables.push_back(TableOf(file, place));
+      continue;
+    }
+    for (const std::string& child : children) {
+      contents.facts.push_back(
+          {name + "/" + child, SummaryOf(file.ReadNumbers(place + "/" + child))});
     }
   }
   return contents;

@@ -60,7 +60,9 @@ std::vector<Fact> Provenance(const FileHeader& header, const json& defaults) {
 
 // Kinds of HDF5 files, and what they hold.
 const std::map<std::string, std::string> kHdf5Kinds = {
+    {"appearance", "which side of its object each box shows"},
     {"edges", "edges, distances and corners of images"},
+    {"head", "which way things face, from the inner layers of a detector network"},
     {"points", "sparse points of structure from motion"},
     {"symmetry", "what symmetry and edges say about the yaw of observations"}};
 

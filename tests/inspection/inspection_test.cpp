@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "appearance/appearance_file.h"
 #include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
 #include "base/error.h"
@@ -14,6 +15,7 @@
 #include "inspection/doubts.h"
 #include "model/describe_estimates.h"
 #include "support/expect_error.h"
+#include "support/head_file.h"
 #include "support/random.h"
 #include "support/random_estimates.h"
 #include "support/temporary_folder.h"
@@ -208,6 +210,25 @@ TEST_F(InspectionTest, GroupsOfHdf5FilesAreRows) {
   ExpectRow(inspection, "observations", 1, {{"frame_id", 15}, {"true_yaw", 0.25}});
 }
 
+TEST_F(InspectionTest, AppearanceAndHeadsAreTheirNumbersAndTexts) {
+  BoxAppearance appearance;
+  appearance.azimuth_costs.setConstant(1.0F);
+  appearance.direction_correlation_deg = 20.0F;
+  WriteAppearance(File(), {{3, 1, appearance, Eigen::Vector2f(0.6F, 0.8F), 1.5F}}, {});
+  const Inspection of_boxes = Read(sequence_);
+  EXPECT_EQ(Said(of_boxes, "direction_correlation_deg"), "20");
+  EXPECT_EQ(Said(of_boxes, "azimuth_cost"), "1 x 36, 1 to 1, mean 1");
+  EXPECT_THAT(of_boxes.title, HasSubstr("appearance"));
+  HeadFile(3).Write(File());
+  const Inspection of_head = Read();
+  EXPECT_EQ(Said(of_head, "layers"), "Mul 0, last");
+  EXPECT_EQ(Said(of_head, "side_px"), "64");
+  EXPECT_THAT(Said(of_head, "groups"), HasSubstr("stool"));
+  EXPECT_THAT(Said(of_head, "hidden/weights"), HasSubstr("3 x 102, "));
+  const std::string text = FormatInspection(of_head, false);
+  EXPECT_THAT(text, HasSubstr("\n  narrow\n    bias"));
+}
+
 TEST_F(InspectionTest, DataSetsOfHdf5FilesAreFacts) {
   WritePoints(File(),
               {{{0.0, 1.0, 2.0}, 0.5, {{3, {1.0, 1.0}}, {5, {2.0, 2.0}}}},
@@ -273,7 +294,7 @@ TEST_F(InspectionTest, WhatIsNoArtefactIsRefused) {
   };
   refuses(R"({"artefact": {"kind": 3}})", {File().string(), "no artefact header"});
   refuses(R"({"artefact": {"kind": "soup", "schema_version": [1, 0]}})",
-          {"\"soup\"", "expected one of associations, edges, frames"});
+          {"\"soup\"", "expected one of appearance, associations, edges, frames"});
   refuses(R"({"artefact": {"kind": "map", "schema_version": [1, 0]}})", {File().string()});
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <optional>
 
+#include "appearance/appearance_file.h"
+#include "appearance/head.h"
 #include "artefact/files.h"
 #include "artefact/hdf5_artefact.h"
 #include "fuzz/fuzz_target.h"
@@ -51,7 +53,7 @@ const FuzzTarget kEstimates("estimates", [](const HostileInput& input) {
 const FuzzTarget kHdf5("hdf5", [](const HostileInput& input) {
   const auto file = input.AsFile("artefact.h5");
   IsAccepted(file, [&] { ReadArtefactHeader(file); });
-  IsAccepted(file, [&] { ReadSymmetry(file); });
+  ReadBy(file, ReadSymmetry, ReadAppearance, [](const auto& path) { const Head head(path); });
   const auto points = input.Output("points.h5");
   if (IsAccepted(file, [&] { WritePoints(points, ReadPoints(file), {}); })) ReadPoints(points);
   IsAccepted(file, [&] {
