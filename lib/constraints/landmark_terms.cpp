@@ -2,6 +2,7 @@
 #include "constraints/landmark_terms.h"
 
 #include <algorithm>
+#include <limits>
 #include <numbers>
 
 #include "constraints/loss.h"
@@ -82,24 +83,46 @@ std::vector<double> Padded(const std::vector<double>& costs) {
   return padded;
 }
 
+// The lowest value of the cubic between the middle two of four values.
+double LowestBetween(const double* values) {
+  const double slope = 0.5 * (values[2] - values[0]);
+  const double square = values[0] - 2.5 * values[1] + 2.0 * values[2] - 0.5 * values[3];
+  const double cube = 0.5 * (values[3] - values[0]) + 1.5 * (values[1] - values[2]);
+  const double root = std::sqrt(std::max(0.0, square * square - 3.0 * cube * slope));
+  const double at = square > 0.0 ? -slope / (square + root) : (root - square) / (3.0 * cube);
+  const double ends = std::min(values[1], values[2]);
+  if (!(at > 0.0 && at < 1.0)) return ends;
+  return std::min(ends, values[1] + at * (slope + at * (square + at * cube)));
+}
+
+double Lowest(const std::vector<double>& padded) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i + 3 < padded.size(); ++i) {
+    lowest = std::min(lowest, LowestBetween(&padded[i]));
+  }
+  return lowest;
+}
+
+constexpr double kLeast = 1e-8;  // of a cost: the root has no derivative at zero
+
 }  // namespace
 
 YawCostTerm::YawCostTerm(const Plane& plane, const std::vector<double>& costs)
     : normal_(plane.normal),
       padded_(Padded(costs)),
       grid_(padded_.data(), 0, static_cast<int>(padded_.size())),
-      interpolator_(grid_) {}
+      interpolator_(grid_),
+      raise_(kLeast - std::min(0.0, Lowest(padded_))) {}
 
 void YawCostTerm::Evaluate(const Landmark& landmark, Residuals residuals,
                            Jacobian* jacobian) const {
-  constexpr double kLeast = 1e-8;  // of a cost: the root has no derivative at zero
   const Eigen::Quaterniond& rotation = landmark.frame_from_object.rotation;
   const double steps = static_cast<double>(padded_.size() - 2 * kPadding) / std::numbers::pi;
   double yaw = Yaw(normal_, rotation);
   if (yaw < 0.0) yaw += std::numbers::pi;
   double cost, slope;
   interpolator_.Evaluate(kPadding + steps * yaw, &cost, &slope);
-  residuals[0] = std::sqrt(2.0 * std::max(cost, kLeast));
+  residuals[0] = std::sqrt(2.0 * (cost + raise_));
   if (jacobian == nullptr) return;
   jacobian->setZero();
   jacobian->leftCols<3>() = slope * steps / residuals[0] * YawJacobian(normal_, rotation);

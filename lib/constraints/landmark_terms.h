@@ -115,10 +115,12 @@ class YawTerm final : public LandmarkTerm {
   YawPrior prior_;
 };
 
-// Cost over the yaw modulo half a turn, periodic and none below zero: residual sqrt(2 cost).
+// Cost over the yaw modulo half a turn, periodic: residual sqrt(2 cost). Between the given yaws it
+// is cubic, and all of it is raised by as much as it falls below zero there: its square root would
+// have a kink where it crosses zero.
 class YawCostTerm final : public LandmarkTerm {
  public:
-  // Costs at yaws (rad, see Yaw) of pi i / n.
+  // Costs, none below zero, at yaws (rad, see Yaw) of pi i / n.
   YawCostTerm(const Plane& plane, const std::vector<double>& costs);
   int NumResiduals() const override { return 1; }
   void Evaluate(const Landmark& landmark, Residuals residuals, Jacobian* jacobian) const override;
@@ -128,6 +130,7 @@ class YawCostTerm final : public LandmarkTerm {
   std::vector<double> padded_;  // costs with two more at either end
   ceres::Grid1D<double> grid_;
   ceres::CubicInterpolator<ceres::Grid1D<double>> interpolator_;
+  double raise_;
 };
 
 // The residuals of StandingOnPlane of a body that may lean, on a constant plane.

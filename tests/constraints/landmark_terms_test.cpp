@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numbers>
 
 #include "initialisation/upright.h"
 #include "support/jacobians.h"
@@ -98,6 +99,89 @@ TEST(YawTerm, JacobianAgreesWithNumbers) {
     const double yaw = Yaw(body.plane.normal, landmark.frame_from_object.rotation);
     const YawTerm term(body.plane, {yaw + RandomUniform(-1.4, 1.4), 0.2});
     ExpectCorrectTermJacobian(term, landmark);
+  }
+}
+
+constexpr int kYawsOfCosts = 36;
+
+// A few harmonics of twice the yaw, the lowest of all of them zero.
+std::vector<double> RandomYawCosts() {
+  std::vector<double> costs(kYawsOfCosts, 0.0);
+  for (int harmonic = 1; harmonic <= 3; ++harmonic) {
+    const double amplitude = RandomUniform(0.0, 3.0), phase = RandomUniform(-3.0, 3.0);
+    for (int i = 0; i < kYawsOfCosts; ++i) {
+      const double yaw = std::numbers::pi * i / kYawsOfCosts;
+      costs[i] += amplitude * std::cos(2.0 * harmonic * yaw - phase);
+    }
+  }
+  const double lowest = *std::ranges::min_element(costs);
+  for (double& cost : costs) cost -= lowest;
+  return costs;
+}
+
+Landmark AtYaw(const Plane& plane, double yaw) {
+  Landmark landmark;
+  landmark.frame_from_object.rotation = UprightRotation(plane.normal, yaw);
+  return landmark;
+}
+
+TEST(YawCostTerm, JacobianAgreesWithNumbers) {
+  int checked = 0;
+  while (checked < 20) {
+    const ObservedBody body(kCuboidExponent);
+    const Landmark landmark = Leaning(body.truth);
+    const double yaw = Yaw(body.plane.normal, landmark.frame_from_object.rotation);
+    const double step = yaw * kYawsOfCosts / std::numbers::pi;
+    if (std::abs(step - std::round(step)) < 0.02) continue;  // second derivatives jump there
+    const YawCostTerm term(body.plane, RandomYawCosts());
+    if (term.Value(landmark) < 1e-3) continue;
+    ExpectCorrectTermJacobian(term, landmark);
+    ++checked;
+  }
+}
+
+TEST(YawCostTerm, CostsAreThoseOfTheGridAndRepeatAfterHalfATurn) {
+  for (int i = 0; i < 10; ++i) {
+    const Plane plane = RandomPlane();
+    std::vector<double> costs = RandomYawCosts();
+    const YawCostTerm raised(plane, costs);
+    for (double& cost : costs) cost += 1.0;
+    const YawCostTerm term(plane, costs);
+    const double raise = raised.Value(AtYaw(plane, 0.0)) - (costs[0] - 1.0);
+    EXPECT_GE(raise, 0.0);
+    EXPECT_LT(raise, 0.1);
+    for (int k = 0; k < kYawsOfCosts; ++k) {
+      const Landmark landmark = AtYaw(plane, std::numbers::pi * k / kYawsOfCosts);
+      EXPECT_NEAR(term.Value(landmark), costs[k], 1e-6);
+      EXPECT_NEAR(raised.Value(landmark), costs[k] - 1.0 + raise, 1e-6);
+    }
+    const Landmark landmark = AtYaw(plane, RandomUniform(-3.0, 3.0));
+    const Landmark turned = RotatedAboutZ(landmark, std::numbers::pi);
+    EXPECT_NEAR(term.Value(landmark), term.Value(turned), 1e-9);
+  }
+}
+
+// A root that crossed zero would hold the yaw there, whatever else is known of it.
+TEST(YawCostTerm, InformationIsBoundedWhereTheCostIsLowest) {
+  for (int i = 0; i < 10; ++i) {
+    const Plane plane = RandomPlane();
+    std::vector<double> costs(kYawsOfCosts);
+    for (double& cost : costs) cost = RandomUniform(0.0, 5.0);
+    costs[5] = 0.0;
+    costs[4] = 4.0;  // much steeper on one side
+    costs[6] = 0.5;
+    const YawCostTerm term(plane, costs);
+    // The square of a slope is at most twice the cost times the largest second derivative.
+    const double steps = kYawsOfCosts / std::numbers::pi;
+    const double bound = 12.0 * 5.0 * steps * steps;
+    for (int k = 0; k < 3600; ++k) {
+      const Landmark landmark = AtYaw(plane, std::numbers::pi * k / 3600.0);
+      Eigen::VectorXd residuals(1);
+      LandmarkTerm::Jacobian jacobian(1, kLandmarkDof);
+      term.Evaluate(landmark, residuals, &jacobian);
+      ASSERT_TRUE(std::isfinite(residuals[0]));
+      ASSERT_LT(jacobian.squaredNorm(), bound);
+    }
   }
 }
 
