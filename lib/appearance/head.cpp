@@ -97,6 +97,7 @@ Head::Head(const std::filesystem::path& path) {
   const auto groups_count = static_cast<Eigen::Index>(groups.size());
   narrow_weights_ = ReadWeights(file, "/narrow/weights");
   narrow_bias_ = ReadValues(file, "/narrow/bias", narrow_weights_.rows());
+  probe_ = ReadWeights(file, "/probe", Channels(), kCells);
   hidden_weights_ = ReadWeights(file, "/hidden/weights", Hdf5File::kAny,
                                 narrow_weights_.rows() * kCells + 2 + groups_count);
   hidden_bias_ = ReadValues(file, "/hidden/bias", hidden_weights_.rows());
@@ -128,10 +129,15 @@ Head::Head(const std::filesystem::path& path) {
   }
 }
 
+bool Head::KnowsFeatures(const cv::Mat& of_probe) const {
+  constexpr float kRounding = 0.01F;  // of the largest feature
+  return of_probe.rows == probe_.rows() && (AsMatrix(of_probe) - probe_).cwiseAbs().maxCoeff() <=
+                                               kRounding * probe_.cwiseAbs().maxCoeff();
+}
+
 std::optional<int> Head::GroupOf(const std::string& label) const {
   const auto group = group_of_label_.find(label);
-  const bool is_told =
-      group != group_of_label_.end() && groups_[group->second].exponent > 0.0F;
+  const bool is_told = group != group_of_label_.end() && groups_[group->second].exponent > 0.0F;
   return is_told ? std::optional(group->second) : std::nullopt;
 }
 

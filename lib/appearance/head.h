@@ -22,6 +22,9 @@ class Head {
   explicit Head(const std::filesystem::path& path);
 
   const std::string& NetworkSha256() const { return network_sha256_; }
+  // True if the features of the ProbeImage are those of the network that the head was trained on,
+  // but for rounding: files of the same weights by other programs differ in their bytes.
+  bool KnowsFeatures(const cv::Mat& of_probe) const;
   const std::vector<std::string>& Layers() const { return layers_; }
   int Side() const { return side_; }      // of the network's input, pixels
   bool IsRgb() const { return is_rgb_; }  // red, green, blue in 0 .. 1
@@ -59,9 +62,10 @@ class Head {
     float exponent = 0.0F;  // of likelihoods, which are less sure than they say; 0: tell nothing
   };
   std::vector<Group> groups_;
-  float floor_ = 0.0F;              // probability that the head is wrong altogether
-  float correlation_deg_ = 0.0F;    // see BoxAppearance
+  float floor_ = 0.0F;            // probability that the head is wrong altogether
+  float correlation_deg_ = 0.0F;  // see BoxAppearance
   Eigen::MatrixXf narrow_weights_, hidden_weights_, output_weights_, ratio_mean_;
+  Eigen::MatrixXf probe_;  // features of the ProbeImage
   Eigen::VectorXf narrow_bias_, hidden_bias_, output_bias_, feature_mean_, feature_scale_;
 };
 

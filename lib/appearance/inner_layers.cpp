@@ -5,6 +5,7 @@
 #define ONNX_ML 1  // operators of classical machine learning included, as Debian builds it
 #include <onnx/onnx_pb.h>
 
+#include <cmath>
 #include <map>
 #include <opencv2/dnn.hpp>
 #include <opencv2/imgproc.hpp>
@@ -73,6 +74,19 @@ NetworkPart CutNetwork(std::string_view bytes, const std::string& name,
   graph = std::move(part);
   result.bytes = model.SerializeAsString();
   return result;
+}
+
+cv::Mat ProbeImage(int side) {
+  cv::Mat image(side, side, CV_8UC3);
+  for (int v = 0; v < side; ++v) {
+    for (int u = 0; u < side; ++u) {
+      for (int c = 0; c < 3; ++c) {
+        const double wave = std::sin(0.07 * (c + 1) * u) * std::cos(0.05 * (4 - c) * v);
+        image.at<cv::Vec3b>(v, u)[c] = cv::saturate_cast<uchar>(127.5 + 100.0 * wave);
+      }
+    }
+  }
+  return image;
 }
 
 InnerLayers::InnerLayers(std::string_view bytes, const std::string& name,

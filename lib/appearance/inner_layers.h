@@ -23,6 +23,9 @@ NetworkPart CutNetwork(std::string_view bytes, const std::string& name,
 // Cells a side to which inner tensors are pooled.
 inline constexpr int kPooledSide = 7;
 
+// An image of waves by which networks are compared: side x side, blue, green, red.
+cv::Mat ProbeImage(int side);
+
 // What the inner layers of a detector network say of square images of objects.
 class InnerLayers {
  public:

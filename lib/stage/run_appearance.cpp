@@ -31,12 +31,15 @@ void RunAppearance(const NoOptions& options, const StageFiles& files, int thread
   const Sequence sequence = ReadSequence(sequence_file);
   const Head head(files.at("head"));
   const NetworkFile network = ReadNetworkFile(files.at("network"));
-  if (Sha256OfText(network.bytes) != head.NetworkSha256()) {
-    throw InputError(fmt::format(
-        "{}: its SHA-256 is {}; {} belongs to the network with {}: expected that one, or a head "
-        "that was trained on this one (make train-head)",
-        network.name, Sha256OfText(network.bytes), files.at("head").string(),
-        head.NetworkSha256()));
+  const std::string sha256 = Sha256OfText(network.bytes);
+  if (sha256 != head.NetworkSha256()) {
+    InnerLayers layers(network.bytes, network.name, head.Layers(), head.IsRgb());
+    if (!head.KnowsFeatures(layers.Features(ProbeImage(head.Side())))) {
+      throw InputError(fmt::format(
+          "{}: is another network (SHA-256 {}) than that of {} ({}); expected that one, or a head "
+          "that was trained on this one (make train-head)",
+          network.name, sha256, files.at("head").string(), head.NetworkSha256()));
+    }
   }
   const std::vector<FrameImage> images = FrameImages(sequence, files.at("dataset"), sequence_file);
   std::map<int, const FrameImage*> image_of_frame;  // by index

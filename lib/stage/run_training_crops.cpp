@@ -135,6 +135,7 @@ void RunTrainingCrops(const TrainingCropsOptions& options, const StageFiles& fil
   Hdf5File file = Hdf5File::Create(files.at("output"));
   file.WriteText("/", "network_sha256", Sha256OfText(bytes));
   file.WriteText("/", "layers", options.layers);
+  file.WriteMatrix("/probe", networks.front().Features(ProbeImage(options.side)));
   file.WriteNumber("/", "side_px", options.side);
   file.WriteNumber("/", "rgb_0_1", options.is_rgb ? 1.0 : 0.0);
   std::string names;

@@ -39,6 +39,7 @@ def read_crops(path):
         "group_of_model": file["group_of_model"][:],
         "turned": file["difference_from_turned"][:],
         "names": [line.split("\t") for line in text_of(file.attrs["models"]).strip().split("\n")],
+        "probe": file["probe"][:],
         "attributes": dict(file.attrs),
     }
 
@@ -293,7 +294,8 @@ def main():
     # The scaling of the features is part of the first layer.
     arrays = {"narrow/weights": weights["narrow.weight"] / scale,
               "narrow/bias": weights["narrow.bias"] - weights["narrow.weight"] @ (mean / scale),
-              "ratio_mean": ratio_mean, "feature_mean": mean, "feature_scale": spread}
+              "ratio_mean": ratio_mean, "probe": data["probe"],
+              "feature_mean": mean, "feature_scale": spread}
     for name in ("hidden", "output"):
         arrays[f"{name}/weights"], arrays[f"{name}/bias"] = weights[f"{name}.weight"], weights[f"{name}.bias"]
     with h5py.File(arguments.output, "w") as file:

@@ -20,6 +20,7 @@ struct HeadFile {
     matrices["/narrow/weights"] = RandomMatrix(narrow, channels);
     matrices["/hidden/weights"] = RandomMatrix(hidden, 49 * narrow + 2 + group_count);
     matrices["/output/weights"] = RandomMatrix(kAzimuthBins + 4, hidden);
+    matrices["/probe"] = RandomMatrix(channels, 49);
     matrices["/ratio_mean"] = RandomMatrix(group_count, 2);
     vectors["/narrow/bias"] = RandomMatrix(1, narrow);
     vectors["/hidden/bias"] = RandomMatrix(1, hidden);
@@ -51,10 +52,8 @@ struct HeadFile {
       {"groups",
        R"([{"name": "chair", "labels": ["chair", "stool"], "exponent": 0.5, "tells_ratios": true},
            {"name": "bed", "labels": ["bed"], "exponent": 0.5, "tells_ratios": false}])"}};
-  std::map<std::string, double> numbers = {{"side_px", 64.0},
-                                           {"rgb_0_1", 0.0},
-                                           {"floor", 0.05},
-                                           {"direction_correlation_deg", 20.0}};
+  std::map<std::string, double> numbers = {
+      {"side_px", 64.0}, {"rgb_0_1", 0.0}, {"floor", 0.05}, {"direction_correlation_deg", 20.0}};
   std::map<std::string, cv::Mat> matrices;
   std::map<std::string, std::vector<float>> vectors;
 };
