@@ -236,7 +236,7 @@ std::vector<std::unique_ptr<const LandmarkTerm>> PriorTerms(const ObjectEvidence
     terms.push_back(
         std::make_unique<AxisTerm>(evidence.plane, *evidence.scene_axis, evidence.axes_weight));
   }
-  if (!evidence.picture_costs.empty()) {
+  if (!evidence.picture_costs.empty() && evidence.Stands()) {
     terms.push_back(
         std::make_unique<YawCostTerm>(evidence.plane, HalfTurnCosts(evidence.picture_costs)));
   }

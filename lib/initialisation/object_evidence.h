@@ -48,7 +48,8 @@ struct ObjectEvidence {
   double axes_weight = 0.0;  // see AxisTerm
   std::optional<YawPrior> yaw_prior = std::nullopt;
   // Costs over the whole circle from pictures, at yaws of 2 pi i / kYawsOfPictures; empty without
-  // any. Fits use them modulo half a turn (HalfTurnCosts).
+  // any. Fits use them modulo half a turn (HalfTurnCosts); not of what hangs or is on a wall, as
+  // pictures are read with the plane's normal as up.
   std::vector<double> picture_costs = {};
   double huber_delta = 1.0;  // of the boxes; infinite: no loss
   StandingSigmas standing;   // of bodies that may lean
@@ -59,6 +60,7 @@ struct ObjectEvidence {
 
   bool MayLean() const { return prior && prior->attitude == Attitude::kFree && !height_is_free; }
   bool HasRatio() const { return prior && !ratio_is_free; }
+  bool Stands() const { return !prior || prior->mount == Mount::kStanding; }
   bool HasSize() const { return size_is_known && prior && prior->height_m; }
   RestingFace RestsOn() const { return prior ? prior->rests_on : RestingFace::kBottom; }
   ShapeExponents Exponents() const {

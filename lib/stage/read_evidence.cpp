@@ -45,6 +45,7 @@ void AddPictureEvidence(bool is_asked, const StageFiles& files, Sequence* sequen
   if (!files.contains("appearance")) {
     throw SettingsError("picture_evidence = true needs --appearance FILE; found none");
   }
+  CheckWasMadeOf(files.at("appearance"), "appearance", files.at("sequence"));
   AddAppearance(files.at("appearance"), sequence);
   inputs->push_back(files.at("appearance"));
 }

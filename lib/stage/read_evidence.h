@@ -32,7 +32,8 @@ void CheckHasPoints(const PointOptions& options, const StageFiles& files);
 std::vector<MapPoint> ReadPointsOf(const Sequence& sequence, const StageFiles& files);
 
 // Gives the detections what file "appearance" says of them, if `is_asked`, and adds it to `inputs`.
-// Throws SettingsError without a file, and as AddAppearance.
+// Throws SettingsError without a file, InputError for one of another sequence, and as
+// AddAppearance.
 void AddPictureEvidence(bool is_asked, const StageFiles& files, Sequence* sequence,
                         std::vector<std::filesystem::path>* inputs);
 

@@ -116,7 +116,13 @@ TEST_F(PlanTest, StagesReadTheLatestOfWhatTheyNeed) {
   Write("pipelines/variants/Cuboids.json",
         R"({"stages": ["import", "edges", "initialise", "evaluate"],
             "initialise": {"method": "cuboid_proposals"}})");
+  Write("pipelines/variants/Pictures.json",
+        R"({"stages": ["import", "appearance", "initialise", "optimise", "evaluate"],
+            "optimise": {"detection_model": "tangency", "picture_evidence": true}})");
   expect_inputs("{}", {{"Plain", "evaluate", "landmarks", "initialise/initial.json"},
+                       {"Pictures", "appearance", "sequence", "import/sequence.json"},
+                       {"Pictures", "initialise", "appearance", ""},
+                       {"Pictures", "optimise", "appearance", "appearance/appearance.h5"},
                        {"Full", "initialise", "edges", ""},
                        {"Cuboids", "initialise", "edges", "edges/edges.h5"},
                        {"Mapped", "optimise", "landmarks", "initialise/initial.json"},
@@ -135,6 +141,7 @@ TEST_F(PlanTest, StagesReadTheLatestOfWhatTheyNeed) {
   expect_inputs(R"({"associate": {"association": "estimated"}})",
                 {{"Full", "associate", "sequence", "import/sequence.json"},
                  {"Full", "edges", "sequence", "import/sequence.json"},
+                 {"Pictures", "appearance", "sequence", "associate/sequence.json"},
                  {"Full", "initialise", "sequence", "associate/sequence.json"},
                  {"Full", "evaluate", "sequence", "associate/sequence.json"}});
   expect_inputs(R"({"ground": {"ground": "estimated"}, "associate": {"association": "estimated"}})",

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "geometry/angles.h"
+#include "initialisation/fit_object.h"
+#include "initialisation/object_evidence.h"
+#include "support/one_body.h"
+#include "support/pictures.h"
+#include "support/scene.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kYawStep = 2.0 * std::numbers::pi / kYawsOfPictures;
+
+// A body that is as wide as it is deep: boxes do not tell its yaw.
+Landmark RoundBody(double yaw) {
+  Landmark body;
+  body.shape_exponents = kEllipsoidExponent;
+  body.half_axes = {0.3, 0.3, 0.4};
+  body.frame_from_object = {UprightRotation(Eigen::Vector3d::UnitZ(), yaw), {0.1, -0.2, 0.4}};
+  return body;
+}
+
+// The angle (rad) from one yaw to another, over the full circle.
+double Difference(double yaw, double other) {
+  return std::remainder(yaw - other, 2.0 * std::numbers::pi);
+}
+
+double LowestYaw(const std::vector<double>& costs) {
+  return kYawStep * static_cast<double>(std::ranges::min_element(costs) - costs.begin());
+}
+
+std::vector<Rigid3d> RandomCameras(int count) {
+  std::vector<Rigid3d> cameras;
+  while (static_cast<int>(cameras.size()) < count) {
+    const Eigen::Vector3d position = RandomVector(-4, 4) + Eigen::Vector3d(0, 0, 4.5);
+    if (position.head<2>().norm() < 2.0) continue;
+    Rigid3d camera = LookingAt(position, {0.1, -0.2, RandomUniform(0.2, 0.6)});
+    camera.rotation =
+        camera.rotation * Eigen::AngleAxisd(RandomUniform(-0.5, 0.5), Eigen::Vector3d::UnitZ());
+    cameras.push_back(camera);
+  }
+  return cameras;
+}
+
+TEST(PictureCosts, AreLowestAtTheTrueYawInAnyWorld) {
+  for (int i = 0; i < 20; ++i) {
+    Sequence sequence = Moved(
+        RandomRigid(), ViewsOfBody(RoundBody(RandomUniform(-3, 3)), RandomCameras(1 + i % 4)));
+    AddTruePictures(&sequence);
+    const Plane& plane = sequence.planes[0].plane_in_world;
+    const Landmark& truth = sequence.objects[0].ground_truth->landmark_in_world;
+    const ObjectEvidence evidence =
+        EvidenceInWorld(sequence, DetectionsByObject(sequence)[0], std::nullopt, {});
+    ASSERT_EQ(evidence.picture_costs.size(), static_cast<size_t>(kYawsOfPictures));
+    EXPECT_LT(std::abs(Difference(LowestYaw(evidence.picture_costs),
+                                  Yaw(plane.normal, truth.frame_from_object.rotation))),
+              1.01 * kYawStep);
+  }
+}
+
+TEST(PictureCosts, AreLowestAtTheTrueYawInTheCamera) {
+  for (int i = 0; i < 20; ++i) {
+    Sequence sequence = ViewsOfBody(RoundBody(RandomUniform(-3, 3)), RandomCameras(2));
+    AddTruePictures(&sequence);
+    for (const Detection& detection : sequence.detections) {
+      const ObjectEvidence evidence = EvidenceInCamera(sequence, detection, std::nullopt, {});
+      const Landmark truth = *TrueLandmarkInCamera(sequence, detection);
+      EXPECT_LT(std::abs(Difference(
+                    LowestYaw(evidence.picture_costs),
+                    Yaw(detection.plane_in_camera.normal, truth.frame_from_object.rotation))),
+                1.01 * kYawStep);
+    }
+  }
+}
+
+TEST(PictureCosts, AreNoneWithoutPictures) {
+  const Sequence sequence = ViewsOfBody(RoundBody(0.3), RandomCameras(3));
+  const ObjectEvidence evidence =
+      EvidenceInWorld(sequence, DetectionsByObject(sequence)[0], std::nullopt, {});
+  EXPECT_TRUE(evidence.picture_costs.empty());
+  EXPECT_TRUE(HalfTurnCosts({}).empty());
+}
+
+// Many pictures from one direction tell no more than one.
+TEST(PictureCosts, PicturesOfOneDirectionCountAsOne) {
+  BoxAppearance picture = PictureFrom(0.4);
+  picture.direction_correlation_deg = 20.0F;
+  const auto shared = std::make_shared<const BoxAppearance>(picture);
+  const PictureView view{shared, Eigen::Vector3d(1.0, 0.2, -0.3)};
+  const auto one = PictureCosts({view}, Plane());
+  const auto many = PictureCosts({view, view, view, view}, Plane());
+  for (size_t i = 0; i < one.size(); ++i) EXPECT_NEAR(many[i], one[i], 1e-9);
+  const PictureView far{shared, Eigen::Vector3d(-1.0, 0.2, -0.3)};
+  const auto both = PictureCosts({view, far}, Plane()), other = PictureCosts({far}, Plane());
+  for (size_t i = 0; i < one.size(); ++i) EXPECT_NEAR(both[i], one[i] + other[i], 1e-3);
+}
+
+TEST(HalfTurnCosts, AddTheLikelihoodsOfOppositeYaws) {
+  std::vector<double> costs(kYawsOfPictures);
+  for (double& cost : costs) cost = RandomUniform(0.0, 40.0);
+  const auto half = HalfTurnCosts(costs);
+  ASSERT_EQ(half.size(), costs.size() / 2);
+  EXPECT_EQ(*std::ranges::min_element(half), 0.0);
+  const auto likelihood = [&](size_t i) {
+    return std::exp(-costs[i]) + std::exp(-costs[i + half.size()]);
+  };
+  for (size_t i = 1; i < half.size(); ++i) {
+    EXPECT_NEAR(half[i] - half[0], std::log(likelihood(0)) - std::log(likelihood(i)), 1e-9);
+  }
+}
+
+TEST(FrontProbability, IsThatOfTheFrontAgainstTheBack) {
+  const Plane plane = RandomPlane();
+  std::vector<double> costs(kYawsOfPictures);
+  for (double& cost : costs) cost = RandomUniform(0.0, 5.0);
+  for (int i = 0; i < kYawsOfPictures; ++i) {
+    Landmark landmark;
+    landmark.frame_from_object.rotation = UprightRotation(plane.normal, kYawStep * i);
+    const double front = std::exp(-costs[i]);
+    const double back = std::exp(-costs[(i + kYawsOfPictures / 2) % kYawsOfPictures]);
+    EXPECT_NEAR(FrontProbability(costs, plane, landmark), front / (front + back), 1e-9);
+  }
+  for (int i = 0; i < 20; ++i) {
+    Landmark landmark;
+    landmark.frame_from_object.rotation = UprightRotation(plane.normal, RandomUniform(-3, 3));
+    const double front = FrontProbability(costs, plane, landmark);
+    const double back = FrontProbability(costs, plane, RotatedAboutZ(landmark, std::numbers::pi));
+    EXPECT_NEAR(front + back, 1.0, 1e-9);
+  }
+}
+
+TEST(PictureCosts, AreOfNoAccountForWhatDoesNotStand) {
+  Sequence sequence = ViewsOfBody(RoundBody(0.3), RandomCameras(3));
+  AddTruePictures(&sequence);
+  for (const Mount mount : {Mount::kStanding, Mount::kHanging, Mount::kOnWall}) {
+    ShapePrior prior;
+    prior.mount = mount;
+    ObjectEvidence evidence =
+        EvidenceInWorld(sequence, DetectionsByObject(sequence)[0], prior, {.axes_weight = 0.0});
+    const size_t terms = PriorTerms(evidence).size();
+    evidence.picture_costs.clear();
+    EXPECT_EQ(terms - PriorTerms(evidence).size(), mount == Mount::kStanding ? 1u : 0u);
+  }
+}
+
+TEST(FitObject, APictureTellsTheYawThatBoxesDoNot) {
+  for (int i = 0; i < 8; ++i) {
+    const double yaw = RandomUniform(-3, 3);
+    Sequence sequence = ViewsOfBody(RoundBody(yaw), CamerasOnArc(6, 2.0));
+    AddTruePictures(&sequence);
+    const ShapePrior prior{{0.75, 0.75}, {0.05, 0.05}, kEllipsoidExponent};
+    const ObjectEvidence evidence =
+        EvidenceInWorld(sequence, DetectionsByObject(sequence)[0], prior, {.axes_weight = 0.0});
+    const auto fits = FitObject(evidence, 3.0 * kRadPerDeg, 1);
+    ASSERT_EQ(fits.size(), 1u);
+    const double found = Yaw(Eigen::Vector3d::UnitZ(), fits[0].landmark.frame_from_object.rotation);
+    EXPECT_LT(std::abs(YawDifferenceModuloPi(found, yaw)), 2.5 * kRadPerDeg) << yaw;
+    EXPECT_LT(fits[0].cost.total, 0.05);
+  }
+}
+
+}  // namespace
+}  // namespace soslam
