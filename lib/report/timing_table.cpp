@@ -13,7 +13,7 @@
 namespace soslam {
 namespace {
 
-constexpr std::array kLandmarkStages = {"edges", "track", "initialise", "refine"};
+constexpr std::array kLandmarkStages = {"edges", "track", "appearance", "initialise", "refine"};
 constexpr const char* kMapStage = "optimise";
 
 std::string MachineNote(const std::vector<DatasetResult>& datasets) {

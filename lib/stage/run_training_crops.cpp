@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <numbers>
 #include <opencv2/core/utility.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <system_error>
 
 #include "appearance/inner_layers.h"
 #include "artefact/hdf5_file.h"
@@ -19,6 +18,7 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "image/network.h"
 #include "stage/stages.h"
 #include "training/furniture_view.h"
 #include "training/parametric_models.h"
@@ -37,7 +37,8 @@ struct NumberedModel {
 
 std::vector<NumberedModel> ReadModels(const fs::path& folder, const TrainingGroups& groups) {
   std::vector<fs::path> libraries;
-  for (const auto& item : fs::directory_iterator(folder)) {
+  std::error_code not_listed;
+  for (const auto& item : fs::directory_iterator(folder, not_listed)) {
     if (fs::exists(item.path() / "PluginFurnitureCatalog.properties")) {
       libraries.push_back(item.path());
     }
@@ -123,8 +124,7 @@ void RunTrainingCrops(const TrainingCropsOptions& options, const StageFiles& fil
     }
   }
 
-  std::ifstream stream(files.at("network"), std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  const std::string bytes = ReadNetworkFile(files.at("network")).bytes;
   const auto fields = SplitFields(options.layers);
   const std::vector<std::string> layers(fields.begin(), fields.end());
   std::vector<InnerLayers> networks;
