@@ -305,7 +305,7 @@ def main():
             file.attrs[key] = float(data["attributes"][key])
         file.attrs["floor"], file.attrs["direction_correlation_deg"] = FLOOR, CORRELATION_DEG
         of_groups = [{"name": g["name"], "labels": g["labels"], "exponent": e, "tells_ratios": r} for g, e, r in zip(groups, exponents, tells_ratios)]
-        header = {"kind": "head", "schema_version": [1, 0]}
+        header = {"kind": "head", "schema_version": [1, 0], "software": "train_head.py", "settings": {}, "inputs": []}
         for key, text in (("artefact", json.dumps(header)), ("groups", json.dumps(of_groups)),
                           ("network_sha256", text_of(data["attributes"]["network_sha256"])), ("layers", text_of(data["attributes"]["layers"]))):
             file.attrs[key] = np.bytes_(text.encode())
