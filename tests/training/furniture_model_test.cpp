@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <Eigen/Geometry>
 
 #include "base/error.h"
 #include "support/expect_error.h"
