@@ -130,7 +130,8 @@ std::vector<std::string> PossibleVariants(const fs::path& pipelines, const std::
   std::vector<std::string> variants = VariantNames(pipelines);
   if (std::ranges::any_of(FindFiles(dataset).others, HasNameOfImage)) return variants;
   std::erase_if(variants, [&](const std::string& variant) {
-    return ReadVariant(pipelines, name, variant).options.contains("edges");
+    const StageOptions options = ReadVariant(pipelines, name, variant).options;
+    return options.contains("edges") || options.contains("appearance");
   });
   return variants;
 }
