@@ -26,20 +26,31 @@ namespace soslam {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+// True for the network of the head in a file of another program.
+bool ComputesTheSame(const NetworkFile& network, const Head& head) {
+  try {
+    InnerLayers layers(network.bytes, network.name, head.Layers(), head.IsRgb());
+    return head.KnowsFeatures(layers.Features(ProbeImage(head.Side())));
+  } catch (const InputError&) {  // it has no such layers
+    return false;
+  }
+}
+
+}  // namespace
+
 void RunAppearance(const NoOptions& options, const StageFiles& files, int threads) {
   const fs::path& sequence_file = files.at("sequence");
   const Sequence sequence = ReadSequence(sequence_file);
   const Head head(files.at("head"));
   const NetworkFile network = ReadNetworkFile(files.at("network"));
   const std::string sha256 = Sha256OfText(network.bytes);
-  if (sha256 != head.NetworkSha256()) {
-    InnerLayers layers(network.bytes, network.name, head.Layers(), head.IsRgb());
-    if (!head.KnowsFeatures(layers.Features(ProbeImage(head.Side())))) {
-      throw InputError(fmt::format(
-          "{}: is another network (SHA-256 {}) than that of {} ({}); expected that one, or a head "
-          "that was trained on this one (make train-head)",
-          network.name, sha256, files.at("head").string(), head.NetworkSha256()));
-    }
+  if (sha256 != head.NetworkSha256() && !ComputesTheSame(network, head)) {
+    throw InputError(fmt::format(
+        "{}: is another network (SHA-256 {}) than that of {} ({}); expected that one, or a head "
+        "that was trained on this one (make train-head)",
+        network.name, sha256, files.at("head").string(), head.NetworkSha256()));
   }
   const std::vector<FrameImage> images = FrameImages(sequence, files.at("dataset"), sequence_file);
   std::map<int, const FrameImage*> image_of_frame;  // by index

@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "appearance/appearance_file.h"
+#include "appearance/inner_layers.h"
 #include "artefact/files.h"
 #include "base/error.h"
 #include "base/hash.h"
@@ -57,8 +58,9 @@ class RunAppearanceTest : public FolderTest {
     head_.texts["network_sha256"] = Sha256OfText(network_);
     head_.texts["layers"] = "AveragePool 0";
     head_.texts["groups"] =
-        nlohmann::json::array({{{"name", "chair"}, {"labels", labels}, {"tells_ratios", true}},
-                               {{"name", "bed"}, {"labels", {"bed"}}, {"tells_ratios", false}}})
+        nlohmann::json::array(
+            {{{"name", "chair"}, {"labels", labels}, {"exponent", 1.0}, {"tells_ratios", true}},
+             {{"name", "bed"}, {"labels", {"bed"}}, {"exponent", 1.0}, {"tells_ratios", false}}})
             .dump();
     head_.Write(folder_ / "head.h5");
   }
@@ -112,8 +114,9 @@ TEST_F(RunAppearanceTest, GivesTheSameBytesForAnyNumberOfThreads) {
 }
 
 TEST_F(RunAppearanceTest, MayHaveNothingToSay) {
-  head_.texts["groups"] = R"([{"name": "a", "labels": ["bed"], "tells_ratios": false},
-                              {"name": "b", "labels": [], "tells_ratios": false}])";
+  head_.texts["groups"] =
+      R"([{"name": "a", "labels": ["bed"], "exponent": 1, "tells_ratios": false},
+                              {"name": "b", "labels": [], "exponent": 1, "tells_ratios": false}])";
   head_.Write(folder_ / "head.h5");
   Run();
   EXPECT_TRUE(ReadAppearance(files_.at("output")).empty());
@@ -134,6 +137,16 @@ TEST_F(RunAppearanceTest, ANetworkAndAHeadThatAreNotForEachOtherAreRefused) {
   head_.texts["layers"] = "Mul 36";
   head_.Write(folder_ / "head.h5");
   ExpectError<InputError>([&] { Run(); }, {"network.onnx", "Mul 36"});
+}
+
+TEST_F(RunAppearanceTest, AnotherFileOfTheSameNetworkIsKnownByWhatItComputes) {
+  head_.texts["network_sha256"] = "of another file";
+  InnerLayers layers(network_, "network.onnx", {"AveragePool 0"}, /*is_unit=*/false);
+  head_.matrices["/probe"] =
+      layers.Features(ProbeImage(static_cast<int>(head_.numbers.at("side_px"))));
+  head_.Write(folder_ / "head.h5");
+  Run();
+  EXPECT_FALSE(ReadAppearance(files_.at("output")).empty());
 }
 
 TEST_F(RunAppearanceTest, LaterStagesUseItAndNeedIt) {
