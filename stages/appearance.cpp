@@ -13,6 +13,6 @@ int main(int argc, char** argv) {
                   {"head", "head.h5, trained on the network's inner layers"}},
        .outputs = {{"output", "appearance.h5 to write"}},
        .example = "soslam-appearance --dataset data/room_a --sequence sequence.json --network "
-                  "yolox_nano.onnx --head pipelines/heads/yolox_nano.h5 --output appearance.h5"},
+                  "yolox_nano.onnx --head pipelines/pictures/heads/yolox_nano.h5 --output appearance.h5"},
       &soslam::RunAppearance);
 }

@@ -12,6 +12,7 @@
 #include "artefact/json_file.h"
 #include "base/error.h"
 #include "base/text.h"
+#include "model/label_groups.h"
 
 namespace soslam {
 namespace {
@@ -87,7 +88,7 @@ Head::Head(const std::filesystem::path& path) {
   for (const HeadGroup& group : groups) {
     const auto number = static_cast<int>(groups_.size());
     for (const std::string& label : group.labels) {
-      const auto [other, is_new] = group_of_label_.emplace(label, number);
+      const auto [other, is_new] = group_of_label_.emplace(NormalisedLabel(label), number);
       if (is_new) continue;
       throw InputError(fmt::format("{}: '{}' is a label of {} and of {}; expected one group of it",
                                    of_groups, label, groups[other->second].name, group.name));
@@ -136,7 +137,7 @@ bool Head::KnowsFeatures(const cv::Mat& of_probe) const {
 }
 
 std::optional<int> Head::GroupOf(const std::string& label) const {
-  const auto group = group_of_label_.find(label);
+  const auto group = group_of_label_.find(NormalisedLabel(label));
   const bool is_told = group != group_of_label_.end() && groups_[group->second].exponent > 0.0F;
   return is_told ? std::optional(group->second) : std::nullopt;
 }

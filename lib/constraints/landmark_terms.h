@@ -122,6 +122,8 @@ class YawCostTerm final : public LandmarkTerm {
  public:
   // Costs, none below zero, at yaws (rad, see Yaw) of pi i / n.
   YawCostTerm(const Plane& plane, const std::vector<double>& costs);
+  YawCostTerm(const YawCostTerm&) = delete;
+  YawCostTerm& operator=(const YawCostTerm&) = delete;
   int NumResiduals() const override { return 1; }
   void Evaluate(const Landmark& landmark, Residuals residuals, Jacobian* jacobian) const override;
 

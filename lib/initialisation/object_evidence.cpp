@@ -15,6 +15,17 @@ namespace {
 
 constexpr double kCostOfViewBehind = 1e6;
 
+// Linear interpolation of values over the whole circle, the first of which is at the angle 0 (rad).
+template <typename Values>
+double PeriodicAt(const Values& values, double angle) {
+  const auto count = static_cast<int>(values.size());
+  const double turns = angle / (2.0 * std::numbers::pi);
+  const double place = count * (turns - std::floor(turns));
+  const int low = static_cast<int>(place) % count;
+  const double part = place - std::floor(place);
+  return (1.0 - part) * values[low] + part * values[(low + 1) % count];
+}
+
 // Costs that do not depend on the boxes.
 LandmarkCosts PriorCosts(const ObjectEvidence& evidence) {
   LandmarkCosts costs;
@@ -88,12 +99,7 @@ std::vector<double> PictureCosts(const std::vector<PictureView>& pictures, const
     const AzimuthCosts& of_azimuth = pictures[i].appearance->azimuth_costs;
     for (int yaw = 0; yaw < kYawsOfPictures; ++yaw) {
       const double azimuth = bearing - 2.0 * std::numbers::pi * yaw / kYawsOfPictures;
-      const double turns = azimuth / (2.0 * std::numbers::pi);
-      const double place = kAzimuthBins * (turns - std::floor(turns));
-      const int low = static_cast<int>(place) % kAzimuthBins;
-      const double part = place - std::floor(place);
-      costs[yaw] += weights[i] *
-                    ((1.0 - part) * of_azimuth[low] + part * of_azimuth[(low + 1) % kAzimuthBins]);
+      costs[yaw] += weights[i] * PeriodicAt(of_azimuth, azimuth);
     }
   }
   return costs;
@@ -113,16 +119,9 @@ std::vector<double> HalfTurnCosts(const std::vector<double>& picture_costs) {
 
 double FrontProbability(const std::vector<double>& picture_costs, const Plane& plane,
                         const Landmark& landmark) {
-  const auto count = static_cast<int>(picture_costs.size());
-  const double turns =
-      Yaw(plane.normal, landmark.frame_from_object.rotation) / (2.0 * std::numbers::pi);
-  const double place = count * (turns - std::floor(turns));
-  const auto at = [&](double index) {
-    const int low = static_cast<int>(index) % count;
-    const double part = index - std::floor(index);
-    return (1.0 - part) * picture_costs[low] + part * picture_costs[(low + 1) % count];
-  };
-  return 1.0 / (1.0 + std::exp(at(place) - at(place + 0.5 * count)));
+  const double yaw = Yaw(plane.normal, landmark.frame_from_object.rotation);
+  return 1.0 / (1.0 + std::exp(PeriodicAt(picture_costs, yaw) -
+                               PeriodicAt(picture_costs, yaw + std::numbers::pi)));
 }
 
 ObjectEvidence EvidenceInWorld(const Sequence& sequence, const std::vector<int>& detections,

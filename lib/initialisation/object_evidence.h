@@ -60,7 +60,9 @@ struct ObjectEvidence {
 
   bool MayLean() const { return prior && prior->attitude == Attitude::kFree && !height_is_free; }
   bool HasRatio() const { return prior && !ratio_is_free; }
-  bool Stands() const { return !prior || prior->mount == Mount::kStanding; }
+  bool Stands() const {
+    return !prior || (prior->mount == Mount::kStanding && prior->attitude == Attitude::kStanding);
+  }
   bool HasSize() const { return size_is_known && prior && prior->height_m; }
   RestingFace RestsOn() const { return prior ? prior->rests_on : RestingFace::kBottom; }
   ShapeExponents Exponents() const {

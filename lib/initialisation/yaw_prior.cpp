@@ -69,6 +69,7 @@ std::optional<YawPrior> MotionPrior(const Sequence& sequence, const Detection& d
   }
   ObjectEvidence views = EvidenceInWorld(sequence, around, shape, upright);
   views.axes_weight = 0.0;
+  views.picture_costs.clear();
   WeighViews(upright.ViewCorrelation(), &views);
   const auto optima = ProfileOverYaw(views, upright.YawStep()).Minima(1);
   if (optima.empty()) return std::nullopt;

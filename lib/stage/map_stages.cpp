@@ -200,7 +200,9 @@ int RunCheckMinima(const NoOptions& /*options*/, const StageFiles& files, int th
   for (const auto& [name, setting] : record.settings.value()) {
     OptionsFromJson({{name, setting.value}}, path.string(), &options);
   }
-  const Sequence imported = ReadSequence(inputs.at("sequence"));
+  Sequence imported = ReadSequence(inputs.at("sequence"));
+  std::vector<std::filesystem::path> read;
+  AddPictureEvidence(options.picture_evidence, inputs, &imported, &read);
   const MapEstimate map = ReadMap(path, imported);
   const Sequence sequence = AsInMap(imported, map);
   BackEndInput input = ReadInput(sequence, options, inputs, threads);

@@ -70,10 +70,11 @@ std::vector<PipelineStage> MakeStages() {
       // Neither edge maps nor points depend on the world or its unit.
       Stage<EdgesOptions>("edges", {imported}, {dataset}, {{"output", "edges.h5"}}),
       Stage<TrackOptions>("track", {imported}, {dataset}, {{"output", "points.h5"}}),
-      Stage<NoOptions>(
-          "appearance", {sequence},
-          {dataset, {"head", "$(pipelines)/heads/yolox_nano.h5"}, {"network", "$(network)"}},
-          {{"output", "appearance.h5"}}),
+      Stage<NoOptions>("appearance", {sequence},
+                       {dataset,
+                        {"head", std::string("$(pipelines)/") + kHeadFile},
+                        {"network", "\"$$SOSLAM_NETWORK\""}},
+                       {{"output", "appearance.h5"}}),
       Stage<InitialiseOptions>("initialise", {sequence, edges_of_cuboids, points, appearance},
                                {table}, {{"output", "initial.json"}}),
       Stage<OrientationOptions>("refine", {sequence, edges, initial, points, appearance}, {table},

@@ -12,6 +12,9 @@
 
 namespace soslam {
 
+// Head of soslam-appearance, relative to the pipelines folder.
+inline constexpr const char* kHeadFile = "heads/yolox_nano.h5";
+
 // An output of a stage: argument name and file name.
 struct StageOutput {
   std::string argument;

@@ -57,6 +57,14 @@ void CheckSemanticTable(const std::filesystem::path& pipelines, const VariantSet
       settings.semantic_table_file, settings.semantic_table, table.string(), pipelines.string()));
 }
 
+void CheckHead(const std::filesystem::path& pipelines, const std::string& variant) {
+  if (Exists(pipelines / kHeadFile)) return;
+  throw InputError(fmt::format(
+      "{}: does not exist; variant '{}' runs the stage appearance, which needs it: copy it from "
+      "pipelines/pictures",
+      (pipelines / kHeadFile).string(), variant));
+}
+
 // True if some variant of the pipelines runs the stage of a setting of the dataset, or cannot be
 // read.
 bool IsForAVariant(const Finding& setting, const std::filesystem::path& pipelines,
@@ -92,7 +100,7 @@ std::vector<std::filesystem::path> PrerequisitesOf(const StageInstance& instance
     files.push_back(folders.results / kImagesListing);
   }
   if (FindStage(instance.stage)->other_inputs.contains("head")) {
-    files.push_back(folders.pipelines / "heads/yolox_nano.h5");
+    files.push_back(folders.pipelines / kHeadFile);
   }
   if (!instance.semantic_table.empty()) {
     files.push_back(folders.pipelines / instance.semantic_table);
@@ -112,6 +120,7 @@ Plan MakePlan(const std::filesystem::path& pipelines, const std::string& dataset
   for (const std::string& variant : variants) {
     const VariantSettings settings = ReadVariant(pipelines, dataset, variant);
     CheckSemanticTable(pipelines, settings);
+    if (settings.options.contains("appearance")) CheckHead(pipelines, variant);
     std::ranges::copy(settings.findings, std::back_inserter(plan.findings));
     std::ranges::copy(settings.for_others, std::back_inserter(for_others));
     VariantChain chain{variant, {}};

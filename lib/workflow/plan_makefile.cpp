@@ -67,7 +67,6 @@ results := {results}
 dataset := {dataset_folder}
 pipelines := {pipelines}
 BIN ?= build/bin
-network ?= networks/yolox_nano/yolox_nano.onnx
 THREADS ?= 0
 QUIET ?=
 OUTSIDE_PATHS ?=

@@ -9,10 +9,15 @@ layers='Mul 36,Mul 68' # the ends of dark4 and of C3_n3
 models=/usr/share/sweethome3d/furniture
 
 [[ -e $network ]] || { echo "train-head: '$network': no such network (./soslam network fetches it)" >&2; exit 3; }
+# What was rendered for another network, or of other groups, is no use.
+folder=$folder/$(cat "$network" "$here/groups.json" | sha256sum | cut -c1-10)
 mkdir -p "$folder"
 for library in "$models"/*.sh3f; do
   unpacked=$folder/furniture/$(basename "$library" .sh3f)
-  [[ -e $unpacked/PluginFurnitureCatalog.properties ]] || { mkdir -p "$unpacked" && bsdtar -xf "$library" -C "$unpacked"; }
+  [[ -e $unpacked/PluginFurnitureCatalog.properties ]] || {
+    rm -rf "$unpacked" "$unpacked.part" && mkdir -p "$unpacked.part" && bsdtar -xf "$library" -C "$unpacked.part"
+    mv "$unpacked.part" "$unpacked"
+  }
 done
 render() {
   [[ ! -e $1 ]] || return 0

@@ -35,7 +35,7 @@ def read_crops(path):
         "quantum": float(file["features"].attrs["quantum"]),
         "facts": file["facts"][:],
         "model": file["model_of_crop"][:],
-        "look": file["look_of_crop"][:] if "look_of_crop" in file else np.arange(len(features) // 2),
+        "look": file["look_of_crop"][:],
         "group_of_model": file["group_of_model"][:],
         "turned": file["difference_from_turned"][:],
         "names": [line.split("\t") for line in text_of(file.attrs["models"]).strip().split("\n")],
@@ -122,7 +122,7 @@ def errors_deg(p, azimuth, turns):
 
 
 def fused_costs(p, azimuth, elevation, exponent, floor, correlation_deg):
-    """Costs of the yaw's error (in bins) from several views, and the number of views that count."""
+    """Costs of the yaw's error (in bins) from several views."""
     rays = np.stack([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)], 1)
     angle = np.degrees(np.arccos(np.clip(rays @ rays.T, -1, 1)))
     weight = 1 / np.exp(-0.5 * (angle / correlation_deg) ** 2).sum(1)
@@ -133,13 +133,17 @@ def fused_costs(p, azimuth, elevation, exponent, floor, correlation_deg):
         low = place.astype(int)
         part = place - low
         total += w * ((1 - part) * c[low % BINS] + part * c[(low + 1) % BINS])
-    return total, weight.sum()
+    return total
 
 
 def joined(paths):
     """Crops of several files of one catalogue; looks have numbers of their own."""
     files = [read_crops(path) for path in paths]
     data = files[0]
+    for path, file in zip(paths, files):
+        for key in ("network_sha256", "layers", "models"):
+            if text_of(file["attributes"][key]) != text_of(data["attributes"][key]):
+                sys.exit(f"{path}: {key} is another than that of {paths[0]}; expected renders of one catalogue and network")
     for file in files[1:]:
         file["look"] += data["look"].max() + 1
         for key in ("features", "facts", "model", "look"):
@@ -170,7 +174,7 @@ def calibrate(head, paths, groups, always, mean, scale):
     def gain(which, exponent, floor, correlation=CORRELATION_DEG):
         gains = []
         for g, model, own in which:
-            cost, _ = fused_costs(probabilities[own], data["facts"][own, 0], data["facts"][own, 3], exponent, floor, correlation)
+            cost = fused_costs(probabilities[own], data["facts"][own, 0], data["facts"][own, 3], exponent, floor, correlation)
             log_p = -cost - np.logaddexp.reduce(-cost)
             right = np.logaddexp.reduce(log_p[[turn % BINS for turn in turns[model]]])
             gains.append(right - np.log(len(turns[model]) / BINS))
@@ -198,7 +202,7 @@ def calibrate(head, paths, groups, always, mean, scale):
         full = [s for s in own if len(s[2]) >= 5]
         wrong = []
         for _, model, members in full:
-            cost, _ = fused_costs(probabilities[members], data["facts"][members, 0], data["facts"][members, 3], exponent, FLOOR, CORRELATION_DEG)
+            cost = fused_costs(probabilities[members], data["facts"][members, 0], data["facts"][members, 3], exponent, FLOOR, CORRELATION_DEG)
             wrong.append(min(abs((cost.argmin() - t + BINS / 2) % BINS - BINS / 2) for t in turns[model]) * 10)
         wrong = np.array(wrong)
         print(f"{name['name']:10} {len(of_models):3} models {len(own):4} sets: gain {of_models.mean():.2f} +- {error:.2f}, exponent {exponent}{'' if used else ', not used'}; "

@@ -120,6 +120,9 @@ TEST_F(PlanTest, StagesReadTheLatestOfWhatTheyNeed) {
   Write("pipelines/variants/Pictures.json",
         R"({"stages": ["import", "appearance", "initialise", "optimise", "evaluate"],
             "optimise": {"detection_model": "tangency", "picture_evidence": true}})");
+  ExpectError<InputError>([&] { Make({"Pictures"}); },
+                          {"heads/yolox_nano.h5", "does not exist", "'Pictures'"});
+  Write("pipelines/heads/yolox_nano.h5", "a head");
   expect_inputs("{}", {{"Plain", "evaluate", "landmarks", "initialise/initial.json"},
                        {"Pictures", "appearance", "sequence", "import/sequence.json"},
                        {"Pictures", "initialise", "appearance", ""},
@@ -457,8 +460,10 @@ TEST_F(RunPlanTest, AllVariantsOfADatasetWithoutImagesAreThoseThatLookAtNone) {
   Write("pipelines/variants/Pictures.json",
         R"({"stages": ["import", "appearance", "initialise", "evaluate"],
             "initialise": {"method": "multi_view", "picture_evidence": true}})");
+  Write("pipelines/heads/yolox_nano.h5", "a head");
   Run("", "");
-  EXPECT_THAT(Read("results/room/plan.mk"), AllOf(HasSubstr("/Full/"), HasSubstr("/Pictures/")));
+  EXPECT_THAT(Read("results/room/plan.mk"), AllOf(HasSubstr("/Full/"), HasSubstr("/Pictures/"),
+                                                  HasSubstr(R"(--network "$$SOSLAM_NETWORK" )")));
   fs::remove(folder_ / "room/rgb/0.jpg");
   for (const char* image : {"room/rgb/0.BMP", "room/rgb/0.tif", "room/rgb/0.webp"}) {
     Write(image, "image");  // soslam-frames keeps photos in their format
