@@ -12,7 +12,8 @@ int main(int argc, char** argv) {
                   {"network", "ONNX file of the detector network that the head belongs to"},
                   {"head", "head.h5, trained on the network's inner layers"}},
        .outputs = {{"output", "appearance.h5 to write"}},
-       .example = "soslam-appearance --dataset data/room_a --sequence sequence.json --network "
-                  "yolox_nano.onnx --head pipelines/pictures/heads/yolox_nano.h5 --output appearance.h5"},
+       .example =
+           "soslam-appearance --dataset data/room_a --sequence sequence.json --network "
+           "yolox_nano.onnx --head pipelines/pictures/heads/yolox_nano.h5 --output appearance.h5"},
       &soslam::RunAppearance);
 }

@@ -96,7 +96,7 @@ class BackEndProblem {
   const OptimiseOptions& options_;
   int threads_;
   std::vector<std::vector<int>> detections_by_object_;  // indices
-  std::vector<double> view_weights_;  // one per detection
+  std::vector<double> view_weights_;                    // one per detection
   BackEndVariables variables_;
   ceres::HuberLoss loss_;
   std::deque<ceres::ScaledLoss> view_losses_;
