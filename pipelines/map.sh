@@ -26,12 +26,14 @@ done
 [[ $VARIANT != all ]] || VARIANT=OursSP
 variants=$VARIANT
 for variant in $variants; do
-  [[ -f pipelines/variants/$variant.json || -f $MAPS/$NAME/pipelines/variants/$variant.json ]] ||
+  [[ -f pipelines/variants/$variant.json || -f pipelines/pictures/variants/$variant.json ||
+    -f $MAPS/$NAME/pipelines/variants/$variant.json ]] ||
     refuse "variant '$variant': no such variant; \`./soslam help\` lists them"
 done
 makes_no_map="variant '$VARIANT': the first one makes no map; expected one that does, as OursSP"
-own=pipelines/variants/${VARIANT%% *}.json
-[[ ! -f $own ]] || grep --quiet --regexp=optimise --regexp=extends "$own" || refuse "$makes_no_map"
+for own in pipelines/{,pictures/}variants/${VARIANT%% *}.json; do
+  [[ ! -f $own ]] || grep --quiet --regexp=optimise --regexp=extends "$own" || refuse "$makes_no_map"
+done
 
 for name in SCALE CAMERA_HEIGHT; do
   [[ ${!name} != .* ]] || declare "$name=0${!name}"
@@ -105,9 +107,10 @@ keep_base() {
 }
 keep_base
 # Poses are held, so that odometry has no noise.
-for file in variants/*.json priors/semantic_table.json; do
-  for from in pipelines/$file; do sed '/"odometry_[rt]/d' "$from" | keep "$MAP_ROOT/${from}"; done
+for from in pipelines/variants/*.json pipelines/pictures/variants/*[AR].json pipelines/priors/semantic_table.json; do
+  sed '/"odometry_[rt]/d' "$from" | keep "$MAP_ROOT/${from/pictures\//}"
 done
+cp --recursive --update pipelines/pictures/heads "$MAP_ROOT/pipelines"
 
 # The page shows the variants of this command; others may be of other settings. What they share stays.
 for folder in "$MAP_ROOT/results/$NAME"/*/; do

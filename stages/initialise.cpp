@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
                   {"edges", "edges.h5 of soslam-edges; needed when method = cuboid_proposals",
                    false},
                   {"appearance",
-                   "appearance.h5 of soslam-appearance; needed when the setting picture_evidence "
+                   "appearance.h5 of soslam-appearance; needed when picture_yaw or picture_ratios "
                    "is true",
                    false},
                   {"points",

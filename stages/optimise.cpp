@@ -16,7 +16,8 @@ int main(int argc, char** argv) {
              "edges.h5 of soslam-edges; needed when the setting symmetry or edge_alignment is true",
              false},
             {"appearance",
-             "appearance.h5 of soslam-appearance; needed when the setting picture_evidence is true",
+             "appearance.h5 of soslam-appearance; needed when picture_yaw or picture_ratios is "
+             "true",
              false},
             {"points",
              "points.h5 of soslam-track or soslam-reconstruct; needed when the setting "

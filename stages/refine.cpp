@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
                   {"initial", "initial.json of soslam-initialise"},
                   {"edges", "edges.h5 of soslam-edges"},
                   {"appearance",
-                   "appearance.h5 of soslam-appearance; needed when the setting picture_evidence "
+                   "appearance.h5 of soslam-appearance; needed when picture_yaw or picture_ratios "
                    "is true",
                    false},
                   {"points",

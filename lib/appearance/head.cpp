@@ -26,7 +26,7 @@ struct HeadGroup {
   std::string name;
   std::vector<std::string> labels;
   double exponent = 0.0;
-  bool tells_ratios = false;
+  double ratio_sigma_scale = 0.0;
 };
 template <typename Visitor>
 void Describe(Visitor& visit, HeadGroup& group) {
@@ -35,7 +35,9 @@ void Describe(Visitor& visit, HeadGroup& group) {
   visit.Field("exponent", &group.exponent,
               "of likelihoods, which are less sure than they say; 0: the head tells nothing",
               Limits{0.0, 1e3});
-  visit.Field("tells_ratios", &group.tells_ratios, "the head tells ratios of their sides");
+  visit.Field("ratio_sigma_scale", &group.ratio_sigma_scale,
+              "of what the head says of the spread of ratios; 0: it tells no ratios",
+              Limits{0.0, 1e3});
 }
 
 [[noreturn]] void Refuse(const Hdf5File& file, const std::string& name, const std::string& words) {
@@ -93,7 +95,8 @@ Head::Head(const std::filesystem::path& path) {
       throw InputError(fmt::format("{}: '{}' is a label of {} and of {}; expected one group of it",
                                    of_groups, label, groups[other->second].name, group.name));
     }
-    groups_.push_back({group.tells_ratios, static_cast<float>(group.exponent)});
+    groups_.push_back(
+        {static_cast<float>(group.ratio_sigma_scale), static_cast<float>(group.exponent)});
   }
   const auto groups_count = static_cast<Eigen::Index>(groups.size());
   narrow_weights_ = ReadWeights(file, "/narrow/weights");
@@ -105,6 +108,7 @@ Head::Head(const std::filesystem::path& path) {
   output_weights_ = ReadWeights(file, "/output/weights", kAzimuthBins + 4, hidden_weights_.rows());
   output_bias_ = ReadValues(file, "/output/bias", kAzimuthBins + 4);
   ratio_mean_ = ReadWeights(file, "/ratio_mean", groups_count, 2);
+  ratio_sigma_ = ReadWeights(file, "/ratio_sigma", groups_count, 2);
   feature_mean_ = ReadValues(file, "/feature_mean", Channels());
   feature_scale_ = ReadValues(file, "/feature_scale", Channels());
   const std::pair<const char*, bool> finite[] = {{"/narrow/weights", narrow_weights_.allFinite()},
@@ -123,9 +127,13 @@ Head::Head(const std::filesystem::path& path) {
            fmt::format("has {}; expected positive numbers", feature_scale_.minCoeff()));
   }
   for (Eigen::Index i = 0; i < groups_count; ++i) {
-    if (groups_[i].tells_ratios && !ratio_mean_.row(i).allFinite()) {
-      Refuse(file, "/ratio_mean",
-             fmt::format("row {} is not finite, and {} tells ratios", i, groups[i].name));
+    if (groups_[i].ratio_sigma_scale == 0.0F) continue;
+    if (!ratio_mean_.row(i).allFinite() || !ratio_sigma_.row(i).allFinite() ||
+        !(ratio_sigma_.row(i).minCoeff() > 0.0F)) {
+      Refuse(file, "/ratio_mean, /ratio_sigma",
+             fmt::format("row {} has numbers that are not finite, or sigmas that are not positive, "
+                         "and the head tells ratios of {}",
+                         i, groups[i].name));
     }
   }
 }
@@ -138,7 +146,9 @@ bool Head::KnowsFeatures(const cv::Mat& of_probe) const {
 
 std::optional<int> Head::GroupOf(const std::string& label) const {
   const auto group = group_of_label_.find(NormalisedLabel(label));
-  const bool is_told = group != group_of_label_.end() && groups_[group->second].exponent > 0.0F;
+  const bool is_told =
+      group != group_of_label_.end() &&
+      (groups_[group->second].exponent > 0.0F || groups_[group->second].ratio_sigma_scale > 0.0F);
   return is_told ? std::optional(group->second) : std::nullopt;
 }
 
@@ -161,8 +171,7 @@ Head::Output Head::Evaluate(const cv::Mat& features, const BoxDirection& directi
   const float largest = scores.maxCoeff();
   const float log_sum = largest + std::log((scores.array() - largest).exp().sum());
   return {scores.array() - log_sum,
-          {ratio_mean_.row(group).transpose() + output.segment<2>(kAzimuthBins),
-           output.tail<2>().array().exp()}};
+          {output.segment<2>(kAzimuthBins), output.tail<2>().array().exp()}};
 }
 
 BoxAppearance Head::Appearance(const cv::Mat& features, const cv::Mat& mirrored,
@@ -180,12 +189,23 @@ BoxAppearance Head::Appearance(const cv::Mat& features, const cv::Mat& mirrored,
         -groups_[group].exponent * std::log((1.0F - floor_) * probability + floor_ / kAzimuthBins);
   }
   appearance.azimuth_costs.array() -= appearance.azimuth_costs.minCoeff();
-  if (groups_[group].tells_ratios) {
-    appearance.log_ratios = {
-        0.5F * (plain.log_ratios.mean + mirror.log_ratios.mean),
-        (plain.log_ratios.sigma.cwiseProduct(mirror.log_ratios.sigma)).cwiseSqrt()};
-  }
+  appearance.log_ratios =
+      RatioLikelihood({0.5F * (plain.log_ratios.mean + mirror.log_ratios.mean),
+                       (plain.log_ratios.sigma.cwiseProduct(mirror.log_ratios.sigma)).cwiseSqrt()},
+                      group);
   return appearance;
+}
+
+std::optional<LogRatios> Head::RatioLikelihood(const LogRatios& relative, int group) const {
+  const float scale = groups_[group].ratio_sigma_scale;
+  if (scale == 0.0F) return std::nullopt;
+  const Eigen::Vector2f of_head = (scale * relative.sigma).cwiseAbs2().cwiseInverse();
+  const Eigen::Vector2f of_prior = ratio_sigma_.row(group).cwiseAbs2().cwiseInverse();
+  const Eigen::Vector2f information = of_head - of_prior;
+  if (!(information.array() > 0.0F).all()) return std::nullopt;
+  return LogRatios{ratio_mean_.row(group).transpose() +
+                       of_head.cwiseProduct(relative.mean).cwiseQuotient(information),
+                   information.cwiseInverse().cwiseSqrt()};
 }
 
 Eigen::VectorXf Head::ScaledMeans(const cv::Mat& features) const {

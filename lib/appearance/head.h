@@ -47,9 +47,13 @@ class Head {
  private:
   struct Output {
     AzimuthCosts log_probabilities;
-    LogRatios log_ratios;
+    LogRatios log_ratios;  // relative to the mean of the group's models
   };
   Output Evaluate(const cv::Mat& features, const BoxDirection& direction, int group) const;
+  // What the head says of a picture's ratios, `relative` to the mean of the group's models, over
+  // what these alone would say: its answer is a posterior, of which they are the prior. None if it
+  // is no surer than they are, or does not tell ratios of the group.
+  std::optional<LogRatios> RatioLikelihood(const LogRatios& relative, int group) const;
   Eigen::VectorXf ScaledMeans(const cv::Mat& features) const;
 
   std::string network_sha256_;
@@ -58,13 +62,15 @@ class Head {
   bool is_rgb_ = false;
   std::map<std::string, int> group_of_label_;
   struct Group {
-    bool tells_ratios = false;
+    float ratio_sigma_scale = 0.0F;  // of sigmas, which are too small; 0: tells no ratios
     float exponent = 0.0F;  // of likelihoods, which are less sure than they say; 0: tell nothing
   };
   std::vector<Group> groups_;
   float floor_ = 0.0F;            // probability that the head is wrong altogether
   float correlation_deg_ = 0.0F;  // see BoxAppearance
-  Eigen::MatrixXf narrow_weights_, hidden_weights_, output_weights_, ratio_mean_;
+  Eigen::MatrixXf narrow_weights_, hidden_weights_, output_weights_;
+  // Of the log ratios of the models of each group that it was trained on.
+  Eigen::MatrixXf ratio_mean_, ratio_sigma_;
   Eigen::MatrixXf probe_;  // features of the ProbeImage
   Eigen::VectorXf narrow_bias_, hidden_bias_, output_bias_, feature_mean_, feature_scale_;
 };

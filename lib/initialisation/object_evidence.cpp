@@ -26,6 +26,13 @@ double PeriodicAt(const Values& values, double angle) {
   return (1.0 - part) * values[low] + part * values[(low + 1) % count];
 }
 
+std::vector<double> PictureWeights(const std::vector<PictureView>& pictures) {
+  std::vector<Eigen::Vector3d> rays;
+  for (const PictureView& picture : pictures) rays.push_back(picture.ray_in_reference);
+  return DirectionWeights(rays,
+                          pictures.front().appearance->direction_correlation_deg * kRadPerDeg);
+}
+
 // Costs that do not depend on the boxes.
 LandmarkCosts PriorCosts(const ObjectEvidence& evidence) {
   LandmarkCosts costs;
@@ -85,16 +92,37 @@ std::vector<PictureView> PicturesInWorld(const Sequence& sequence,
   return pictures;
 }
 
+std::optional<ShapePrior> PriorWithPictures(const std::optional<ShapePrior>& prior,
+                                            const std::vector<PictureView>& pictures) {
+  std::vector<PictureView> with_ratios;
+  std::ranges::copy_if(pictures, std::back_inserter(with_ratios), [](const PictureView& picture) {
+    return picture.appearance->log_ratios.has_value();
+  });
+  if (!prior || !prior->Stands() || with_ratios.empty()) return prior;
+  const std::vector<double> weights = PictureWeights(with_ratios);
+  double views = 0.0;  // effective number
+  Eigen::Vector2d information = Eigen::Vector2d::Zero();
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (size_t i = 0; i < with_ratios.size(); ++i) {
+    const LogRatios& ratios = *with_ratios[i].appearance->log_ratios;
+    const Eigen::Vector2d of_view =
+        weights[i] * ratios.sigma.cast<double>().cwiseAbs2().cwiseInverse();
+    views += weights[i];
+    information += of_view;
+    sum += of_view.cwiseProduct(ratios.mean.cast<double>());
+  }
+  return TimesRatioLikelihood(*prior, sum.cwiseQuotient(information),
+                              views * information.cwiseInverse());
+}
+
 std::vector<double> PictureCosts(const std::vector<PictureView>& pictures, const Plane& plane) {
   if (pictures.empty()) return {};
-  std::vector<Eigen::Vector3d> rays;
-  for (const PictureView& picture : pictures) rays.push_back(picture.ray_in_reference);
-  const auto weights =
-      DirectionWeights(rays, pictures.front().appearance->direction_correlation_deg * kRadPerDeg);
+  const std::vector<double> weights = PictureWeights(pictures);
   const Eigen::Quaterniond reference_from_ground = UprightRotation(plane.normal, 0.0);
   std::vector<double> costs(kYawsOfPictures, 0.0);
   for (size_t i = 0; i < pictures.size(); ++i) {
-    const Eigen::Vector3d to_camera = -(reference_from_ground.conjugate() * rays[i]);
+    const Eigen::Vector3d to_camera =
+        -(reference_from_ground.conjugate() * pictures[i].ray_in_reference);
     const double bearing = std::atan2(to_camera.y(), to_camera.x());
     const AzimuthCosts& of_azimuth = pictures[i].appearance->azimuth_costs;
     for (int yaw = 0; yaw < kYawsOfPictures; ++yaw) {
@@ -127,8 +155,9 @@ double FrontProbability(const std::vector<double>& picture_costs, const Plane& p
 ObjectEvidence EvidenceInWorld(const Sequence& sequence, const std::vector<int>& detections,
                                const std::optional<ShapePrior>& prior,
                                const UprightOptions& options) {
+  const std::vector<PictureView> pictures = PicturesInWorld(sequence, detections);
   ObjectEvidence evidence;
-  evidence.prior = prior;
+  evidence.prior = PriorWithPictures(prior, pictures);
   evidence.axes_weight = options.axes_weight;
   evidence.huber_delta = options.huber_delta;
   for (const int index : detections) {
@@ -142,7 +171,7 @@ ObjectEvidence EvidenceInWorld(const Sequence& sequence, const std::vector<int>&
     evidence.views.push_back({EdgesOf(sequence, detection, prior, options),
                               sequence.FrameOf(detection).world_from_camera.Inverse()});
   }
-  evidence.picture_costs = PictureCosts(PicturesInWorld(sequence, detections), evidence.plane);
+  evidence.picture_costs = PictureCosts(pictures, evidence.plane);
   return evidence;
 }
 
@@ -152,14 +181,16 @@ ObjectEvidence EvidenceInCamera(const Sequence& sequence, const Detection& detec
   ObjectEvidence evidence;
   evidence.views = {{EdgesOf(sequence, detection, prior, options), Rigid3d()}};
   evidence.plane = detection.plane_in_camera;
-  evidence.prior = prior;
   evidence.scene_axis = SceneAxisInCamera(sequence, detection);
   evidence.axes_weight = options.axes_weight;
   evidence.huber_delta = std::numeric_limits<double>::infinity();
+  std::vector<PictureView> pictures;
   if (detection.appearance) {
-    const Eigen::Vector3d ray = sequence.CameraOf(detection).Ray(detection.box.Centre());
-    evidence.picture_costs = PictureCosts({{detection.appearance, ray}}, evidence.plane);
+    pictures.push_back(
+        {detection.appearance, sequence.CameraOf(detection).Ray(detection.box.Centre())});
   }
+  evidence.prior = PriorWithPictures(prior, pictures);
+  evidence.picture_costs = PictureCosts(pictures, evidence.plane);
   return evidence;
 }
 

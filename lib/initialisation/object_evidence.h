@@ -60,9 +60,7 @@ struct ObjectEvidence {
 
   bool MayLean() const { return prior && prior->attitude == Attitude::kFree && !height_is_free; }
   bool HasRatio() const { return prior && !ratio_is_free; }
-  bool Stands() const {
-    return !prior || (prior->mount == Mount::kStanding && prior->attitude == Attitude::kStanding);
-  }
+  bool Stands() const { return !prior || prior->Stands(); }
   bool HasSize() const { return size_is_known && prior && prior->height_m; }
   RestingFace RestsOn() const { return prior ? prior->rests_on : RestingFace::kBottom; }
   ShapeExponents Exponents() const {
@@ -82,6 +80,12 @@ struct PictureView {
 // the frames' estimated poses.
 std::vector<PictureView> PicturesInWorld(const Sequence& sequence,
                                          const std::vector<int>& detections);
+
+// The prior of an object's ratios times what its pictures tell of them: a mean of pictures with the
+// DirectionWeights of their rays, as sure as one of them, since pictures of one thing share their
+// errors. The same prior for an object that need not stand.
+std::optional<ShapePrior> PriorWithPictures(const std::optional<ShapePrior>& prior,
+                                            const std::vector<PictureView>& pictures);
 
 // Negative logarithm of the likelihood of each yaw of an object about a plane's normal. Pictures
 // are weighted by the DirectionWeights of their rays. Empty without pictures.

@@ -31,7 +31,7 @@ struct InitialiseOptions {
   UprightOptions upright;
   YawPriorOptions yaw_prior;
   PointOptions points;
-  bool picture_evidence = false;
+  PictureOptions pictures;
   CuboidOptions cuboids;
 
   void Describe(OptionVisitor& visit) {
@@ -53,8 +53,7 @@ struct InitialiseOptions {
                     [&] { upright.DescribeViewCorrelation(visit); });
     visit.OnlyWhere({{"method", {"yaw_sweep"}}}, [&] { yaw_prior.Describe(visit); });
     points.Describe(visit);
-    visit.OnlyWhere({{"method", {"yaw_sweep", "multi_view"}}},
-                    [&] { DescribePictureEvidence(visit, &picture_evidence); });
+    visit.OnlyWhere({{"method", {"yaw_sweep", "multi_view"}}}, [&] { pictures.Describe(visit); });
     visit.OnlyWhere({{"method", {"cuboid_proposals"}}}, [&] { cuboids.Describe(visit); });
   }
 };

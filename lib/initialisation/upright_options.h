@@ -6,11 +6,18 @@
 
 namespace soslam {
 
-// The flag that asks for Detection::appearance.
-inline void DescribePictureEvidence(OptionVisitor& visit, bool* picture_evidence) {
-  visit.Flag("picture_evidence", picture_evidence,
-             "use what soslam-appearance says of the yaw of objects from their pictures");
-}
+// Which parts of Detection::appearance are evidence.
+struct PictureOptions {
+  bool yaw = false;
+  bool ratios = false;
+
+  bool Any() const { return yaw || ratios; }
+  void Describe(OptionVisitor& visit) {
+    visit.Flag("picture_yaw", &yaw,
+               "use what soslam-appearance says of the yaw of objects from their pictures");
+    visit.Flag("picture_ratios", &ratios, "use what it says of their ratios");
+  }
+};
 
 // How boxes and the axes of the scene count as evidence for an upright body, and the grid on which
 // it is searched. Each stage describes those of them that it has, at their places in its own

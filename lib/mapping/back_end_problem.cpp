@@ -155,7 +155,9 @@ void BackEndProblem::AddLandmark(size_t object_index) {
     }
     ++summary_.residuals["support"];
   }
-  const auto& prior = input_.priors[object_index];
+  const std::vector<PictureView> pictures =
+      PicturesInWorld(input_.sequence, detections_by_object_[object_index]);
+  const auto prior = PriorWithPictures(input_.priors[object_index], pictures);
   if (options_.ratio) {
     ++(prior ? summary_.residuals["ratio"] : summary_.gated["object_without_ratio"]);
   }
@@ -173,8 +175,7 @@ void BackEndProblem::AddLandmark(size_t object_index) {
   if (prior) evidence.prior = OnFace(*prior, initial.rests_on);
   evidence.scene_axis = support.scene_axis_in_world;
   evidence.axes_weight = options_.upright.axes_weight;
-  evidence.picture_costs =
-      PictureCosts(PicturesInWorld(input_.sequence, detections_by_object_[object_index]), plane);
+  evidence.picture_costs = PictureCosts(pictures, plane);
   // No loss: a ratio far from the prior is as unlikely as its spread says.
   for (auto& term : PriorTerms(evidence)) {
     problem_.AddResidualBlock(new LandmarkTermResidual(std::move(term), initial.shape_exponents),

@@ -45,7 +45,7 @@ struct OptimiseOptions {
   EdgeOptions edges;
   TextureOptions texture;
   PointOptions points;
-  bool picture_evidence = false;
+  PictureOptions pictures;
   SymmetryOptions symmetry_options;
   bool covariances = true;
   bool check_inputs = true;
@@ -121,8 +121,7 @@ struct OptimiseOptions {
       visit.OnlyWhere({{"detection_model", {"tangency"}}}, [&] { texture.Describe(visit); });
     });
     points.Describe(visit);
-    visit.OnlyWhere({{"detection_model", {"tangency"}}},
-                    [&] { DescribePictureEvidence(visit, &picture_evidence); });
+    visit.OnlyWhere({{"detection_model", {"tangency"}}}, [&] { pictures.Describe(visit); });
     visit.Group("Solver");
     visit.Integer("max_iterations", &max_iterations, {1, 10000},
                   "Levenberg-Marquardt iterations, of all solves together");

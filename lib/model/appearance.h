@@ -10,7 +10,8 @@ namespace soslam {
 inline constexpr int kAzimuthBins = 36;
 using AzimuthCosts = Eigen::Matrix<float, kAzimuthBins, 1>;
 
-// Means and standard deviations of log(depth / height) and log(width / height).
+// Likelihood of log(depth / height) and log(width / height), which are independent of each other:
+// means and standard deviations.
 struct LogRatios {
   Eigen::Vector2f mean;
   Eigen::Vector2f sigma;

@@ -14,6 +14,12 @@ Eigen::Matrix2d RatioCovariance(const ShapePrior& prior) {
   return Eigen::Matrix2d{{variances.x(), across}, {across, variances.y()}};
 }
 
+void SetRatio(const Eigen::Vector2d& mean, const Eigen::Matrix2d& covariance, ShapePrior* prior) {
+  prior->ratio = mean.array().exp();
+  prior->log_sigma = covariance.diagonal().cwiseSqrt();
+  prior->log_correlation = covariance(0, 1) / prior->log_sigma.prod();
+}
+
 // Log-normal with the moments of a mixture; none if no prior has a height.
 std::optional<LogNormal> HeightOfMixture(const std::vector<WeightedPrior>& priors) {
   double weight = 0.0;
@@ -49,9 +55,7 @@ ShapePrior OnFace(const ShapePrior& standing, RestingFace face) {
   const Eigen::Matrix<double, 3, 2> logs = OwnFromObject(face).cwiseAbs().transpose() * by_ratios;
   const Eigen::Matrix2d turn = logs.topRows<2>().rowwise() - logs.row(2);
   const Eigen::Matrix2d covariance = turn * RatioCovariance(standing) * turn.transpose();
-  turned.ratio = (turn * standing.ratio.array().log().matrix()).array().exp();
-  turned.log_sigma = covariance.diagonal().cwiseSqrt();
-  turned.log_correlation = covariance(0, 1) / turned.log_sigma.prod();
+  SetRatio(turn * standing.ratio.array().log().matrix(), covariance, &turned);
   return turned;
 }
 
@@ -73,6 +77,19 @@ ShapePrior TurnedToSupport(const ShapePrior& prior) {
   return turned;
 }
 
+ShapePrior TimesRatioLikelihood(const ShapePrior& prior, const Eigen::Vector2d& mean,
+                                const Eigen::Vector2d& variance) {
+  const Eigen::Matrix2d of_prior = RatioCovariance(prior).inverse();
+  const Eigen::Vector2d of_likelihood = variance.cwiseInverse();
+  const Eigen::Matrix2d covariance =
+      (of_prior + Eigen::Matrix2d(of_likelihood.asDiagonal())).inverse();
+  ShapePrior product = prior;
+  SetRatio(covariance *
+               (of_prior * prior.ratio.array().log().matrix() + of_likelihood.cwiseProduct(mean)),
+           covariance, &product);
+  return product;
+}
+
 ShapePrior MomentsOfMixture(const std::vector<WeightedPrior>& priors) {
   ShapePrior mixture = priors.front().prior;
   if (priors.size() == 1) return mixture;
@@ -92,9 +109,7 @@ ShapePrior MomentsOfMixture(const std::vector<WeightedPrior>& priors) {
     const Eigen::Vector2d apart = prior.ratio.array().log().matrix() - mean;
     covariance += weight * (RatioCovariance(prior) + apart * apart.transpose());
   }
-  mixture.ratio = mean.array().exp();
-  mixture.log_sigma = covariance.diagonal().cwiseSqrt();
-  mixture.log_correlation = covariance(0, 1) / mixture.log_sigma.prod();
+  SetRatio(mean, covariance, &mixture);
   for (double* exponent :
        {&mixture.shape_exponents.horizontal, &mixture.shape_exponents.vertical}) {
     *exponent = std::clamp(*exponent, kCuboidExponent, kEllipsoidExponent);  // but for rounding

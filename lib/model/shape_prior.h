@@ -52,6 +52,9 @@ struct ShapePrior {
   Attitude attitude = Attitude::kStanding;
   RestingFace rests_on = RestingFace::kBottom;  // the face that a, b and c are for
   bool has_front = false;  // its x axis is a front that people agree on, as that of a chair
+
+  // True if the object can only stand on its bottom.
+  bool Stands() const { return mount == Mount::kStanding && attitude == Attitude::kStanding; }
 };
 
 // The prior in the object frame, whose z points away from the support plane, from a prior of
@@ -66,6 +69,11 @@ ShapePrior OnFace(const ShapePrior& standing, RestingFace face);
 
 // OnFace for each face that the prior's attitude allows; none for no prior.
 std::vector<std::optional<ShapePrior>> OnPossibleFaces(const std::optional<ShapePrior>& standing);
+
+// The prior times the likelihood of the logarithms of its two ratios, normal with these means and
+// variances, independent of each other.
+ShapePrior TimesRatioLikelihood(const ShapePrior& prior, const Eigen::Vector2d& mean,
+                                const Eigen::Vector2d& variance);
 
 // Log-normal prior with the moments of a mixture of priors of one mount; the height is that of the
 // priors that have one; attitude and has_front are those of the first. Weights have the sum 1.

@@ -144,7 +144,7 @@ struct ProfileOptions {
   EdgeOptions edges;
   TextureOptions texture;
   PointOptions points;
-  bool picture_evidence = false;
+  PictureOptions pictures;
 
   void Describe(OptionVisitor& visit) {
     visit.Group("Orientation profile");
@@ -156,7 +156,7 @@ struct ProfileOptions {
     visit.OnlyWhere({{"edge_alignment", {"true"}}}, [&] { edges.Describe(visit); });
     visit.OnlyWhere({{"texture_symmetry", {"true"}}}, [&] { texture.Describe(visit); });
     points.Describe(visit);
-    DescribePictureEvidence(visit, &picture_evidence);
+    pictures.Describe(visit);
   }
 };
 

@@ -109,7 +109,7 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
                      files);
   Sequence sequence = ReadSequence(files.at("sequence"));
   std::vector<std::filesystem::path> inputs = {files.at("sequence"), files.at("table")};
-  AddPictureEvidence(options.picture_evidence, files, &sequence, &inputs);
+  AddPictureEvidence(options.pictures, files, &sequence, &inputs);
   const SemanticTable table = ReadSemanticTable(files.at("table"));
   std::vector<Finding> of_labels;
   const bool has_ratios = options.method != InitialisationMethod::kSvd &&
@@ -207,7 +207,7 @@ void RunRefine(const OrientationOptions& options, const StageFiles& files, int t
   Sequence sequence = ReadSequence(files.at("sequence"));
   std::vector<std::filesystem::path> inputs = {files.at("sequence"), files.at("table"),
                                                files.at("initial"), files.at("edges")};
-  AddPictureEvidence(options.profile.picture_evidence, files, &sequence, &inputs);
+  AddPictureEvidence(options.profile.pictures, files, &sequence, &inputs);
   const auto priors = ObjectPriors(sequence, ReadSemanticTable(files.at("table")),
                                    options.turn.ratio_prior, options.profile.shape);
   LandmarkEstimates estimates = ReadLandmarks(files.at("initial"), sequence);

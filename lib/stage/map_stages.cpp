@@ -140,7 +140,7 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
   ArtefactInfo info = {.settings = OptionsToJson(options),
                        .inputs = {files.at("sequence"), files.at("landmarks"), files.at("table")},
                        .stage = "optimise"};
-  AddPictureEvidence(options.picture_evidence, files, &sequence, &info.inputs);
+  AddPictureEvidence(options.pictures, files, &sequence, &info.inputs);
   const SemanticTable table = ReadSemanticTable(files.at("table"));
   const LandmarkEstimates estimates = ReadLandmarks(files.at("landmarks"), sequence);
   BackEndInput input = ReadInput(sequence, options, files, threads);
@@ -202,7 +202,7 @@ int RunCheckMinima(const NoOptions& /*options*/, const StageFiles& files, int th
   }
   Sequence imported = ReadSequence(inputs.at("sequence"));
   std::vector<std::filesystem::path> read;
-  AddPictureEvidence(options.picture_evidence, inputs, &imported, &read);
+  AddPictureEvidence(options.pictures, inputs, &imported, &read);
   const MapEstimate map = ReadMap(path, imported);
   const Sequence sequence = AsInMap(imported, map);
   BackEndInput input = ReadInput(sequence, options, inputs, threads);

@@ -39,14 +39,21 @@ void CheckHasPoints(const PointOptions& options, const StageFiles& files) {
   }
 }
 
-void AddPictureEvidence(bool is_asked, const StageFiles& files, Sequence* sequence,
+void AddPictureEvidence(const PictureOptions& asked, const StageFiles& files, Sequence* sequence,
                         std::vector<std::filesystem::path>* inputs) {
-  if (!is_asked) return;
+  if (!asked.Any()) return;
   if (!files.contains("appearance")) {
-    throw SettingsError("picture_evidence = true needs --appearance FILE; found none");
+    throw SettingsError("picture_yaw or picture_ratios = true needs --appearance FILE; found none");
   }
   CheckWasMadeOf(files.at("appearance"), "appearance", files.at("sequence"));
   AddAppearance(files.at("appearance"), sequence);
+  for (Detection& detection : sequence->detections) {
+    if (!detection.appearance) continue;
+    BoxAppearance appearance = *detection.appearance;
+    if (!asked.yaw) appearance.azimuth_costs.setZero();
+    if (!asked.ratios) appearance.log_ratios.reset();
+    detection.appearance = std::make_shared<const BoxAppearance>(appearance);
+  }
   inputs->push_back(files.at("appearance"));
 }
 

@@ -31,10 +31,10 @@ void CheckHasPoints(const PointOptions& options, const StageFiles& files);
 // soslam-track has warned of.
 std::vector<MapPoint> ReadPointsOf(const Sequence& sequence, const StageFiles& files);
 
-// Gives the detections what file "appearance" says of them, if `is_asked`, and adds it to `inputs`.
+// Gives the detections the parts of file "appearance" that are asked for, and adds it to `inputs`.
 // Throws SettingsError without a file, InputError for one of another sequence, and as
 // AddAppearance.
-void AddPictureEvidence(bool is_asked, const StageFiles& files, Sequence* sequence,
+void AddPictureEvidence(const PictureOptions& asked, const StageFiles& files, Sequence* sequence,
                         std::vector<std::filesystem::path>* inputs);
 
 // A frame of a sequence, which must outlive this, and the path of its image in the dataset folder.

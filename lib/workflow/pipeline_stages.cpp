@@ -53,7 +53,8 @@ std::vector<PipelineStage> MakeStages() {
   const StageInput edges_of_symmetry = {
       "edges", {"edges"}, {{"symmetry", true}, {"edge_alignment", true}}};
   const StageInput points = {"points", {"track"}, {{"point_evidence", true}}};
-  const StageInput appearance = {"appearance", {"appearance"}, {{"picture_evidence", true}}};
+  const StageInput appearance = {
+      "appearance", {"appearance"}, {{"picture_yaw", true}, {"picture_ratios", true}}};
   const StageInput start = {"landmarks", {"refine", "initialise"}};
   const StageInput landmarks = {"landmarks", {"optimise", "refine", "initialise"}};
   const StageOutput sequence_file = {"output", "sequence.json"};

@@ -17,7 +17,8 @@ from torch import nn
 BINS = 36  # of azimuth, about 0, 10 ... 350 degrees
 CELLS = 49
 SYMMETRIC = 0.15  # share of the largest difference below which a turned model counts as the same
-RATIOS_WON = 0.85  # of the error of the group's mean: ratios of groups with more are not used
+RATIOS_WON = 0.75  # of the error of the group's mean: ratios of groups with more are not used
+FEW_MODELS = 5  # left out: a group with fewer is not calibrated, and tells nothing
 CORRELATION_DEG = 20.0  # as that of boxes; renders, whose clutter is another in each view, would say 10
 FLOOR = 0.05  # probability that a picture tells nothing: wrong ids, labels, boxes. A guess: renders, which have none, would say 0.01
 PLAIN = 10.0  # grey levels: differences that are smaller tell nothing
@@ -121,11 +122,16 @@ def errors_deg(p, azimuth, turns):
     return np.array(errors)
 
 
-def fused_costs(p, azimuth, elevation, exponent, floor, correlation_deg):
-    """Costs of the yaw's error (in bins) from several views."""
+def direction_weights(azimuth, elevation, correlation_deg):
+    """DirectionWeights of soslam."""
     rays = np.stack([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)], 1)
     angle = np.degrees(np.arccos(np.clip(rays @ rays.T, -1, 1)))
-    weight = 1 / np.exp(-0.5 * (angle / correlation_deg) ** 2).sum(1)
+    return 1 / np.exp(-0.5 * (angle / correlation_deg) ** 2).sum(1)
+
+
+def fused_costs(p, azimuth, elevation, exponent, floor, correlation_deg):
+    """Costs of the yaw's error (in bins) from several views."""
+    weight = direction_weights(azimuth, elevation, correlation_deg)
     cost = -exponent * np.log((1 - floor) * p + floor / BINS)
     total = np.zeros(BINS)
     for c, a, w in zip(cost, azimuth, weight):
@@ -151,63 +157,142 @@ def joined(paths):
     return data
 
 
-def calibrate(head, paths, groups, always, mean, scale):
-    """Exponent of each group, at most 1, under which looks at models left out are most probable. Each look counts with 1, 3
-    and all of its views. Groups that gain nothing have exponent 0."""
-    data = joined(paths)
-    left_out = np.array([is_left_out(name, always) for name in data["names"]])[data["model"]]
-    rows = np.flatnonzero(left_out)
-    group = data["group_of_model"][data["model"]]
-    data["one_hot"] = np.eye(len(groups), dtype=np.float32)[group]
-    data["direction"] = np.ascontiguousarray(data["facts"][:, 3:5])
-    p, _, _ = predict(head, data, rows, mean, scale)
-    probabilities = np.zeros((len(data["model"]), BINS))
-    probabilities[rows] = p
-    turns = [equivalent_turns(difference) for difference in data["turned"]]
-    sets = []  # (group, model, rows)
-    for look in np.unique(data["look"][rows]):
-        own = np.flatnonzero((data["look"] == look) & left_out)
-        own = own[data["model"][own] == data["model"][own[0]]]
-        for size in (1, 3, len(own)):
-            sets.append((group[own[0]], data["model"][own[0]], own[:size]))
+class LeftOut:
+    """Views of models that were not trained on, in sets: of each look one, three and all of its views. What the head says
+    of them chooses how far it is believed."""
 
-    def gain(which, exponent, floor, correlation=CORRELATION_DEG):
+    def __init__(self, head, paths, groups, always, mean, scale):
+        data = joined(paths)
+        left_out = np.array([is_left_out(name, always) for name in data["names"]])[data["model"]]
+        rows = np.flatnonzero(left_out)
+        group = data["group_of_model"][data["model"]]
+        data["one_hot"] = np.eye(len(groups), dtype=np.float32)[group]
+        data["direction"] = np.ascontiguousarray(data["facts"][:, 3:5])
+        self.facts = data["facts"]
+        self.turns = [equivalent_turns(difference) for difference in data["turned"]]
+        self.p, self.ratio, self.log_sigma = (np.zeros((len(group), n)) for n in (BINS, 2, 2))
+        self.p[rows], self.ratio[rows], self.log_sigma[rows] = predict(head, data, rows, mean, scale)
+        self.sets = []  # (group, model, rows)
+        for look in np.unique(data["look"][rows]):
+            own = np.flatnonzero((data["look"] == look) & left_out)
+            own = own[data["model"][own] == data["model"][own[0]]]
+            for size in (1, 3, len(own)):
+                self.sets.append((group[own[0]], data["model"][own[0]], own[:size]))
+        self.calibrated = [g for g in range(len(groups)) if len({s[1] for s in self.sets if s[0] == g}) >= FEW_MODELS]
+
+    def costs(self, rows, exponent, floor, correlation_deg):
+        return fused_costs(self.p[rows], self.facts[rows, 0], self.facts[rows, 3], exponent, floor, correlation_deg)
+
+    def yaw_gain(self, sets, exponent, floor=FLOOR, correlation_deg=CORRELATION_DEG):
+        """Logarithm of the probability of the right yaw, over chance (nats), of each set."""
         gains = []
-        for g, model, own in which:
-            cost = fused_costs(probabilities[own], data["facts"][own, 0], data["facts"][own, 3], exponent, floor, correlation)
+        for _, model, rows in sets:
+            cost = self.costs(rows, exponent, floor, correlation_deg)
             log_p = -cost - np.logaddexp.reduce(-cost)
-            right = np.logaddexp.reduce(log_p[[turn % BINS for turn in turns[model]]])
-            gains.append(right - np.log(len(turns[model]) / BINS))
+            right = np.logaddexp.reduce(log_p[[turn % BINS for turn in self.turns[model]]])
+            gains.append(right - np.log(len(self.turns[model]) / BINS))
         return np.array(gains)
 
-    chairs = [s for s in sets if groups[s[0]]["name"] in ("chair", "couch")]
+    def ratio_gain(self, sets, ratio_mean, ratio_sigma, scale, shared=1.0):
+        """Logarithm of the density of the right log ratios (nats), over that of the group's models, the error, and that of
+        the group's mean, of each set. `scale` of the head's standard deviations; `shared` part of the variance of a view's
+        error that all views of a body have in common."""
+        gains, errors, priors = [], [], []
+        for group, _, rows in sets:
+            weight = direction_weights(self.facts[rows, 0], self.facts[rows, 3], CORRELATION_DEG)[:, None]
+            mean, information = likelihood_of_ratios(self.ratio[rows], self.log_sigma[rows] + np.log(scale), ratio_sigma[group])
+            views, total = (weight * (information > 0)).sum(0), (weight * information).sum(0)
+            fused = (weight * information * mean).sum(0) / np.maximum(total, 1e-9)
+            precision = total / (1 + shared * np.maximum(views - 1, 0))
+            of_prior = 1 / ratio_sigma[group] ** 2
+            posterior = precision * fused / (precision + of_prior)
+            truth = self.facts[rows[0], 1:3] - ratio_mean[group]
+            gains.append(0.5 * (np.log((precision + of_prior) / of_prior) - (precision + of_prior) * (truth - posterior) ** 2
+                                + of_prior * truth ** 2).sum())
+            errors.append(np.abs(truth - posterior))
+            priors.append(np.abs(truth))
+        return np.array(gains), np.array(errors), np.array(priors)
+
+
+def likelihood_of_ratios(ratio, log_sigma, prior_sigma):
+    """Mean and information (one over the variance) of the likelihood: what the head says, which starts from the group's
+    models, over what these alone would say. Both relative to the group's mean. No information where it is no surer."""
+    of_head = np.exp(-2 * log_sigma)
+    information = np.maximum(of_head - 1 / prior_sigma ** 2, 0)
+    information *= (information > 0).all(1, keepdims=True)
+    return of_head * ratio / np.maximum(information, 1e-9), information
+
+
+def over_models(sets, gains):
+    """Mean and standard error over models: they are what varies."""
+    models = np.array([model for _, model, _ in sets])
+    means = np.array([gains[models == m].mean() for m in np.unique(models)])
+    return means.mean(), means.std(ddof=1) / np.sqrt(len(means)) if len(means) > 1 else np.inf, len(means)
+
+
+def calibrate_yaw(left_out, groups):
+    """Exponent of each group, at most 1, under which looks at models left out are most probable. Groups that gain less than
+    twice the standard error have exponent 0."""
+    chairs = [s for s in left_out.sets if groups[s[0]]["name"] in ("chair", "couch")]
     for correlation in (10.0, 20.0, 40.0):
-        best = max((gain(chairs, e, FLOOR, correlation).mean(), e) for e in (0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0))
+        best = max((left_out.yaw_gain(chairs, e, FLOOR, correlation).mean(), e) for e in (0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0))
         print(f"chairs and couches, directions {correlation:.0f} deg: gain {best[0]:.2f} nats over chance with exponent {best[1]}")
     exponents = []
+    reliability = []  # (probability said of the most probable side, whether it is right)
     for g, name in enumerate(groups):
-        own = [s for s in sets if s[0] == g]
-        if len(own) < 30:
+        own = [s for s in left_out.sets if s[0] == g]
+        if g not in left_out.calibrated:
             exponents.append(0.0)
             print(f"{name['name']:10} too few models left out: not used")
             continue
-        choices = [(gain(own, e, FLOOR), e) for e in (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.85, 1.0)]
+        choices = [(left_out.yaw_gain(own, e), e) for e in (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.85, 1.0)]
         gains, exponent = max(choices, key=lambda choice: choice[0].mean())
-        # Models are what varies: the standard error is over their means.
-        models = np.array([s[1] for s in own])
-        of_models = np.array([gains[models == m].mean() for m in np.unique(models)])
-        error = of_models.std(ddof=1) / np.sqrt(len(of_models)) if len(of_models) > 1 else np.inf
-        used = of_models.mean() > 2 * error
+        gain, error, models = over_models(own, gains)
+        used = gain > 2 * error
         exponents.append(float(exponent) if used else 0.0)
-        full = [s for s in own if len(s[2]) >= 5]
         wrong = []
-        for _, model, members in full:
-            cost = fused_costs(probabilities[members], data["facts"][members, 0], data["facts"][members, 3], exponent, FLOOR, CORRELATION_DEG)
-            wrong.append(min(abs((cost.argmin() - t + BINS / 2) % BINS - BINS / 2) for t in turns[model]) * 10)
+        for _, model, rows in own:
+            cost = left_out.costs(rows, exponent, FLOOR, CORRELATION_DEG)
+            off = min(abs((cost.argmin() - t + BINS / 2) % BINS - BINS / 2) for t in left_out.turns[model]) * 10
+            if len(rows) >= 5:
+                wrong.append(off)
+            if used and len(left_out.turns[model]) == 1:
+                said = np.exp(-cost - np.logaddexp.reduce(-cost))
+                reliability.append((said[np.arange(cost.argmin() - 3, cost.argmin() + 4) % BINS].sum(), off <= 30))
         wrong = np.array(wrong)
-        print(f"{name['name']:10} {len(of_models):3} models {len(own):4} sets: gain {of_models.mean():.2f} +- {error:.2f}, exponent {exponent}{'' if used else ', not used'}; "
+        print(f"{name['name']:10} {models:3} models {len(own):4} sets: gain {gain:.2f} +- {error:.2f}, exponent {exponent}{'' if used else ', not used'}; "
               f"all views of a look: median error {np.median(wrong):.0f} deg, below 30: {(wrong <= 30).mean():.2f}")
+    said, right = np.array(reliability).T
+    print("things with one front, within 30 deg of the most probable yaw: said, found, sets")
+    edges = (0.0, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99, 1.01)
+    for low, high in zip(edges, edges[1:]):
+        own = (said >= low) & (said < high)
+        if own.any():
+            print(f"  {said[own].mean():.3f} {right[own].mean():.3f} {own.sum():5}")
     return exponents
+
+
+def calibrate_ratios(left_out, groups, ratio_mean, ratio_sigma):
+    """Scale, at least 1, of the head's standard deviations for each group under which the ratios of models left out are most
+    probable, 0 where ratios do not win. Views of one body are taken to share their errors: renders would not say so."""
+    chosen = np.zeros(len(groups))
+    of_shares = {0.0: 0.0, 0.5: 0.0, 1.0: 0.0}
+    for g in left_out.calibrated:
+        own = [s for s in left_out.sets if s[0] == g]
+        gain_of = lambda scale, shared=1.0: left_out.ratio_gain(own, ratio_mean, ratio_sigma, scale, shared)[0].mean()
+        scale = max((1.0, 1.2, 1.5, 2.0, 3.0), key=gain_of)
+        for shared in of_shares:
+            of_shares[shared] += gain_of(scale, shared)
+        gains, errors, priors = left_out.ratio_gain(own, ratio_mean, ratio_sigma, scale)
+        gain, error, _ = over_models(own, gains)
+        share = errors.mean(0) / priors.mean(0)
+        used = gain > 2 * error and share.mean() < RATIOS_WON
+        chosen[g] = scale if used else 0.0
+        print(f"{groups[g]['name']:10} log ratios: gain {gain:.2f} +- {error:.2f}, scale {scale}; error over that of the group's mean {share[0]:.2f} {share[1]:.2f}"
+              f"{'' if used else ', not used'}")
+    print("sum of gains where a part of the variance is shared by all views of a body: "
+          + ", ".join(f"{share} {gain:.2f}" for share, gain in of_shares.items()))
+    return chosen
 
 
 def main():
@@ -247,6 +332,7 @@ def main():
     known = np.array([not is_left_out(name, always) for name in names])
     ratio_mean = np.array([np.nanmean(of_models[(group_of_model == g) & known], 0) for g in range(len(groups))])
     relative = torch.from_numpy((log_ratios - ratio_mean[group]).astype(np.float32))
+    ratio_sigma = np.array([relative[train][group[train] == g].numpy().std(0) for g in range(len(groups))])
 
     head = Head(data["features"].shape[2], len(groups))
     optimiser = torch.optim.AdamW(head.parameters(), lr=2e-3, weight_decay=0.02)
@@ -278,27 +364,26 @@ def main():
     p, ratio, log_sigma = predict(head, data, test, mean, scale)
     error = errors_deg(p, azimuth[test], [turns[i] for i in test])
     print("models left out, single crops: mean, median error (deg), share below 30; log ratios: error, that of the group's mean")
-    ratios_won = np.zeros(len(groups))
     for g, name in enumerate(groups):
         own = group[test] == g
         if not own.any():
             continue
         found = np.abs(ratio[own] - relative[test][own].numpy()).mean(0)
         prior = np.abs(relative[test][own].numpy()).mean(0)
-        ratios_won[g] = (found < RATIOS_WON * prior).all()
         print(f"{name['name']:10} {len(set(data['model'][test][own])):3} models {own.sum():5} crops  {error[own].mean():5.1f} {np.median(error[own]):5.1f} "
               f"{(error[own] < 30).mean():.2f}   {found[0]:.3f} {found[1]:.3f}  {prior[0]:.3f} {prior[1]:.3f}")
     pt, _, _ = predict(head, data, train[:2000], mean, scale)
     et = errors_deg(pt, azimuth[train[:2000]], [turns[i] for i in train[:2000]])
     print(f"trained models: {et.mean():.1f} {np.median(et):.1f} {(et < 30).mean():.2f}")
 
-    exponents = calibrate(head, arguments.calibration, groups, always, mean, scale)
-    tells_ratios = [bool(r) for r in ratios_won]
+    looks = LeftOut(head, arguments.calibration, groups, always, mean, scale)
+    exponents = calibrate_yaw(looks, groups)
+    ratio_scale = calibrate_ratios(looks, groups, ratio_mean, ratio_sigma)
     weights = {name: value.detach().numpy() for name, value in head.named_parameters()}
     # The scaling of the features is part of the first layer.
     arrays = {"narrow/weights": weights["narrow.weight"] / scale,
               "narrow/bias": weights["narrow.bias"] - weights["narrow.weight"] @ (mean / scale),
-              "ratio_mean": ratio_mean, "probe": data["probe"],
+              "ratio_mean": ratio_mean, "ratio_sigma": ratio_sigma, "probe": data["probe"],
               "feature_mean": mean, "feature_scale": spread}
     for name in ("hidden", "output"):
         arrays[f"{name}/weights"], arrays[f"{name}/bias"] = weights[f"{name}.weight"], weights[f"{name}.bias"]
@@ -308,7 +393,7 @@ def main():
         for key in ("side_px", "rgb_0_1"):
             file.attrs[key] = float(data["attributes"][key])
         file.attrs["floor"], file.attrs["direction_correlation_deg"] = FLOOR, CORRELATION_DEG
-        of_groups = [{"name": g["name"], "labels": g["labels"], "exponent": e, "tells_ratios": r} for g, e, r in zip(groups, exponents, tells_ratios)]
+        of_groups = [{"name": g["name"], "labels": g["labels"], "exponent": e, "ratio_sigma_scale": float(r)} for g, e, r in zip(groups, exponents, ratio_scale)]
         header = {"kind": "head", "schema_version": [1, 0], "software": "train_head.py", "settings": {}, "inputs": []}
         for key, text in (("artefact", json.dumps(header)), ("groups", json.dumps(of_groups)),
                           ("network_sha256", text_of(data["attributes"]["network_sha256"])), ("layers", text_of(data["attributes"]["layers"]))):

@@ -93,12 +93,16 @@ TEST_F(HeadTest, TellsWhatItsWeightsSayOfAnImageAndItsMirrorImage) {
     EXPECT_EQ(told.direction_correlation_deg, 20.0F);
     ASSERT_EQ(told.log_ratios.has_value(), group == 0);
     if (group != 0) continue;
+    // What is told times the prior of the group's models is what the weights say.
     for (int i = 0; i < 2; ++i) {
-      EXPECT_NEAR(told.log_ratios->mean[i],
-                  file.matrices.at("/ratio_mean").at<float>(group, i) +
-                      0.5 * (outputs[kAzimuthBins + i] + of_mirror[kAzimuthBins + i]),
-                  1e-4);
-      EXPECT_NEAR(std::log(told.log_ratios->sigma[i]),
+      const double prior_mean = file.matrices.at("/ratio_mean").at<float>(group, i);
+      const double prior = 1.0 / 100.0;
+      const double likelihood = 1.0 / std::pow(told.log_ratios->sigma[i], 2);
+      const double mean =
+          (prior * prior_mean + likelihood * told.log_ratios->mean[i]) / (prior + likelihood);
+      EXPECT_NEAR(
+          mean, prior_mean + 0.5 * (outputs[kAzimuthBins + i] + of_mirror[kAzimuthBins + i]), 1e-4);
+      EXPECT_NEAR(-0.5 * std::log(prior + likelihood),
                   0.5 * (outputs[kAzimuthBins + 2 + i] + of_mirror[kAzimuthBins + 2 + i]), 1e-4);
     }
   }
@@ -133,6 +137,17 @@ TEST_F(HeadTest, ExponentAndFloorLimitWhatItIsSureOf) {
   }
 }
 
+TEST_F(HeadTest, TellsNoRatiosWhereItIsNoSurerThanItsPrior) {
+  HeadFile file(kChannels);
+  file.matrices.at("/output/weights") = cv::Mat::zeros(kAzimuthBins + 4, 3, CV_32F);
+  file.vectors.at("/output/bias").assign(kAzimuthBins + 4, 0.0F);
+  const cv::Mat features = HeadFile::RandomMatrix(kChannels, kCellCount);
+  for (const double sigma : {1.01, 0.99}) {
+    file.matrices.at("/ratio_sigma").setTo(sigma);
+    EXPECT_EQ(Read(file).Appearance(features, features, {}, 0).log_ratios.has_value(), sigma > 1.0);
+  }
+}
+
 TEST_F(HeadTest, DescriptorAndDistanceAreOfScaledMeans) {
   HeadFile file(kChannels);
   file.vectors["/feature_mean"] = {1.0F, 2.0F, 3.0F};
@@ -161,7 +176,7 @@ TEST_F(HeadTest, RefusesAMalformedFileNamingFieldAndReason) {
       {number("side_px", 1e300), {"side_px", "1e+300"}},
       {number("side_px", kNaN), {"side_px", "nan"}},
       {number("rgb_0_1", 2), {"rgb_0_1"}},
-      {groups(R"([{"name": "a", "labels": ["x"], "exponent": -1, "tells_ratios": true}])"),
+      {groups(R"([{"name": "a", "labels": ["x"], "exponent": -1, "ratio_sigma_scale": 1.0}])"),
        {"groups", "exponent", "-1"}},
       {number("floor", 0), {"floor"}},
       {number("floor", 1), {"floor"}},
@@ -171,13 +186,14 @@ TEST_F(HeadTest, RefusesAMalformedFileNamingFieldAndReason) {
       {groups("[{"), {"groups"}},
       {groups("{}"), {"groups"}},
       {groups("7"), {"groups"}},
-      {groups(R"([{"name": "a", "labels": ["x"], "exponent": 1}])"), {"groups", "tells_ratios"}},
-      {groups(R"([{"name": "a", "labels": "x", "exponent": 1, "tells_ratios": true}])"),
+      {groups(R"([{"name": "a", "labels": ["x"], "exponent": 1}])"),
+       {"groups", "ratio_sigma_scale"}},
+      {groups(R"([{"name": "a", "labels": "x", "exponent": 1, "ratio_sigma_scale": 1.0}])"),
        {"groups", "labels"}},
-      {groups(R"([{"name": "a", "labels": ["x"], "exponent": 1, "tells_ratios": true},
-                  {"name": "b", "labels": ["x"], "exponent": 1, "tells_ratios": true}])"),
+      {groups(R"([{"name": "a", "labels": ["x"], "exponent": 1, "ratio_sigma_scale": 1.0},
+                  {"name": "b", "labels": ["x"], "exponent": 1, "ratio_sigma_scale": 1.0}])"),
        {"groups", "'x'", "a and of b"}},
-      {groups(R"([{"name": "a", "labels": ["x"], "exponent": 1, "tells_ratios": true}])"),
+      {groups(R"([{"name": "a", "labels": ["x"], "exponent": 1, "ratio_sigma_scale": 1.0}])"),
        {"/hidden/weights", "101"}},
       {[](HeadFile* file) { file->matrices.erase("/narrow/weights"); }, {"/narrow/weights"}},
       {[](HeadFile* file) { file->matrices["/narrow/weights"] = cv::Mat(0, 0, CV_32F); },

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <numeric>
 
@@ -100,6 +102,53 @@ TEST(PictureCosts, PicturesOfOneDirectionCountAsOne) {
   const PictureView far{shared, Eigen::Vector3d(-1.0, 0.2, -0.3)};
   const auto both = PictureCosts({view, far}, Plane()), other = PictureCosts({far}, Plane());
   for (size_t i = 0; i < one.size(); ++i) EXPECT_NEAR(both[i], one[i] + other[i], 1e-3);
+}
+
+// A picture of a thing that is as deep as this, relative to its height.
+PictureView PictureOfDepth(double ratio, double sigma, const Eigen::Vector3d& ray) {
+  BoxAppearance picture = PictureFrom(0.4);
+  picture.direction_correlation_deg = 20.0F;
+  picture.log_ratios = LogRatios{Eigen::Vector2d(std::log(ratio), 0.1).cast<float>(),
+                                 Eigen::Vector2d(sigma, 0.5).cast<float>()};
+  return {std::make_shared<const BoxAppearance>(picture), ray};
+}
+
+const ShapePrior kWidePrior{.ratio = {1.0, 1.0}, .log_sigma = {100.0, 100.0}};
+
+TEST(PriorWithPictures, IsTheMeanOfPicturesAndAsSureAsOne) {
+  const std::array directions = {Eigen::Vector3d(1.0, 0.0, 0.0), Eigen::Vector3d(-1.0, 0.0, 0.0),
+                                 Eigen::Vector3d(0.0, 1.0, 0.0), Eigen::Vector3d(0.0, -1.0, 0.0)};
+  std::vector<PictureView> pictures;
+  double product = 1.0;
+  for (const Eigen::Vector3d& direction : directions) {
+    const double ratio = RandomUniform(0.5, 2.0);
+    product *= ratio;
+    pictures.push_back(PictureOfDepth(ratio, 0.2, direction));
+  }
+  const ShapePrior told = *PriorWithPictures(kWidePrior, pictures);
+  EXPECT_NEAR(told.ratio.x(), std::pow(product, 0.25), 1e-4);
+  EXPECT_NEAR(told.log_sigma.x(), 0.2, 1e-4);
+}
+
+TEST(PriorWithPictures, PicturesOfOneDirectionCountAsOne) {
+  const PictureView picture = PictureOfDepth(1.7, 0.2, {1.0, 0.2, -0.3});
+  const ShapePrior one = *PriorWithPictures(kWidePrior, {picture});
+  const ShapePrior many = *PriorWithPictures(kWidePrior, {picture, picture, picture});
+  EXPECT_NEAR(one.ratio.x(), 1.7, 1e-4);
+  EXPECT_NEAR(one.log_sigma.x(), 0.2, 1e-4);
+  EXPECT_LT((many.ratio - one.ratio).norm(), 1e-6);
+  EXPECT_LT((many.log_sigma - one.log_sigma).norm(), 1e-6);
+}
+
+TEST(PriorWithPictures, SaysNothingOfWhatNeedNotStandAndWithoutRatios) {
+  const PictureView picture = PictureOfDepth(1.7, 0.2, {1.0, 0.2, -0.3});
+  const PictureView without{std::make_shared<const BoxAppearance>(PictureFrom(0.4)),
+                            picture.ray_in_reference};
+  ShapePrior lying = kWidePrior;
+  lying.attitude = Attitude::kAnyFace;
+  EXPECT_EQ(PriorWithPictures(lying, {picture})->ratio, lying.ratio);
+  EXPECT_EQ(PriorWithPictures(kWidePrior, {without})->ratio, kWidePrior.ratio);
+  EXPECT_FALSE(PriorWithPictures(std::nullopt, {picture}));
 }
 
 TEST(HalfTurnCosts, AddTheLikelihoodsOfOppositeYaws) {

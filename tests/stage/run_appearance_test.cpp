@@ -59,9 +59,11 @@ class RunAppearanceTest : public FolderTest {
     head_.texts["layers"] = "AveragePool 0";
     head_.texts["groups"] =
         nlohmann::json::array(
-            {{{"name", "chair"}, {"labels", labels}, {"exponent", 1.0}, {"tells_ratios", true}},
-             {{"name", "bed"}, {"labels", {"bed"}}, {"exponent", 1.0}, {"tells_ratios", false}}})
+            {{{"name", "chair"}, {"labels", labels}, {"exponent", 1.0}, {"ratio_sigma_scale", 1.0}},
+             {{"name", "bed"}, {"labels", {"bed"}}, {"exponent", 1.0}, {"ratio_sigma_scale", 0.0}}})
             .dump();
+    // The spreads of the ratios do not depend on the image.
+    head_.matrices["/output/weights"].rowRange(kAzimuthBins + 2, kAzimuthBins + 4) = 0.0;
     head_.Write(folder_ / "head.h5");
   }
   void Run(int threads = 2) {
@@ -115,8 +117,8 @@ TEST_F(RunAppearanceTest, GivesTheSameBytesForAnyNumberOfThreads) {
 
 TEST_F(RunAppearanceTest, MayHaveNothingToSay) {
   head_.texts["groups"] =
-      R"([{"name": "a", "labels": ["bed"], "exponent": 1, "tells_ratios": false},
-                              {"name": "b", "labels": [], "exponent": 1, "tells_ratios": false}])";
+      R"([{"name": "a", "labels": ["bed"], "exponent": 1, "ratio_sigma_scale": 0},
+                              {"name": "b", "labels": [], "exponent": 1, "ratio_sigma_scale": 0}])";
   head_.Write(folder_ / "head.h5");
   Run();
   EXPECT_TRUE(ReadAppearance(files_.at("output")).empty());
@@ -153,7 +155,7 @@ TEST_F(RunAppearanceTest, LaterStagesUseItAndNeedIt) {
   Run();
   InitialiseOptions initialise;
   initialise.method = InitialisationMethod::kMultiView;
-  initialise.picture_evidence = true;
+  initialise.pictures = {.yaw = true, .ratios = true};
   StageFiles files = FilesOf("initial.json");
   PrintedBy([&] { RunInitialise(initialise, files, 2); });
   const LandmarkEstimates initial = ReadLandmarks(files.at("output"), sequence_);
@@ -162,7 +164,7 @@ TEST_F(RunAppearanceTest, LaterStagesUseItAndNeedIt) {
 
   OptimiseOptions optimise;
   optimise.detection_model = DetectionModel::kTangency;
-  optimise.picture_evidence = true;
+  optimise.pictures = {.yaw = true, .ratios = true};
   optimise.covariances = false;
   StageFiles of_map = FilesOf("map.json");
   of_map["landmarks"] = files.at("output");
@@ -174,7 +176,7 @@ TEST_F(RunAppearanceTest, LaterStagesUseItAndNeedIt) {
   }
 
   for (StageFiles* either : {&files, &of_map}) either->erase("appearance");
-  const std::vector<std::string> words = {"picture_evidence", "--appearance"};
+  const std::vector<std::string> words = {"picture_ratios", "--appearance"};
   ExpectError<SettingsError>([&] { RunInitialise(initialise, files, 2); }, words);
   ExpectError<SettingsError>([&] { RunOptimise(optimise, of_map, 2); }, words);
 }
@@ -185,7 +187,7 @@ TEST_F(RunAppearanceTest, PicturesOfAnotherSequenceAreRefused) {
   WriteSequence(files_.at("sequence"), sequence_, {});
   InitialiseOptions options;
   options.method = InitialisationMethod::kMultiView;
-  options.picture_evidence = true;
+  options.pictures = {.yaw = true, .ratios = true};
   ExpectError<InputError>([&] { RunInitialise(options, FilesOf("initial.json"), 2); },
                           {"appearance.h5", "was not made of", "sequence.json"});
 }

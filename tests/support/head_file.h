@@ -22,6 +22,7 @@ struct HeadFile {
     matrices["/output/weights"] = RandomMatrix(kAzimuthBins + 4, hidden);
     matrices["/probe"] = RandomMatrix(channels, 49);
     matrices["/ratio_mean"] = RandomMatrix(group_count, 2);
+    matrices["/ratio_sigma"] = cv::Mat(group_count, 2, CV_32F, cv::Scalar(10.0));
     vectors["/narrow/bias"] = RandomMatrix(1, narrow);
     vectors["/hidden/bias"] = RandomMatrix(1, hidden);
     vectors["/output/bias"] = RandomMatrix(1, kAzimuthBins + 4);
@@ -50,8 +51,8 @@ struct HeadFile {
       {"network_sha256", "of the network"},
       {"layers", "Mul 0, last"},
       {"groups",
-       R"([{"name": "chair", "labels": ["chair", "stool"], "exponent": 0.5, "tells_ratios": true},
-           {"name": "bed", "labels": ["bed"], "exponent": 0.5, "tells_ratios": false}])"}};
+       R"([{"name": "chair", "labels": ["chair", "stool"], "exponent": 0.5, "ratio_sigma_scale": 1.0},
+           {"name": "bed", "labels": ["bed"], "exponent": 0.5, "ratio_sigma_scale": 0.0}])"}};
   std::map<std::string, double> numbers = {
       {"side_px", 64.0}, {"rgb_0_1", 0.0}, {"floor", 0.05}, {"direction_correlation_deg", 20.0}};
   std::map<std::string, cv::Mat> matrices;

@@ -119,7 +119,7 @@ TEST_F(PlanTest, StagesReadTheLatestOfWhatTheyNeed) {
             "initialise": {"method": "cuboid_proposals"}})");
   Write("pipelines/variants/Pictures.json",
         R"({"stages": ["import", "appearance", "initialise", "optimise", "evaluate"],
-            "optimise": {"detection_model": "tangency", "picture_evidence": true}})");
+            "optimise": {"detection_model": "tangency", "picture_yaw": true}})");
   ExpectError<InputError>([&] { Make({"Pictures"}); },
                           {"heads/yolox_nano.h5", "does not exist", "'Pictures'"});
   Write("pipelines/heads/yolox_nano.h5", "a head");
@@ -459,7 +459,7 @@ TEST_F(RunPlanTest, WritesNothingThatDidNotChange) {
 TEST_F(RunPlanTest, AllVariantsOfADatasetWithoutImagesAreThoseThatLookAtNone) {
   Write("pipelines/variants/Pictures.json",
         R"({"stages": ["import", "appearance", "initialise", "evaluate"],
-            "initialise": {"method": "multi_view", "picture_evidence": true}})");
+            "initialise": {"method": "multi_view", "picture_yaw": true}})");
   Write("pipelines/heads/yolox_nano.h5", "a head");
   Run("", "");
   EXPECT_THAT(Read("results/room/plan.mk"), AllOf(HasSubstr("/Full/"), HasSubstr("/Pictures/"),
