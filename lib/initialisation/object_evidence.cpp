@@ -26,6 +26,14 @@ double PeriodicAt(const Values& values, double angle) {
   return (1.0 - part) * values[low] + part * values[(low + 1) % count];
 }
 
+std::vector<PictureView> PicturesThat(bool (BoxAppearance::*tell)() const,
+                                      const std::vector<PictureView>& pictures) {
+  std::vector<PictureView> telling;
+  std::ranges::copy_if(pictures, std::back_inserter(telling),
+                       [&](const PictureView& picture) { return (*picture.appearance.*tell)(); });
+  return telling;
+}
+
 std::vector<double> PictureWeights(const std::vector<PictureView>& pictures) {
   std::vector<Eigen::Vector3d> rays;
   for (const PictureView& picture : pictures) rays.push_back(picture.ray_in_reference);
@@ -94,10 +102,7 @@ std::vector<PictureView> PicturesInWorld(const Sequence& sequence,
 
 std::optional<ShapePrior> PriorWithPictures(const std::optional<ShapePrior>& prior,
                                             const std::vector<PictureView>& pictures) {
-  std::vector<PictureView> with_ratios;
-  std::ranges::copy_if(pictures, std::back_inserter(with_ratios), [](const PictureView& picture) {
-    return picture.appearance->log_ratios.has_value();
-  });
+  const auto with_ratios = PicturesThat(&BoxAppearance::TellsRatios, pictures);
   if (!prior || !prior->Stands() || with_ratios.empty()) return prior;
   const std::vector<double> weights = PictureWeights(with_ratios);
   double views = 0.0;  // effective number
@@ -115,7 +120,8 @@ std::optional<ShapePrior> PriorWithPictures(const std::optional<ShapePrior>& pri
                               views * information.cwiseInverse());
 }
 
-std::vector<double> PictureCosts(const std::vector<PictureView>& pictures, const Plane& plane) {
+std::vector<double> PictureCosts(const std::vector<PictureView>& all, const Plane& plane) {
+  const auto pictures = PicturesThat(&BoxAppearance::TellsAzimuth, all);
   if (pictures.empty()) return {};
   const std::vector<double> weights = PictureWeights(pictures);
   const Eigen::Quaterniond reference_from_ground = UprightRotation(plane.normal, 0.0);

@@ -88,7 +88,8 @@ std::optional<ShapePrior> PriorWithPictures(const std::optional<ShapePrior>& pri
                                             const std::vector<PictureView>& pictures);
 
 // Negative logarithm of the likelihood of each yaw of an object about a plane's normal. Pictures
-// are weighted by the DirectionWeights of their rays. Empty without pictures.
+// are weighted by the DirectionWeights of their rays. Empty if none
+// tells an azimuth.
 std::vector<double> PictureCosts(const std::vector<PictureView>& pictures, const Plane& plane);
 
 // Cost of either of two opposite yaws, on half the circle; the lowest is zero.

@@ -21,11 +21,14 @@ struct LogRatios {
 struct BoxAppearance {
   // Negative logarithms of the likelihoods of the azimuths from which the object is seen: the angle
   // about its z axis from its x axis to the direction towards the camera, against the ray through
-  // the box's centre. Lowest is zero.
+  // the box's centre. The lowest is zero, as all are where none is told.
   AzimuthCosts azimuth_costs;
   std::optional<LogRatios> log_ratios;
   // Errors of pictures from directions that are closer than about this angle are the same.
   float direction_correlation_deg = 0.0F;
+
+  bool TellsAzimuth() const { return azimuth_costs.maxCoeff() > 0.0F; }
+  bool TellsRatios() const { return log_ratios.has_value(); }
 };
 
 }  // namespace soslam

@@ -3,10 +3,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <map>
 #include <optional>
 #include <set>
+#include <string_view>
+#include <tuple>
 
 #include "base/table.h"
 #include "base/text.h"
@@ -346,7 +349,11 @@ std::vector<size_t> DetailedVariants(const DatasetPage& page) {
   std::ranges::reverse(names);
   std::ranges::stable_sort(detailed, {}, [&](size_t index) {
     const PageVariant& variant = page.variants[index];
-    return std::pair(variant.kind, std::ranges::find(names, variant.name) - names.begin());
+    // A variant whose name goes on from that of a known one has more than it.
+    const auto known = std::ranges::find_if(
+        names, [&](const std::string_view name) { return variant.name.starts_with(name); });
+    return std::tuple(variant.kind, known - names.begin(),
+                      -static_cast<std::ptrdiff_t>(variant.name.size()));
   });
   return detailed;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <numbers>
 #include <opencv2/core/utility.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -104,6 +105,17 @@ std::vector<float> DifferenceFromTurned(const FurnitureModel& model) {
   return differences;
 }
 
+void CheckRange(const cv::Mat& features, double quantum, const std::string& layers) {
+  double least, most;
+  cv::minMaxLoc(features, &least, &most);
+  const double limit = quantum * std::numeric_limits<short>::max();
+  if (std::max(-least, most) <= limit) return;
+  throw InputError(fmt::format(
+      "layers {}: a feature is {:.4g}; expected at most {:.4g}: other layers, or ones after an "
+      "activation",
+      layers, std::max(-least, most), limit));
+}
+
 }  // namespace
 
 void RunTrainingCrops(const TrainingCropsOptions& options, const StageFiles& files, int threads) {
@@ -154,6 +166,7 @@ void RunTrainingCrops(const TrainingCropsOptions& options, const StageFiles& fil
   // Batches limit what is in memory.
   constexpr int kBatch = 256;
   constexpr double kQuantum = 1.0 / 512.0;  // features are stored as multiples of it
+  constexpr int kTries = 200;
   Progress progress("crops", options.crops);
   std::vector<int> model_of_crop, look_of_crop;
   cv::Mat facts;  // azimuth, log ratios, elevation, log aspect, visible share
@@ -178,7 +191,15 @@ void RunTrainingCrops(const TrainingCropsOptions& options, const StageFiles& fil
         const NumberedModel* model = of_group[group][look.Index(of_group[group].size())];
         chosen[i] = static_cast<int>(model - models.data());
         std::optional<FurnitureView> view;
-        while (!view) view = RandomView(model->model, all, options.side, look, &random);
+        for (int tries = 0; !view && tries < kTries; ++tries) {
+          view = RandomView(model->model, all, options.side, look, &random);
+        }
+        if (!view) {
+          throw InputError(
+              fmt::format("{}: cannot be seen in any of {} views; expected a model of "
+                          "triangles that have areas",
+                          model->entry.mesh.string(), kTries));
+        }
         views[i] = *view;
         cv::Mat mirrored;
         cv::flip(view->crop.image, mirrored, 1);
@@ -186,6 +207,7 @@ void RunTrainingCrops(const TrainingCropsOptions& options, const StageFiles& fil
         for (const cv::Mat& image : {view->crop.image, mirrored}) {
           both.push_back(networks[thread].Features(image).reshape(1, 1));
         }
+        CheckRange(both, kQuantum, options.layers);
         both.convertTo(features[i], CV_16S, 1.0 / kQuantum);
         progress.Step();
       }

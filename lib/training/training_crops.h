@@ -35,7 +35,7 @@ template <typename Visitor>
 void Describe(Visitor& visit, TrainingGroups& file) {
   visit.OrAbsent("description", &file.description, "for readers of the file");
   visit.OrAbsent("left_out", &file.left_out, "models not to train on: collection/file");
-  visit.Field("groups", &file.groups, "at least one");
+  visit.Field("groups", &file.groups, "at least one", {.least_items = 1});
 }
 
 struct TrainingCropsOptions {

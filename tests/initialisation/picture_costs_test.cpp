@@ -90,6 +90,17 @@ TEST(PictureCosts, AreNoneWithoutPictures) {
   EXPECT_TRUE(HalfTurnCosts({}).empty());
 }
 
+TEST(PictureCosts, AreThoseOfThePicturesThatTellAnAzimuth) {
+  BoxAppearance nothing;
+  nothing.azimuth_costs.setZero();
+  const PictureView silent{std::make_shared<const BoxAppearance>(nothing),
+                           Eigen::Vector3d(0.0, 1.0, 0.0)};
+  const PictureView telling{std::make_shared<const BoxAppearance>(PictureFrom(0.4)),
+                            silent.ray_in_reference};
+  EXPECT_TRUE(PictureCosts({silent, silent}, Plane()).empty());
+  EXPECT_EQ(PictureCosts({silent, telling}, Plane()), PictureCosts({telling}, Plane()));
+}
+
 // Many pictures from one direction tell no more than one.
 TEST(PictureCosts, PicturesOfOneDirectionCountAsOne) {
   BoxAppearance picture = PictureFrom(0.4);

@@ -127,6 +127,11 @@ TEST(DatasetTables, FrontsAreShownWhereThereAreSome) {
 TEST(DetailedVariants, AreThoseWithMostToShowFirst) {
   DatasetPage page = Page();
   EXPECT_EQ(DetailedVariants(page), (std::vector<size_t>{2, 1, 0}));
+  PageVariant more = page.variants[2];
+  more.name += "A";
+  page.variants.push_back(more);
+  EXPECT_EQ(DetailedVariants(page), (std::vector<size_t>{3, 2, 1, 0}));
+  page.variants.pop_back();
   page.variants[2].numbers_only = true;
   EXPECT_EQ(DetailedVariants(page), (std::vector<size_t>{1, 0}));
 }
