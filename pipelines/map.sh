@@ -29,10 +29,14 @@ for variant in $variants; do
   [[ -f pipelines/variants/$variant.json || -f pipelines/pictures/variants/$variant.json ||
     -f $MAPS/$NAME/pipelines/variants/$variant.json ]] ||
     refuse "variant '$variant': no such variant; \`./soslam help\` lists them"
+  [[ -f pipelines/variants/$variant.json || ! -f pipelines/pictures/variants/$variant.json || -f $SOSLAM_NETWORK ]] ||
+    refuse "variant '$variant' looks at pictures by the network YOLOX-nano, and '$SOSLAM_NETWORK' is no such file; \
+expected --network, or the one that \`./soslam network\` fetches" 3
 done
 makes_no_map="variant '$VARIANT': the first one makes no map; expected one that does, as OursSP"
 for own in pipelines/{,pictures/}variants/${VARIANT%% *}.json; do
-  [[ ! -f $own ]] || grep --quiet --regexp=optimise --regexp=extends "$own" || refuse "$makes_no_map"
+  [[ ! -f $own ]] || grep --quiet optimise "$own" || { grep --quiet extends "$own" && ! grep --quiet '"stages"' "$own"; } ||
+    refuse "$makes_no_map"
 done
 
 for name in SCALE CAMERA_HEIGHT; do
@@ -96,7 +100,7 @@ listed "$MODEL" | keep "$MAP_ROOT/steps/model.txt"
 listed "$NETWORK" | keep "$MAP_ROOT/steps/network.txt"
 
 # The settings: those of all maps of photos, with the orientation that the boxes refer to.
-mkdir -p "$MAP_ROOT"/pipelines/{variants,datasets,priors}
+mkdir -p "$MAP_ROOT"/pipelines/{variants,datasets,priors,heads}
 export MAP_STORED='^# {.*"image_orientation":"stored"'
 keep_base() {
   local stored=''
@@ -110,7 +114,7 @@ keep_base
 for from in pipelines/variants/*.json pipelines/pictures/variants/*[AR].json pipelines/priors/semantic_table.json; do
   sed '/"odometry_[rt]/d' "$from" | keep "$MAP_ROOT/${from/pictures\//}"
 done
-cp --recursive --update pipelines/pictures/heads "$MAP_ROOT/pipelines"
+keep "$MAP_ROOT/pipelines/heads/yolox_nano.h5" < pipelines/pictures/heads/yolox_nano.h5
 
 # The page shows the variants of this command; others may be of other settings. What they share stays.
 for folder in "$MAP_ROOT/results/$NAME"/*/; do

@@ -75,7 +75,9 @@ std::vector<AppearanceRecord> ReadAppearance(const std::filesystem::path& path) 
     };
     check(azimuth_costs[i].allFinite() && azimuth_costs[i].minCoeff() >= 0.0F, "/azimuth_cost",
           "finite numbers of at least 0");
-    if (log_ratios[i].tail<2>().minCoeff() > 0.0F && log_ratios[i].allFinite()) {
+    if (log_ratios[i] != Eigen::Vector4f::Zero()) {
+      check(log_ratios[i].allFinite() && log_ratios[i].tail<2>().minCoeff() > 1e-6F, "/log_ratios",
+            "finite means and positive standard deviations, or zeros");
       record.appearance.log_ratios = {log_ratios[i].head<2>(), log_ratios[i].tail<2>()};
     }
     record.descriptor =

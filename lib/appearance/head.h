@@ -31,7 +31,7 @@ class Head {
   int Channels() const { return static_cast<int>(narrow_weights_.cols()); }
 
   // Index of the group of things that a label belongs to; none: the head says nothing of it, as of
-  // groups whose fronts it did not learn.
+  // groups of which it learned neither azimuths nor ratios.
   std::optional<int> GroupOf(const std::string& label) const;
 
   // What the features (InnerLayers::Features) of a crop and of its mirror image say.
@@ -62,14 +62,14 @@ class Head {
   bool is_rgb_ = false;
   std::map<std::string, int> group_of_label_;
   struct Group {
-    float ratio_sigma_scale = 0.0F;  // of sigmas, which are too small; 0: tells no ratios
+    float ratio_sigma_scale = 0.0F;  // of sigmas; 0: tells no ratios
     float exponent = 0.0F;  // of likelihoods, which are less sure than they say; 0: tell nothing
   };
   std::vector<Group> groups_;
   float floor_ = 0.0F;            // probability that the head is wrong altogether
   float correlation_deg_ = 0.0F;  // see BoxAppearance
   Eigen::MatrixXf narrow_weights_, hidden_weights_, output_weights_;
-  // Of the log ratios of the models of each group that it was trained on.
+  // Log ratios of the models that it was trained on, by group.
   Eigen::MatrixXf ratio_mean_, ratio_sigma_;
   Eigen::MatrixXf probe_;  // features of the ProbeImage
   Eigen::VectorXf narrow_bias_, hidden_bias_, output_bias_, feature_mean_, feature_scale_;

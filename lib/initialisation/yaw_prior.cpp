@@ -69,7 +69,8 @@ std::optional<YawPrior> MotionPrior(const Sequence& sequence, const Detection& d
   }
   ObjectEvidence views = EvidenceInWorld(sequence, around, shape, upright);
   views.axes_weight = 0.0;
-  views.picture_costs.clear();
+  views.picture_costs.clear();  // pictures count once, in the fit that this is a prior of
+  views.prior = shape;
   WeighViews(upright.ViewCorrelation(), &views);
   const auto optima = ProfileOverYaw(views, upright.YawStep()).Minima(1);
   if (optima.empty()) return std::nullopt;

@@ -3,12 +3,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cstddef>
 #include <limits>
 #include <map>
 #include <optional>
 #include <set>
-#include <string_view>
+#include <string>
 #include <tuple>
 
 #include "base/table.h"
@@ -349,11 +348,10 @@ std::vector<size_t> DetailedVariants(const DatasetPage& page) {
   std::ranges::reverse(names);
   std::ranges::stable_sort(detailed, {}, [&](size_t index) {
     const PageVariant& variant = page.variants[index];
-    // A variant whose name goes on from that of a known one has more than it.
-    const auto known = std::ranges::find_if(
-        names, [&](const std::string_view name) { return variant.name.starts_with(name); });
-    return std::tuple(variant.kind, known - names.begin(),
-                      -static_cast<std::ptrdiff_t>(variant.name.size()));
+    // A and R at the end stand for evidence from pictures beside that of the variant without them.
+    const size_t end = variant.name.find_last_not_of("AR") + 1;
+    const auto known = std::ranges::find(names, variant.name.substr(0, end));
+    return std::tuple(variant.kind, known - names.begin(), end == variant.name.size());
   });
   return detailed;
 }

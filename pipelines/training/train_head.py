@@ -199,14 +199,15 @@ class LeftOut:
         error that all views of a body have in common."""
         gains, errors, priors = [], [], []
         for group, _, rows in sets:
-            weight = direction_weights(self.facts[rows, 0], self.facts[rows, 3], CORRELATION_DEG)[:, None]
+            truth = self.facts[rows[0], 1:3] - ratio_mean[group]
             mean, information = likelihood_of_ratios(self.ratio[rows], self.log_sigma[rows] + np.log(scale), ratio_sigma[group])
-            views, total = (weight * (information > 0)).sum(0), (weight * information).sum(0)
-            fused = (weight * information * mean).sum(0) / np.maximum(total, 1e-9)
-            precision = total / (1 + shared * np.maximum(views - 1, 0))
+            telling = (information > 0).all(1)  # the others are left out, as by soslam
+            weight = direction_weights(self.facts[rows[telling], 0], self.facts[rows[telling], 3], CORRELATION_DEG)[:, None]
+            total = (weight * information[telling]).sum(0)
+            fused = (weight * information[telling] * mean[telling]).sum(0) / np.maximum(total, 1e-9)
+            precision = total / (1 + shared * (weight.sum() - 1)) if telling.any() else total
             of_prior = 1 / ratio_sigma[group] ** 2
             posterior = precision * fused / (precision + of_prior)
-            truth = self.facts[rows[0], 1:3] - ratio_mean[group]
             gains.append(0.5 * (np.log((precision + of_prior) / of_prior) - (precision + of_prior) * (truth - posterior) ** 2
                                 + of_prior * truth ** 2).sum())
             errors.append(np.abs(truth - posterior))
@@ -219,7 +220,6 @@ def likelihood_of_ratios(ratio, log_sigma, prior_sigma):
     models, over what these alone would say. Both relative to the group's mean. No information where it is no surer."""
     of_head = np.exp(-2 * log_sigma)
     information = np.maximum(of_head - 1 / prior_sigma ** 2, 0)
-    information *= (information > 0).all(1, keepdims=True)
     return of_head * ratio / np.maximum(information, 1e-9), information
 
 
@@ -290,7 +290,7 @@ def calibrate_ratios(left_out, groups, ratio_mean, ratio_sigma):
         chosen[g] = scale if used else 0.0
         print(f"{groups[g]['name']:10} log ratios: gain {gain:.2f} +- {error:.2f}, scale {scale}; error over that of the group's mean {share[0]:.2f} {share[1]:.2f}"
               f"{'' if used else ', not used'}")
-    print("sum of gains where a part of the variance is shared by all views of a body: "
+    print("sum of these gains where a part of the variance is shared by all views of a body: "
           + ", ".join(f"{share} {gain:.2f}" for share, gain in of_shares.items()))
     return chosen
 

@@ -64,6 +64,11 @@ TEST_F(AppearanceFileTest, GivesDetectionsWhatWasWritten) {
   EXPECT_EQ(records.back().distance, 1.5F);
 }
 
+TEST_F(AppearanceFileTest, RatiosAreFiniteOrZeros) {
+  records_[2].appearance.log_ratios = LogRatios{{0.1F, 0.2F}, {0.3F, -0.4F}};
+  ExpectRefused({"/log_ratios", "row 2", "expected"});
+}
+
 TEST_F(AppearanceFileTest, MayHaveNoRecord) {
   records_.clear();
   Write();

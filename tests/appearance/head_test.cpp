@@ -215,6 +215,13 @@ TEST_F(HeadTest, RefusesAMalformedFileNamingFieldAndReason) {
        {"/ratio_mean"}},
       {[](HeadFile* file) { file->matrices["/ratio_mean"].at<float>(0, 1) = kNaN; },
        {"/ratio_mean", "row 0", "chair"}},
+      {[](HeadFile* file) { file->matrices.erase("/ratio_sigma"); }, {"/ratio_sigma"}},
+      {[](HeadFile* file) { file->matrices["/ratio_sigma"] = HeadFile::RandomMatrix(2, 3); },
+       {"/ratio_sigma"}},
+      {[](HeadFile* file) { file->matrices["/ratio_sigma"].at<float>(0, 1) = 0.0F; },
+       {"/ratio_sigma", "row 0", "chair", "positive"}},
+      {[](HeadFile* file) { file->matrices["/ratio_sigma"].at<float>(0, 0) = kNaN; },
+       {"/ratio_sigma", "row 0", "chair"}},
       {[](HeadFile* file) { file->vectors["/feature_mean"].pop_back(); }, {"/feature_mean"}},
       {[](HeadFile* file) { file->vectors["/feature_scale"][1] = 0.0F; },
        {"/feature_scale", "has 0", "positive"}}};

@@ -151,6 +151,19 @@ TEST(PriorWithPictures, PicturesOfOneDirectionCountAsOne) {
   EXPECT_LT((many.log_sigma - one.log_sigma).norm(), 1e-6);
 }
 
+TEST(PriorWithPictures, IsThePriorOfAllPicturesInTheWorldAndOfOneInACamera) {
+  Sequence sequence = ViewsOfBody(RoundBody(0.3), RandomCameras(2));
+  for (size_t i = 0; i < 2; ++i) {
+    const PictureView picture = PictureOfDepth(i == 0 ? 1.0 : 4.0, 0.2, Eigen::Vector3d::UnitX());
+    BoxAppearance appearance = *picture.appearance;
+    appearance.direction_correlation_deg = 0.0F;  // both count the same
+    sequence.detections[i].appearance = std::make_shared<const BoxAppearance>(appearance);
+    EXPECT_NEAR(EvidenceInCamera(sequence, sequence.detections[i], kWidePrior, {}).prior->ratio.x(),
+                i == 0 ? 1.0 : 4.0, 1e-3);
+  }
+  EXPECT_NEAR(EvidenceInWorld(sequence, {0, 1}, kWidePrior, {}).prior->ratio.x(), 2.0, 1e-3);
+}
+
 TEST(PriorWithPictures, SaysNothingOfWhatNeedNotStandAndWithoutRatios) {
   const PictureView picture = PictureOfDepth(1.7, 0.2, {1.0, 0.2, -0.3});
   const PictureView without{std::make_shared<const BoxAppearance>(PictureFrom(0.4)),

@@ -223,6 +223,10 @@ TEST_F(MapTest, RefusesWhatIsMissing) {
   expect_refused_for_photos({"--camera_height", "1,6"}, "with a decimal point");
   expect_refused_for_photos({"--variant", "InitS"}, "the first one makes no map");
   expect_refused_for_photos({"--variant", "OursS Best"}, "variant 'Best': no such variant");
+  expect_refused_for_photos({"--variant", "InitSA"}, "makes no map");
+  expect_refused(
+      {photos_, "--detections", detections_, "--networks", "/none", "--variant", "OursSPA"}, 3,
+      "looks at pictures by the network YOLOX-nano");
   expect_refused_for_photos({"--image", "x"}, "--image: no such option");
   expect_refused_for_photos({photos_}, "was named before it");
   for (const std::string name : {"room 2", "..", "../x"}) {

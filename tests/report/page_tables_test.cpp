@@ -131,6 +131,8 @@ TEST(DetailedVariants, AreThoseWithMostToShowFirst) {
   more.name += "A";
   page.variants.push_back(more);
   EXPECT_EQ(DetailedVariants(page), (std::vector<size_t>{3, 2, 1, 0}));
+  page.variants.back().name = page.variants[2].name + "-true-ratio";
+  EXPECT_EQ(DetailedVariants(page).front(), 2U);
   page.variants.pop_back();
   page.variants[2].numbers_only = true;
   EXPECT_EQ(DetailedVariants(page), (std::vector<size_t>{1, 0}));

@@ -175,6 +175,12 @@ TEST_F(RunAppearanceTest, LaterStagesUseItAndNeedIt) {
     EXPECT_EQ(object.front_probability.has_value(), object.object_index != 2);
   }
 
+  optimise.pictures.ratios = false;
+  PrintedBy([&] { RunOptimise(optimise, of_map, 2); });
+  EXPECT_NE(ReadMap(of_map.at("output"), sequence_).objects[0].landmark_in_world->half_axes,
+            map.objects[0].landmark_in_world->half_axes);
+  optimise.pictures.ratios = true;
+
   for (StageFiles* either : {&files, &of_map}) either->erase("appearance");
   const std::vector<std::string> words = {"picture_ratios", "--appearance"};
   ExpectError<SettingsError>([&] { RunInitialise(initialise, files, 2); }, words);

@@ -56,13 +56,17 @@ class RunRefineWithPicturesTest : public FolderTest {
     return {
         {Eigen::Quaterniond::Identity(), {0.1, -0.2, 0.4}}, {0.3, 0.3, 0.4}, kEllipsoidExponent};
   }
-  // Of pictures that show the body turned by an angle (rad) about its z axis.
-  void WritePictures(double turn) {
+  // What pictures say that show the body turned by an angle (rad) about its z axis, and as deep and
+  // wide as told, relative to its height.
+  void WritePictures(double turn, double ratio = 0.75) {
     AddTruePictures(&sequence_, turn);
     std::vector<AppearanceRecord> records;
     for (const Detection& detection : sequence_.detections) {
       records.push_back({sequence_.FrameOf(detection).id, 0, *detection.appearance,
                          Eigen::VectorXf::Ones(1), 0.0F});
+      const auto log_ratio = static_cast<float>(std::log(ratio));
+      records.back().appearance.log_ratios =
+          LogRatios{Eigen::Vector2f::Constant(log_ratio), Eigen::Vector2f::Constant(1e-3F)};
     }
     WriteAppearance(files_.at("appearance"), records, info_);
   }
@@ -111,6 +115,20 @@ TEST_F(RunRefineWithPicturesTest, PicturesSayNothingOfYawUnlessAsked) {
   const auto turns = Turns();
   WritePictures(-0.9);
   EXPECT_EQ(Turns(), turns);
+}
+
+TEST_F(RunRefineWithPicturesTest, LandmarksHaveTheRatiosThatPicturesTellIfAsked) {
+  const auto ratios = [&](bool are_asked, double told) {
+    options_.profile.pictures = {.yaw = true, .ratios = are_asked};
+    WritePictures(0.0, told);
+    Run();
+    const auto estimates = ReadLandmarks(files_.at("output"), sequence_);
+    const Landmark& landmark = estimates.observations.at(0).hypotheses.at(0).landmark_in_camera;
+    return Eigen::Vector2d(landmark.half_axes.head<2>() / landmark.half_axes.z());
+  };
+  EXPECT_LT((ratios(true, 0.5) - Eigen::Vector2d(0.5, 0.5)).norm(), 0.01);
+  EXPECT_LT((ratios(true, 0.9) - Eigen::Vector2d(0.9, 0.9)).norm(), 0.01);
+  EXPECT_EQ(ratios(false, 0.5), ratios(false, 0.9));
 }
 
 TEST_F(RunRefineWithPicturesTest, PicturesThatAreMissingOrOfAnotherSequenceAreRefused) {

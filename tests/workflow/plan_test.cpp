@@ -120,6 +120,9 @@ TEST_F(PlanTest, StagesReadTheLatestOfWhatTheyNeed) {
   Write("pipelines/variants/Pictures.json",
         R"({"stages": ["import", "appearance", "initialise", "optimise", "evaluate"],
             "optimise": {"detection_model": "tangency", "picture_yaw": true}})");
+  Write("pipelines/variants/Ratios.json",
+        R"({"extends": "Pictures",
+            "optimise": {"picture_yaw": false, "picture_ratios": true}})");
   ExpectError<InputError>([&] { Make({"Pictures"}); },
                           {"heads/yolox_nano.h5", "does not exist", "'Pictures'"});
   Write("pipelines/heads/yolox_nano.h5", "a head");
@@ -127,6 +130,7 @@ TEST_F(PlanTest, StagesReadTheLatestOfWhatTheyNeed) {
                        {"Pictures", "appearance", "sequence", "import/sequence.json"},
                        {"Pictures", "initialise", "appearance", ""},
                        {"Pictures", "optimise", "appearance", "appearance/appearance.h5"},
+                       {"Ratios", "optimise", "appearance", "appearance/appearance.h5"},
                        {"Full", "initialise", "edges", ""},
                        {"Cuboids", "initialise", "edges", "edges/edges.h5"},
                        {"Mapped", "optimise", "landmarks", "initialise/initial.json"},
