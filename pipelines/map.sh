@@ -31,7 +31,7 @@ for variant in $variants; do
     refuse "variant '$variant': no such variant; \`./soslam help\` lists them"
   [[ -f pipelines/variants/$variant.json || ! -f pipelines/pictures/variants/$variant.json || -f $SOSLAM_NETWORK ]] ||
     refuse "variant '$variant' looks at pictures by the network YOLOX-nano, and '$SOSLAM_NETWORK' is no such file; \
-expected --network, or the one that \`./soslam network\` fetches" 3
+expected the one that \`./soslam network\` fetches, or, without detections, --network FILE" 3
 done
 makes_no_map="variant '$VARIANT': the first one makes no map; expected one that does, as OursSP"
 for own in pipelines/{,pictures/}variants/${VARIANT%% *}.json; do

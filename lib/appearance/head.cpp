@@ -140,8 +140,9 @@ Head::Head(const std::filesystem::path& path) {
 
 bool Head::KnowsFeatures(const cv::Mat& of_probe) const {
   constexpr float kRounding = 0.01F;  // of the largest feature
-  return of_probe.rows == probe_.rows() && (AsMatrix(of_probe) - probe_).cwiseAbs().maxCoeff() <=
-                                               kRounding * probe_.cwiseAbs().maxCoeff();
+  return of_probe.rows == probe_.rows() && AsMatrix(of_probe).allFinite() &&
+         (AsMatrix(of_probe) - probe_).cwiseAbs().maxCoeff() <=
+             kRounding * probe_.cwiseAbs().maxCoeff();
 }
 
 std::optional<int> Head::GroupOf(const std::string& label) const {

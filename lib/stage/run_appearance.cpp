@@ -17,6 +17,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/parallel.h"
+#include "base/paths.h"
 #include "base/progress.h"
 #include "image/network.h"
 #include "stage/read_evidence.h"
@@ -44,6 +45,12 @@ void RunAppearance(const NoOptions& options, const StageFiles& files, int thread
   const fs::path& sequence_file = files.at("sequence");
   const Sequence sequence = ReadSequence(sequence_file);
   const Head head(files.at("head"));
+  if (!IsFile(files.at("network"))) {
+    throw InputError(fmt::format(
+        "{}: no such file; expected the network of {}: `./soslam network` fetches YOLOX-nano, and "
+        "`--network FILE` is for where it lies",
+        files.at("network").string(), files.at("head").string()));
+  }
   const NetworkFile network = ReadNetworkFile(files.at("network"));
   const std::string sha256 = Sha256OfText(network.bytes);
   if (sha256 != head.NetworkSha256() && !ComputesTheSame(network, head)) {
@@ -102,6 +109,10 @@ void RunAppearance(const NoOptions& options, const StageFiles& files, int thread
           throw InputError(fmt::format("{}: has {} channels in these layers; {} expects {}",
                                        network.name, features.rows, files.at("head").string(),
                                        head.Channels()));
+        }
+        if (!cv::checkRange(features)) {
+          throw InputError(
+              fmt::format("{}: gives values that are not finite: a damaged file", network.name));
         }
         records[i].push_back({sequence.FrameOf(*detection).id, object.id,
                               head.Appearance(features, layers.Features(mirrored), crop.direction,

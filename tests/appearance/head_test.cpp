@@ -148,6 +148,19 @@ TEST_F(HeadTest, TellsNoRatiosWhereItIsNoSurerThanItsPrior) {
   }
 }
 
+TEST_F(HeadTest, KnowsFeaturesOfTheProbeButForRounding) {
+  const HeadFile file(kChannels);
+  const Head head = Read(file);
+  cv::Mat features = file.matrices.at("/probe").clone();
+  features.at<float>(1, 2) += 1e-4F;
+  EXPECT_TRUE(head.KnowsFeatures(features));
+  for (const float other : {0.5F, static_cast<float>(kNaN)}) {
+    features.at<float>(1, 2) = other;
+    EXPECT_FALSE(head.KnowsFeatures(features));
+  }
+  EXPECT_FALSE(head.KnowsFeatures(features.rowRange(0, 2)));
+}
+
 TEST_F(HeadTest, DescriptorAndDistanceAreOfScaledMeans) {
   HeadFile file(kChannels);
   file.vectors["/feature_mean"] = {1.0F, 2.0F, 3.0F};

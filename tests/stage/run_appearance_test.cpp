@@ -151,6 +151,11 @@ TEST_F(RunAppearanceTest, AnotherFileOfTheSameNetworkIsKnownByWhatItComputes) {
   EXPECT_FALSE(ReadAppearance(files_.at("output")).empty());
 }
 
+TEST_F(RunAppearanceTest, ANetworkThatIsMissingIsRefusedWithWhereToGetIt) {
+  files_["network"] = folder_ / "none.onnx";
+  ExpectError<InputError>([&] { Run(); }, {"none.onnx", "no such file", "./soslam network"});
+}
+
 TEST_F(RunAppearanceTest, LaterStagesUseItAndNeedIt) {
   Run();
   InitialiseOptions initialise;
