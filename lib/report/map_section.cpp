@@ -249,6 +249,7 @@ class MapOfVariant {
       const Landmark& landmark = *placed_[i]->landmark_in_world;
       PlanObject object{entry.name, Footprint(landmark, axes),
                         up.dot(FindSupportPoint(landmark, up).point)};
+      if (placed_[i]->FrontIsKnown()) object.front = Front(landmark, axes);
       object.is_uncertain = !entry.doubts.empty();
       if (!entry.picture.jpeg.empty()) {
         object.picture = entry.id;
@@ -269,6 +270,10 @@ class MapOfVariant {
     std::string caption =
         fmt::format("Seen from above. {}, {}.", key("estimate", "objects"),
                     key("detection", "path of the camera from its first place (dot)"));
+    if (!std::ranges::all_of(plan.objects, &std::vector<Eigen::Vector2d>::empty,
+                             &PlanObject::front)) {
+      caption += " Triangles point to fronts, where they are known.";
+    }
     if (std::ranges::any_of(plan.objects, &PlanObject::is_uncertain)) {
       caption +=
           " Dashed objects are uncertain: most images that should show them do not, or by their "

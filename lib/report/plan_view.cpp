@@ -64,6 +64,18 @@ Points Footprint(const Landmark& landmark_in_world, const PlanAxes& axes) {
   return footprint;
 }
 
+Points Front(const Landmark& landmark_in_world, const PlanAxes& axes) {
+  const double width = 0.6 * landmark_in_world.half_axes.head<2>().minCoeff();
+  const double tip = 0.9 * landmark_in_world.half_axes.x();
+  Points corners;
+  for (const Eigen::Vector3d& corner :
+       {Eigen::Vector3d(tip, 0.0, 0.0), Eigen::Vector3d(tip - width, 0.5 * width, 0.0),
+        Eigen::Vector3d(tip - width, -0.5 * width, 0.0)}) {
+    corners.push_back(axes.Place(landmark_in_world.frame_from_object * corner));
+  }
+  return corners;
+}
+
 double RoundLength(double length) {
   const double power = std::pow(10.0, std::floor(std::log10(length) + 1e-9));
   for (const double digit : {5.0, 2.0}) {
@@ -285,12 +297,16 @@ std::string PlanSvg(const PlanView& plan, const PlanFormat& format) {
     const double share = layout.area / (screen.width * screen.height);
     if (layout.overlap <= 0.0 && share < kMaxShareOfCards) break;
   }
-  std::string shapes, leaders, cards;
+  std::string shapes, leaders, pictures, fronts, names;
   for (size_t i = 0; i < plan.objects.size(); ++i) {
     const PlanObject& object = plan.objects[i];
     const Points footprint = screen.Place(object.footprint);
     shapes += fmt::format("<polygon{} points=\"{}\"/>\n",
                           object.is_uncertain ? " class=\"uncertain\"" : "", PointsText(footprint));
+    if (!object.front.empty()) {
+      fronts += fmt::format("<polygon class=\"front\" points=\"{}\"/>\n",
+                            PointsText(screen.Place(object.front)));
+    }
     const Rectangle& card = layout.cards[i];
     const auto& [from, to] = LeaderOf(AsRectangle(BoundsOf(footprint)), card);
     if (cv::norm(to - from) >= 1.0) {
@@ -302,19 +318,19 @@ std::string PlanSvg(const PlanView& plan, const PlanFormat& format) {
     const double middle = card.x + 0.5 * card.width, height = layout.HeightOn(object);
     if (height > 0.0) {
       const double width = height * AspectOf(object);
-      cards += fmt::format(
+      pictures += fmt::format(
           "<use href=\"#{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n",
           object.picture, middle - 0.5 * width, card.y, width, height);
     }
-    cards += fmt::format("<text class=\"name\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", middle,
+    names += fmt::format("<text class=\"name\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", middle,
                          card.y + height + format.font, HtmlText(Shortened(object.name)));
   }
   return fmt::format(
              "<svg class=\"plan {}\" viewBox=\"0 0 {:.0f} {:.0f}\" font-size=\"{:.0f}\" "
              "role=\"img\" aria-label=\"{} objects from above\">\n",
              format.name, screen.width, screen.height, format.font, plan.objects.size()) +
-         GridLines(screen) + PathOfCameras(plan, screen) + shapes + leaders + cards +
-         ScaleBar(plan, screen, format) + "</svg>\n";
+         GridLines(screen) + PathOfCameras(plan, screen) + shapes + leaders + pictures + fronts +
+         names + ScaleBar(plan, screen, format) + "</svg>\n";
 }
 
 }  // namespace soslam

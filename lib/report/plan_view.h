@@ -30,6 +30,9 @@ PlanAxes AxesOfPlan(const Eigen::Vector3d& up, const std::optional<Eigen::Vector
 // The outline of a body from above; of a cuboid its corners, of round ones up to 72 points.
 std::vector<Eigen::Vector2d> Footprint(const Landmark& landmark_in_world, const PlanAxes& axes);
 
+// A triangle within the outline that points to the front, the x axis of a body.
+std::vector<Eigen::Vector2d> Front(const Landmark& landmark_in_world, const PlanAxes& axes);
+
 // The largest of ..., 0.1, 0.2, 0.5, 1, 2, 5, ... that is no larger.
 double RoundLength(double length);
 
@@ -45,6 +48,7 @@ struct PlanObject {
   std::string picture = {};
   double picture_aspect = 1.0;
   bool is_uncertain = false;
+  std::vector<Eigen::Vector2d> front = {};  // the corners of Front where it is known
 };
 
 struct PlanView {

@@ -9,6 +9,8 @@
 #include <numbers>
 #include <regex>
 
+#include "support/random.h"
+
 namespace soslam {
 namespace {
 
@@ -57,6 +59,23 @@ TEST(Footprint, OfAnEllipsoidIsItsEllipse) {
   EXPECT_EQ(outline.size(), 72u);
   for (const Eigen::Vector2d& point : outline) {
     EXPECT_NEAR((point - Eigen::Vector2d(1.0, 0.0)).norm(), 0.3, 1e-9);
+  }
+}
+
+TEST(Front, PointsAlongTheXAxisWithinTheFootprint) {
+  for (int i = 0; i < 20; ++i) {
+    const double yaw = RandomUniform(-3.0, 3.0);
+    const Landmark body = Upright({1.0, 2.0, 3.0}, RandomVector(0.2, 2.0), yaw, kCuboidExponent);
+    const auto corners = Front(body, kAxes);
+    ASSERT_EQ(corners.size(), 3U);
+    const Eigen::Vector2d along = corners[0] - 0.5 * (corners[1] + corners[2]);
+    EXPECT_LT((along.normalized() - Eigen::Vector2d(std::cos(yaw), std::sin(yaw))).norm(), 1e-9);
+    for (const Eigen::Vector2d& corner : corners) {
+      const Eigen::Vector3d in_object =
+          body.frame_from_object.Inverse() * Eigen::Vector3d(corner.x(), corner.y(), 3.0);
+      EXPECT_LT(std::abs(in_object.x()), body.half_axes.x());
+      EXPECT_LT(std::abs(in_object.y()), body.half_axes.y());
+    }
   }
 }
 
@@ -184,6 +203,13 @@ TEST(PlanSvg, IsToScale) {
   ASSERT_TRUE(std::regex_search(
       svg, path, std::regex("polyline class=\"path\" points=\"([0-9.]+),[0-9.]+ ([0-9.]+),")));
   EXPECT_NEAR(std::stod(path[2]) - std::stod(path[1]), 2.5 * std::stod(bar[1]), 0.2);
+}
+
+TEST(PlanSvg, PointsToFrontsThatAreKnown) {
+  PlanView plan = PlanOf(3);
+  EXPECT_THAT(PlanSvg(plan, kWidePlan), testing::Not(HasSubstr("class=\"front\"")));
+  plan.objects[1].front = {{0.0, 0.0}, {0.1, 0.0}, {0.0, 0.1}};
+  EXPECT_THAT(PlanSvg(plan, kWidePlan), HasSubstr("<polygon class=\"front\" points="));
 }
 
 TEST(PlanSvg, HasNamesAsTextAndShortensLongOnes) {
