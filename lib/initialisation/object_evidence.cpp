@@ -26,14 +26,6 @@ double PeriodicAt(const Values& values, double angle) {
   return (1.0 - part) * values[low] + part * values[(low + 1) % count];
 }
 
-std::vector<PictureView> PicturesThat(bool (BoxAppearance::*tell)() const,
-                                      const std::vector<PictureView>& pictures) {
-  std::vector<PictureView> telling;
-  std::ranges::copy_if(pictures, std::back_inserter(telling),
-                       [&](const PictureView& picture) { return (*picture.appearance.*tell)(); });
-  return telling;
-}
-
 std::vector<double> PictureWeights(const std::vector<PictureView>& pictures) {
   std::vector<Eigen::Vector3d> rays;
   for (const PictureView& picture : pictures) rays.push_back(picture.ray_in_reference);
@@ -101,15 +93,15 @@ std::vector<PictureView> PicturesInWorld(const Sequence& sequence,
 }
 
 std::optional<ShapePrior> PriorWithPictures(const std::optional<ShapePrior>& prior,
-                                            const std::vector<PictureView>& pictures) {
-  const auto with_ratios = PicturesThat(&BoxAppearance::TellsRatios, pictures);
-  if (!prior || !prior->Stands() || with_ratios.empty()) return prior;
-  const std::vector<double> weights = PictureWeights(with_ratios);
+                                            std::vector<PictureView> pictures) {
+  std::erase_if(pictures, [](const auto& picture) { return !picture.appearance->log_ratios; });
+  if (!prior || !prior->Stands() || pictures.empty()) return prior;
+  const std::vector<double> weights = PictureWeights(pictures);
   double views = 0.0;  // effective number
   Eigen::Vector2d information = Eigen::Vector2d::Zero();
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  for (size_t i = 0; i < with_ratios.size(); ++i) {
-    const LogRatios& ratios = *with_ratios[i].appearance->log_ratios;
+  for (size_t i = 0; i < pictures.size(); ++i) {
+    const LogRatios& ratios = *pictures[i].appearance->log_ratios;
     const Eigen::Vector2d of_view =
         weights[i] * ratios.sigma.cast<double>().cwiseAbs2().cwiseInverse();
     views += weights[i];
@@ -120,8 +112,8 @@ std::optional<ShapePrior> PriorWithPictures(const std::optional<ShapePrior>& pri
                               views * information.cwiseInverse());
 }
 
-std::vector<double> PictureCosts(const std::vector<PictureView>& all, const Plane& plane) {
-  const auto pictures = PicturesThat(&BoxAppearance::TellsAzimuth, all);
+std::vector<double> PictureCosts(std::vector<PictureView> pictures, const Plane& plane) {
+  std::erase_if(pictures, [](const auto& picture) { return !picture.appearance->TellsAzimuth(); });
   if (pictures.empty()) return {};
   const std::vector<double> weights = PictureWeights(pictures);
   const Eigen::Quaterniond reference_from_ground = UprightRotation(plane.normal, 0.0);

@@ -85,12 +85,12 @@ std::vector<PictureView> PicturesInWorld(const Sequence& sequence,
 // DirectionWeights of their rays, as sure as one of them, since pictures of one thing share their
 // errors. The same prior for an object that need not stand.
 std::optional<ShapePrior> PriorWithPictures(const std::optional<ShapePrior>& prior,
-                                            const std::vector<PictureView>& pictures);
+                                            std::vector<PictureView> pictures);
 
 // Negative logarithm of the likelihood of each yaw of an object about a plane's normal. Pictures
 // are weighted by the DirectionWeights of their rays. Empty if none
 // tells an azimuth.
-std::vector<double> PictureCosts(const std::vector<PictureView>& pictures, const Plane& plane);
+std::vector<double> PictureCosts(std::vector<PictureView> pictures, const Plane& plane);
 
 // Cost of either of two opposite yaws, on half the circle; the lowest is zero.
 std::vector<double> HalfTurnCosts(const std::vector<double>& picture_costs);

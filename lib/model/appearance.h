@@ -28,7 +28,6 @@ struct BoxAppearance {
   float direction_correlation_deg = 0.0F;
 
   bool TellsAzimuth() const { return azimuth_costs.maxCoeff() > 0.0F; }
-  bool TellsRatios() const { return log_ratios.has_value(); }
 };
 
 }  // namespace soslam

@@ -105,19 +105,20 @@ void RunAppearance(const NoOptions& options, const StageFiles& files, int thread
         cv::Mat mirrored;
         cv::flip(crop.image, mirrored, /*flipCode=*/1);
         const cv::Mat features = layers.Features(crop.image);
+        const cv::Mat of_mirror = layers.Features(mirrored);
+        if (!cv::checkRange(features) || !cv::checkRange(of_mirror)) {
+          throw InputError(
+              fmt::format("{}: gives values that are not finite: a damaged file", network.name));
+        }
         if (features.rows != head.Channels()) {
           throw InputError(fmt::format("{}: has {} channels in these layers; {} expects {}",
                                        network.name, features.rows, files.at("head").string(),
                                        head.Channels()));
         }
-        if (!cv::checkRange(features)) {
-          throw InputError(
-              fmt::format("{}: gives values that are not finite: a damaged file", network.name));
-        }
-        records[i].push_back({sequence.FrameOf(*detection).id, object.id,
-                              head.Appearance(features, layers.Features(mirrored), crop.direction,
-                                              *head.GroupOf(object.label)),
-                              head.Descriptor(features), head.Distance(features)});
+        records[i].push_back(
+            {sequence.FrameOf(*detection).id, object.id,
+             head.Appearance(features, of_mirror, crop.direction, *head.GroupOf(object.label)),
+             head.Descriptor(features), head.Distance(features)});
         progress.Step();
       }
     }

@@ -18,7 +18,7 @@ BINS = 36  # of azimuth, about 0, 10 ... 350 degrees
 CELLS = 49
 SYMMETRIC = 0.15  # share of the largest difference below which a turned model counts as the same
 RATIOS_WON = 0.75  # of the error of the group's mean: ratios of groups with more are not used
-FEW_MODELS = 5  # left out: a group with fewer is not calibrated, and tells nothing
+FEW_MODELS = 5  # left out: a group with fewer is not calibrated, and tells nothing. A guess
 CORRELATION_DEG = 20.0  # as that of boxes; renders, whose clutter is another in each view, would say 10
 FLOOR = 0.05  # probability that a picture tells nothing: wrong ids, labels, boxes. A guess: renders, which have none, would say 0.01
 PLAIN = 10.0  # grey levels: differences that are smaller tell nothing
@@ -237,6 +237,8 @@ def calibrate_yaw(left_out, groups):
     for correlation in (10.0, 20.0, 40.0):
         best = max((left_out.yaw_gain(chairs, e, FLOOR, correlation).mean(), e) for e in (0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0))
         print(f"chairs and couches, directions {correlation:.0f} deg: gain {best[0]:.2f} nats over chance with exponent {best[1]}")
+    gains = ", ".join(f"{floor} {left_out.yaw_gain(chairs, 1.0, floor).mean():.2f}" for floor in (0.005, 0.01, 0.02, 0.05, 0.1))
+    print(f"chairs and couches, exponent 1.0, gain by floor: {gains}")
     exponents = []
     reliability = []  # (probability said of the most probable side, whether it is right)
     for g, name in enumerate(groups):
