@@ -61,8 +61,8 @@ void RunSynthesise(const SynthesiseOptions& options, const StageFiles& files, in
   NoteSeed(scene.seed);
   if (Simulate(scene, options.noise).detections.empty()) {
     throw NothingUsableError(path.string() +
-                             ": no object is detected in any frame; expected objects wholly inside "
-                             "the image with their centre in sight");
+                             ": no object is detected in any frame; expected objects in sight, "
+                             "as the scene's boxes and min_visible_share ask for");
   }
   WriteDataset(scene, options.noise, files.at("output"), threads);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -73,7 +74,14 @@ struct SceneNoise {
   double odometry_scale_sigma = 0.0;         // one scale error for the whole trajectory
   double odometry_rotation_sigma_deg = 0.0;  // random walk, degrees per sqrt(metre + turn / 30 deg)
   double image_sigma = 0.0;                  // grey levels, per pixel and channel
+  double false_share = 0.0;  // expected number of boxes of nothing for each detection
 };
+
+// What the detector's boxes are around: whole objects, each wholly inside the image with its centre
+// in sight; or the visible parts of objects, also of those that are cut or partly hidden.
+enum class BoxedPart { kWhole, kVisible };
+inline constexpr std::array kBoxedPartNames = {"whole", "visible"};  // in files
+inline constexpr const auto& NamesOf(BoxedPart) { return kBoxedPartNames; }
 
 // All data that define a synthetic sequence. The normal of planes[0] is the camera's up direction.
 // Objects and planes are sorted by id.
@@ -86,6 +94,8 @@ struct Scene {
   Trajectory trajectory;
   SceneNoise noise;
   int seed = 0;  // of all noise
+  BoxedPart boxes = BoxedPart::kWhole;
+  double min_visible_share = 0.3;  // of an object's silhouette, for boxes of visible parts
 };
 
 // Descriptions of scene files, see base/description.h. Angles are in degrees there.
@@ -179,6 +189,8 @@ void Describe(Visitor& visit, SceneNoise& noise) {
                   "random walk, degrees per square root of (metres + turn / 30 degrees)",
                   kNotNegative);
   visit.OrDefault("image_sigma", &noise.image_sigma, 0.0, "grey levels", {0.0, 255.0});
+  visit.OrDefault("false_share", &noise.false_share, 0.0,
+                  "expected number of boxes of nothing for each detection", kShare);
 }
 
 template <typename Visitor>
@@ -195,6 +207,13 @@ void Describe(Visitor& visit, Scene& scene) {
   visit.Field("trajectory", &scene.trajectory, "of the camera");
   visit.OrDefault("noise", &scene.noise, SceneNoise(), "of measurements");
   visit.OrDefault("seed", &scene.seed, 0, "of all noise", kNotNegative);
+  visit.OrDefault("boxes", &scene.boxes, Scene().boxes,
+                  "what they are around: whole objects, wholly inside the image with their centre "
+                  "in sight, or visible parts of objects");
+  visit.OrDefault("min_visible_share", &scene.min_visible_share, Scene().min_visible_share,
+                  "of the silhouette of an object, inside and outside the image, that has to be "
+                  "visible for a box of the visible part",
+                  kShare);
 }
 
 // Transformation from a plane's own frame to the world, see ScenePlane.

@@ -5,12 +5,118 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "geometry/angles.h"
 
 namespace soslam {
 namespace {
+
+// What a camera sees of a body, in rays through the centres of pixels.
+struct VisiblePart {
+  int silhouette = 0;  // rays that meet the body, inside and outside the image
+  int visible = 0;     // rays inside the image that meet it first
+  Eigen::AlignedBox2d pixels;
+
+  double Share() const { return silhouette > 0 ? static_cast<double>(visible) / silhouette : 0.0; }
+  Box Around() const {
+    return {pixels.min().x() - 0.5, pixels.min().y() - 0.5, pixels.max().x() + 0.5,
+            pixels.max().y() + 0.5};
+  }
+};
+
+// What a camera sees of each body. Silhouettes are counted as far as three images reach in each
+// direction, the camera's own in their middle.
+std::vector<VisiblePart> VisibleParts(const Camera& camera,
+                                      const std::vector<Landmark>& bodies_in_camera) {
+  const Box counted = {-1.0 * camera.width, -1.0 * camera.height, 2.0 * camera.width - 1.0,
+                       2.0 * camera.height - 1.0};
+  std::vector<VisiblePart> parts(bodies_in_camera.size());
+  Eigen::ArrayXXi nearest = Eigen::ArrayXXi::Constant(camera.height, camera.width, -1);
+  Eigen::ArrayXXd depths = Eigen::ArrayXXd::Constant(camera.height, camera.width,
+                                                     std::numeric_limits<double>::infinity());
+  for (size_t i = 0; i < parts.size(); ++i) {
+    const Landmark& body = bodies_in_camera[i];
+    if (body.Centre().z() + body.half_axes.norm() <= 0.0) continue;  // behind the camera
+    const Box outline = ExactOutline(camera, body).value_or(counted);
+    const int u_begin =
+        static_cast<int>(std::ceil(std::clamp(outline.x_min, counted.x_min, counted.x_max + 1.0)));
+    const int v_begin =
+        static_cast<int>(std::ceil(std::clamp(outline.y_min, counted.y_min, counted.y_max + 1.0)));
+    for (int v = v_begin; v <= std::min(outline.y_max, counted.y_max); ++v) {
+      for (int u = u_begin; u <= std::min(outline.x_max, counted.x_max); ++u) {
+        const auto depth = NearestIntersection(body, Eigen::Vector3d::Zero(), camera.Ray({u, v}));
+        if (!depth) continue;
+        ++parts[i].silhouette;
+        const bool is_inside = u >= 0 && v >= 0 && u < camera.width && v < camera.height;
+        if (!is_inside || *depth >= depths(v, u)) continue;
+        depths(v, u) = *depth;
+        nearest(v, u) = static_cast<int>(i);
+      }
+    }
+  }
+  for (int u = 0; u < camera.width; ++u) {
+    for (int v = 0; v < camera.height; ++v) {
+      if (nearest(v, u) < 0) continue;
+      VisiblePart& part = parts[nearest(v, u)];
+      ++part.visible;
+      part.pixels.extend(Eigen::Vector2d(u, v));
+    }
+  }
+  return parts;
+}
+
+// The exact boxes of a frame.
+std::vector<SimulatedBox> BoxesInSight(const Scene& scene, int frame,
+                                       const Rigid3d& world_from_camera,
+                                       const std::vector<Landmark>& bodies_in_world) {
+  constexpr double kMinSizePx = 10.0;
+  const int objects = static_cast<int>(scene.objects.size());
+  std::vector<SimulatedBox> boxes;
+  if (scene.boxes == BoxedPart::kWhole) {
+    for (int object = 0; object < objects; ++object) {
+      const auto box = BoxInImage(scene.camera, world_from_camera, bodies_in_world[object]);
+      if (!box || !CentreIsVisible(bodies_in_world, object, world_from_camera.translation)) {
+        continue;
+      }
+      boxes.push_back({frame, object, *box});
+    }
+    return boxes;
+  }
+  std::vector<Landmark> bodies_in_camera;
+  for (const Landmark& body : bodies_in_world) {
+    bodies_in_camera.push_back(Transform(world_from_camera.Inverse(), body));
+  }
+  const std::vector<VisiblePart> parts = VisibleParts(scene.camera, bodies_in_camera);
+  for (int object = 0; object < objects; ++object) {
+    const double share = parts[object].Share();
+    const Box box = parts[object].Around();
+    if (share < scene.min_visible_share || !(std::min(box.Width(), box.Height()) >= kMinSizePx)) {
+      continue;
+    }
+    boxes.push_back({frame, object, box, 0.3 + 0.65 * share});
+  }
+  return boxes;
+}
+
+// With probability false_share, a box of nothing somewhere inside the image, with the label of some
+// object.
+std::optional<SimulatedBox> FalseBox(const Scene& scene, int frame_index, int object_id) {
+  auto random = NoiseGenerator(scene.seed, NoiseKind::kFalseBox, frame_index, object_id);
+  std::uniform_real_distribution<double> uniform;
+  if (uniform(random) >= scene.noise.false_share) return std::nullopt;
+  const auto between = [&](double from, double to) { return from + (to - from) * uniform(random); };
+  const double log_height = between(std::log(0.05), std::log(0.5));
+  const double height = std::exp(log_height) * scene.camera.height;
+  const double width = height * std::exp2(between(-1.0, 1.0));
+  const double x = between(0.0, std::max(scene.camera.width - width, 0.0)) - 0.5;
+  const double y = between(0.0, scene.camera.height - height) - 0.5;
+  const double score = between(0.25, 0.6);
+  const Box box = {x, y, std::min(x + width, scene.camera.width - 0.5), y + height};
+  return SimulatedBox{frame_index, static_cast<int>(random() % scene.objects.size()), box, score,
+                      true};
+}
 
 // The box with noise on each edge, cut at the image border; none if it is missed or empty.
 std::optional<Box> NoisyBox(const Scene& scene, int frame_index, const SceneObject& object,
@@ -91,14 +197,20 @@ Simulation Simulate(const Scene& scene, bool noise) {
   const std::vector<Landmark> bodies_in_world = AllBodies(scene);
   for (int frame = 0; frame < scene.trajectory.frames; ++frame) {
     const Rigid3d& world_from_camera = simulation.true_world_from_camera[frame];
-    for (int object = 0; object < static_cast<int>(scene.objects.size()); ++object) {
-      const auto exact = BoxInImage(scene.camera, world_from_camera, bodies_in_world[object]);
-      if (!exact || !CentreIsVisible(bodies_in_world, object, world_from_camera.translation)) {
+    for (SimulatedBox row : BoxesInSight(scene, frame, world_from_camera, bodies_in_world)) {
+      simulation.exact_boxes.push_back(row);
+      if (!noise) {
+        simulation.detections.push_back(row);
         continue;
       }
-      simulation.exact_boxes.push_back({frame, object, *exact});
-      const auto detected = noise ? NoisyBox(scene, frame, scene.objects[object], *exact) : exact;
-      if (detected) simulation.detections.push_back({frame, object, *detected});
+      const SceneObject& object = scene.objects[row.object_index];
+      const auto noisy = NoisyBox(scene, frame, object, row.box);
+      if (!noisy) continue;
+      row.box = *noisy;
+      simulation.detections.push_back(row);
+      if (const auto box = FalseBox(scene, frame, object.id)) {
+        simulation.detections.push_back(*box);
+      }
     }
   }
   return simulation;

@@ -15,7 +15,7 @@ namespace soslam {
 
 // Kinds of noise. Each kind draws from its own generators, so that changing one kind leaves the
 // others unchanged.
-enum class NoiseKind : uint32_t { kDetection = 1, kOdometry = 2, kImage = 3 };
+enum class NoiseKind : uint32_t { kDetection = 1, kOdometry = 2, kImage = 3, kFalseBox = 4 };
 
 // The generator for one frame, and object id or 0.
 inline std::mt19937 NoiseGenerator(int seed, NoiseKind kind, int frame_index, int object_id) {
@@ -29,6 +29,8 @@ struct SimulatedBox {
   int frame_index = 0;
   int object_index = 0;
   Box box;
+  double score = 1.0;
+  bool is_false = false;  // a box of nothing, which has the object's label
 };
 
 // Simulated measurements of a scene, and the truth. Boxes are sorted by frame, then by object.
@@ -36,12 +38,13 @@ struct Simulation {
   std::vector<Rigid3d> true_world_from_camera;
   std::vector<Rigid3d> odometry_world_from_camera;  // starts at the first true pose
   std::vector<SimulatedBox> exact_boxes;            // of every object in sight
-  std::vector<SimulatedBox> detections;             // exact boxes with noise, without missed ones
+  std::vector<SimulatedBox> detections;  // exact boxes with noise, without missed ones; false ones
 };
 
-// An object is in sight when it is wholly inside the image and its centre is not occluded; boxes
-// are always of the whole object. Without noise, detections are exact_boxes and odometry is the
-// truth.
+// With boxes of whole objects, an object is in sight when it is wholly inside the image and its
+// centre is not occluded. With those of visible parts, it is when min_visible_share of its
+// silhouette is visible, in a box of at least 10 x 10 pixels; the score grows with the visible
+// share. Walls hide nothing. Without noise, detections are exact_boxes and odometry is the truth.
 Simulation Simulate(const Scene& scene, bool noise);
 
 // True if nothing in the scene occludes the object's centre.

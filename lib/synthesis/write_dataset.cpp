@@ -38,13 +38,16 @@ std::string TrajectoryText(const Scene& scene, const std::vector<Rigid3d>& world
   return text;
 }
 
+constexpr int kNoObjectId = -1;  // of boxes of nothing
+
 std::string BoxesText(const Scene& scene, const std::vector<SimulatedBox>& boxes, bool scores) {
   std::string text = fmt::format("frame,object_id,label,{}x1,y1,x2,y2\n", scores ? "score," : "");
   for (const SimulatedBox& row : boxes) {
     const SceneObject& object = scene.objects[row.object_index];
-    text += fmt::format("{},{},{},{}{},{},{},{}\n", row.frame_index, object.id, object.label,
-                        scores ? "1.0," : "", row.box.x_min, row.box.y_min, row.box.x_max,
-                        row.box.y_max);
+    text += fmt::format("{},{},{},{}{},{},{},{}\n", row.frame_index,
+                        row.is_false ? kNoObjectId : object.id, object.label,
+                        scores ? fmt::format("{:#},", row.score) : "", row.box.x_min, row.box.y_min,
+                        row.box.x_max, row.box.y_max);
   }
   return text;
 }
@@ -105,7 +108,7 @@ std::string ObjectsText(const Scene& scene) {
 
 std::string NoiseText(const Scene& scene) {
   const SceneNoise& noise = scene.noise;
-  return fmt::format(
+  const std::string text = fmt::format(
       "Seed {}. Box edges: standard deviation {} of the box's width or height and {} px; {} of "
       "the\n"
       "detections missing; boxes cut at the image border. Odometry: random walk of {} m per\n"
@@ -114,6 +117,20 @@ std::string NoiseText(const Scene& scene) {
       scene.seed, noise.box_edge_sigma, noise.box_sigma_px, noise.miss_probability,
       noise.odometry_translation_sigma, noise.odometry_scale_sigma,
       noise.odometry_rotation_sigma_deg, noise.image_sigma);
+  if (noise.false_share == 0.0) return text;
+  return text + fmt::format("Boxes of nothing, with object_id {}: {} for each detection.\n",
+                            kNoObjectId, noise.false_share);
+}
+
+std::string BoxedPartText(const Scene& scene) {
+  if (scene.boxes == BoxedPart::kWhole) {
+    return "the box of each whole object, also where another one covers a part;\n"
+           "  only objects that are wholly inside the image with their centre in sight";
+  }
+  return fmt::format(
+      "the box of the visible part of each object of which at least\n"
+      "  {} of the silhouette is visible",
+      scene.min_visible_share);
 }
 
 std::string ReadmeText(const Scene& scene, bool noise, const std::string& mark) {
@@ -132,13 +149,12 @@ std::string ReadmeText(const Scene& scene, bool noise, const std::string& mark) 
       "are\n"
       "the same frame.\n\n"
       "- `groundtruth.txt`: true camera poses, world_from_camera. `odometry.txt`: as measured.\n"
-      "- `boxes_exact.csv`: the box of each whole object, also where another one covers a part;\n"
-      "  only objects that are wholly inside the image with their centre in sight.\n"
+      "- `boxes_exact.csv`: {}.\n"
       "- `detections.csv`: the same as a detector finds them.\n"
       "- `objects.json`: `mirror_symmetric` and `mirror_symmetric_yz` are of shape and texture,\n"
       "  `rotationally_symmetric` of the shape.\n\n"
       "## Noise\n\n{}",
-      mark, scene.name, scene.trajectory.frames, scene.objects.size(),
+      mark, scene.name, scene.trajectory.frames, scene.objects.size(), BoxedPartText(scene),
       noise ? NoiseText(scene) : "None: detections and odometry are exact.\n");
 }
 

@@ -167,6 +167,7 @@ Sequence SyntheticSequence(const Scene& scene, bool noise) {
     sequence.true_objects.push_back({object.id, object.label, ObjectGroundTruth(scene, object)});
   }
   for (const SimulatedBox& detection : simulation.detections) {
+    if (detection.is_false) continue;
     const int plane_index = scene.objects[detection.object_index].plane_index;
     const Rigid3d& world_from_camera = simulation.true_world_from_camera[detection.frame_index];
     sequence.detections.push_back(

@@ -19,8 +19,8 @@ namespace soslam {
 Scene RandomScene(int seed, int objects, int frames,
                   const std::vector<Shape>& shapes = {Shape::kEllipsoid});
 
-// The simulation as a sequence in memory, with ground truth and without images on disk. Each
-// detection has its support plane as the true camera sees it.
+// The simulation as a sequence in memory, with ground truth, without false boxes and without images
+// on disk. Each detection has its support plane as the true camera sees it.
 Sequence SyntheticSequence(const Scene& scene, bool noise);
 
 // Cuboids on a floor of any yaw that a robot drives past, with exact boxes and true poses.
