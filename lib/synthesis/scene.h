@@ -208,8 +208,8 @@ void Describe(Visitor& visit, Scene& scene) {
   visit.OrDefault("noise", &scene.noise, SceneNoise(), "of measurements");
   visit.OrDefault("seed", &scene.seed, 0, "of all noise", kNotNegative);
   visit.OrDefault("boxes", &scene.boxes, Scene().boxes,
-                  "what they are around: whole objects, wholly inside the image with their centre "
-                  "in sight, or visible parts of objects");
+                  "what detections are around: whole objects, wholly inside the image with their "
+                  "centre in sight, or visible parts of objects");
   visit.OrDefault("min_visible_share", &scene.min_visible_share, Scene().min_visible_share,
                   "of the silhouette of an object, inside and outside the image, that has to be "
                   "visible for a box of the visible part",

@@ -42,6 +42,8 @@ TEST(ParseScene, ReadsEveryField) {
   json document = ValidScene();
   document["noise"] = {{"box_edge_sigma", 0.1}, {"image_sigma", 2.0}};
   document["seed"] = 5;
+  document["boxes"] = "visible";
+  document["min_visible_share"] = 0.4;
   const Scene scene = ParseScene(document, "scene.json");
   EXPECT_EQ(scene.name, "test");
   EXPECT_EQ(scene.camera.width, 64);
@@ -58,7 +60,11 @@ TEST(ParseScene, ReadsEveryField) {
   EXPECT_EQ(scene.trajectory.frames, 5);
   EXPECT_DOUBLE_EQ(scene.noise.box_edge_sigma, 0.1);
   EXPECT_DOUBLE_EQ(scene.noise.miss_probability, 0.0);
+  EXPECT_DOUBLE_EQ(scene.noise.false_share, 0.0);
   EXPECT_EQ(scene.seed, 5);
+  EXPECT_EQ(scene.boxes, BoxedPart::kVisible);
+  EXPECT_DOUBLE_EQ(scene.min_visible_share, 0.4);
+  EXPECT_EQ(ParseScene(ValidScene(), "scene.json").boxes, BoxedPart::kWhole);
 }
 
 class SceneFileTest : public FolderTest {};
@@ -79,6 +85,11 @@ TEST_F(SceneFileTest, IsRefusedWithItsField) {
        {"/trajectory/frames", "0", "trajectory/frames"},
        {"/trajectory/waypoints", "[]", "trajectory/waypoints"},
        {"/noise", R"({"blur": 1})", "blur"},
+       {"/noise", R"({"false_share": 1.5})",
+        "noise/false_share is 1.5; expected a number at least 0 and at most 1"},
+       {"/boxes", R"("half")", R"(/boxes is "half"; expected one of whole, visible)"},
+       {"/min_visible_share", "-0.1",
+        "/min_visible_share is -0.1; expected a number at least 0 and at most 1"},
        {"/objects/0/label", R"("a,b")", "/objects/0: label has a comma"},
        {"/objects/1/half_axes", "[5, 5, 5]", "frame 0 is inside the object with id 1"},
        {"/planes/1", R"({"id": 7, "label": "table", "normal": [0, 0, 1], "d": -1.05,
@@ -179,7 +190,7 @@ TEST(TruePoses, OneWaypointIsACameraThatStandsStill) {
 }
 
 TEST(ShippedScenes, ShowEveryObjectOftenEnough) {
-  for (const std::string name : {"room", "ellipsoids", "laid", "leaning"}) {
+  for (const std::string name : {"room", "ellipsoids", "laid", "leaning", "chairs"}) {
     const Scene scene = ReadScene(SOSLAM_SOURCE_DIR "/pipelines/scenes/" + name + ".json");
     const auto by_object = DetectionsByObject(SyntheticSequence(scene, false));
     for (size_t i = 0; i < by_object.size(); ++i) {

@@ -57,6 +57,125 @@ TEST(Simulate, TruncatedAndPassedObjectsAreNotInSight) {
   EXPECT_EQ(simulation.exact_boxes[0].object_index, 1);
 }
 
+// A thin board on the floor, `x` metres ahead of the camera of Boards.
+SceneObject Board(int id, double x, double y_min, double y_max, double height) {
+  constexpr double kThin = 1e-4;
+  return {id,
+          "board",
+          Shape::kBox,
+          {kThin, 0.5 * (y_max - y_min), 0.5 * height},
+          {x + kThin, 0.5 * (y_min + y_max)},
+          0.0,
+          0,
+          id};
+}
+
+// Boards before a level camera 0.5 m above the origin that looks along x: a point of the world
+// appears at (319.5 - 500 y / x, 239.5 + 500 (0.5 - z) / x).
+Scene Boards(const std::vector<SceneObject>& boards) {
+  Scene scene = Row(1);
+  scene.boxes = BoxedPart::kVisible;
+  scene.objects = boards;
+  scene.trajectory.waypoints = {{{0.0, 0.0, 0.5}, {3.0, 0.0, 0.5}}};
+  return scene;
+}
+
+void ExpectBox(const SimulatedBox& seen, int object_index, const Box& box, double share) {
+  EXPECT_EQ(seen.object_index, object_index);
+  EXPECT_NEAR(seen.box.x_min, box.x_min, 0.51);
+  EXPECT_NEAR(seen.box.y_min, box.y_min, 0.51);
+  EXPECT_NEAR(seen.box.x_max, box.x_max, 0.51);
+  EXPECT_NEAR(seen.box.y_max, box.y_max, 0.51);
+  EXPECT_NEAR(seen.score, 0.3 + 0.65 * share, 0.01);
+}
+
+TEST(Simulate, VisibleBoxIsOfTheHalfThatNothingHides) {
+  Scene scene = Boards({Board(1, 3.0, -0.4, 0.4, 0.8), Board(2, 1.5, -0.6, 0.0, 0.9)});
+  const auto seen = Simulate(scene, false).exact_boxes;
+  ASSERT_EQ(seen.size(), 2u);
+  ExpectBox(seen[0], 0, {252.83, 189.5, 319.5, 322.83}, 0.5);
+  ExpectBox(seen[1], 1, {319.5, 106.17, 519.5, 406.17}, 1.0);
+  scene.min_visible_share = 0.48;
+  EXPECT_EQ(Simulate(scene, false).exact_boxes.size(), 2u);
+  scene.min_visible_share = 0.52;
+  EXPECT_EQ(Simulate(scene, false).exact_boxes.size(), 1u);
+  scene.boxes = BoxedPart::kWhole;
+  EXPECT_EQ(Simulate(scene, false).exact_boxes.back().score, 1.0);
+}
+
+TEST(Simulate, VisibleBoxEndsAtTheBorderOfTheImage) {
+  // The border on the right is at y = -1.92, a third of the board from its end.
+  Scene scene = Boards({Board(1, 3.0, -2.12, -1.52, 0.8)});
+  const auto seen = Simulate(scene, false).exact_boxes;
+  ASSERT_EQ(seen.size(), 1u);
+  ExpectBox(seen[0], 0, {572.83, 189.5, 639.5, 322.83}, 2.0 / 3.0);
+  EXPECT_EQ(seen[0].box.x_max, 639.5);
+  scene.min_visible_share = 0.68;
+  EXPECT_TRUE(Simulate(scene, false).exact_boxes.empty());
+}
+
+TEST(Simulate, TablesHideWhatIsBehindThem) {
+  Scene scene = Boards({Board(1, 3.0, -0.4, 0.4, 0.8)});
+  scene.planes.push_back({4, "table", Plane{Eigen::Vector3d::UnitZ(), -0.4}, TableTop{}});
+  scene.planes[1].table->position_on_plane = {1.6, 0.0};
+  scene.planes[1].table->half_size = {0.1, 1.0};
+  scene.planes[1].table->thickness = 0.4;
+  const auto seen = Simulate(scene, false).exact_boxes;
+  ASSERT_EQ(seen.size(), 1u);
+  const double edge = 239.5 + 500.0 * 0.1 / 1.7;  // the far edge of the table's top
+  ExpectBox(seen[0], 0, {252.83, 189.5, 386.17, edge}, (edge - 189.5) / 133.33);
+}
+
+TEST(Simulate, VisibleBoxesHaveTenPixels) {
+  const Scene scene = Boards({Board(1, 3.0, 0.1, 0.5, 0.05), Board(2, 3.0, -0.5, -0.1, 0.07)});
+  const auto seen = Simulate(scene, false).exact_boxes;
+  ASSERT_EQ(seen.size(), 1u) << "the first is 8 pixels high, the second 12";
+  EXPECT_EQ(seen[0].object_index, 1);
+}
+
+TEST(Simulate, BodiesBesideAndBehindTheCameraHideNothing) {
+  Scene scene = Boards({Board(1, 3.0, -0.4, 0.4, 0.8), Board(2, -1.0, -0.4, 0.4, 0.8)});
+  // From before the camera to behind it, so that it has no outline.
+  scene.objects.push_back({3, "beside", Shape::kBox, {1.0, 0.1, 0.2}, {0.0, 0.8}, 0.0, 0, 3});
+  scene.min_visible_share = 0.9;
+  const auto seen = Simulate(scene, false).exact_boxes;
+  ASSERT_EQ(seen.size(), 1u);
+  ExpectBox(seen[0], 0, {252.83, 189.5, 386.17, 322.83}, 1.0);
+}
+
+TEST(Simulate, FalseBoxesAreAsManyAsToldAndChangeNothingElse) {
+  Scene scene = Row(1000);
+  scene.noise = AllNoise();
+  const Simulation without = Simulate(scene, true);
+  scene.noise.false_share = 0.2;
+  const Simulation with = Simulate(scene, true);
+  std::vector<SimulatedBox> true_ones, false_ones;
+  for (const SimulatedBox& row : with.detections) {
+    (row.is_false ? false_ones : true_ones).push_back(row);
+  }
+  ASSERT_EQ(true_ones.size(), without.detections.size());
+  for (size_t i = 0; i < true_ones.size(); ++i) {
+    EXPECT_EQ(true_ones[i].box, without.detections[i].box);
+    EXPECT_EQ(true_ones[i].score, 1.0);
+  }
+  const auto all = static_cast<double>(true_ones.size());
+  EXPECT_NEAR(static_cast<double>(false_ones.size()), 0.2 * all, 4.0 * std::sqrt(0.16 * all));
+  std::vector<int> of_label(scene.objects.size());
+  for (const SimulatedBox& row : false_ones) {
+    EXPECT_GE(DistanceToBorder(row.box, 640, 480), 0.0);
+    EXPECT_GE(row.box.Height(), 0.05 * 480 - 1e-9);
+    EXPECT_LE(row.box.Height(), 0.5 * 480 + 1e-9);
+    EXPECT_LE(std::abs(std::log2(row.box.Width() / row.box.Height())), 1.0 + 1e-9);
+    EXPECT_GE(row.score, 0.25);
+    EXPECT_LE(row.score, 0.6);
+    ++of_label[row.object_index];
+  }
+  for (const int count : of_label) EXPECT_GT(count, 100);
+  EXPECT_EQ(with.odometry_world_from_camera.back().translation,
+            without.odometry_world_from_camera.back().translation);
+  EXPECT_EQ(Simulate(scene, false).detections.size(), with.exact_boxes.size());
+}
+
 TEST(Simulate, BoxNoiseHasItsSigma) {
   Scene scene = Row(1000);
   scene.noise.box_edge_sigma = 0.03;

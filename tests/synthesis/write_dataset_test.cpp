@@ -96,6 +96,43 @@ TEST_F(WriteDatasetTest, ImportGivesTheSyntheticSequence) {
   }
 }
 
+// Boxes of visible parts, each with a false one.
+Scene SceneWithFalseBoxes() {
+  Scene scene = SmallScene();
+  scene.boxes = BoxedPart::kVisible;
+  scene.noise.false_share = 1.0;
+  return scene;
+}
+
+TEST_F(WriteDatasetTest, FalseBoxesHaveNoObject) {
+  const Scene scene = SceneWithFalseBoxes();
+  const size_t true_boxes = SyntheticSequence(scene, true).detections.size();
+  WriteDataset(scene, true, folder_, 1);
+  ImportOptions options;
+  options.border_px = 0.0;
+  options.min_observations = 1;
+  const Sequence with_ids = ImportDataset(folder_, options);
+  EXPECT_EQ(with_ids.detections.size(), true_boxes);
+  EXPECT_EQ(with_ids.rejected_detections.at("without_object_id"), static_cast<int>(true_boxes));
+
+  std::string text = FileBytes(folder_ / "detections.csv");
+  text.replace(text.find("object_id"), 9, "hidden_id");
+  WriteBytes(folder_ / "detections.csv", text);
+  const Sequence without_ids = ImportDataset(folder_, options);
+  EXPECT_EQ(without_ids.detections.size(), 2 * true_boxes);
+  for (const Detection& detection : without_ids.detections) {
+    EXPECT_GE(detection.score, 0.25);
+    EXPECT_LE(detection.score, 0.95);
+  }
+}
+
+TEST_F(WriteDatasetTest, FalseAndVisibleBoxesAreTheSameForAnyNumberOfThreads) {
+  WriteDataset(SceneWithFalseBoxes(), true, folder_, 1);
+  const auto first = Contents(folder_);
+  WriteDataset(SceneWithFalseBoxes(), true, folder_, 2);
+  EXPECT_EQ(first, Contents(folder_));
+}
+
 // Also in place of a longer dataset, in a folder whose name ends with a slash.
 TEST_F(WriteDatasetTest, SameBytesForAnyNumberOfThreads) {
   WriteDataset(SmallScene(), true, folder_, 1);
