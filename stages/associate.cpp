@@ -9,7 +9,10 @@ int main(int argc, char** argv) {
       {.name = "soslam-associate",
        .purpose = "Finds out which detections are of the same object, without their ids.",
        .inputs = {{"sequence", "sequence.json of soslam-import"},
-                  {"table", "semantic table with the size ratio of each label"}},
+                  {"table", "semantic table with the size ratio of each label"},
+                  {"matches",
+                   "matches.h5 of soslam-match; needed when the setting shared_points is true",
+                   false}},
        .outputs = {{"output", "sequence to write, with the objects found"},
                    {"associations", "associations.json to write: what was decided, and why"}},
        .example = "soslam-associate --association estimated --sequence sequence.json --table "

@@ -20,7 +20,8 @@
 
 namespace soslam {
 
-// Artefacts of one JSON file each (schemas/<kind>.schema.json), and points.h5. Files refer to
+// Artefacts of one JSON file each (schemas/<kind>.schema.json), and points.h5 and
+// matches.h5. Files refer to
 // frames, planes and objects by id. Where nothing else is said, writers throw as WriteArtefact and
 // readers as ReadArtefact.
 
@@ -46,6 +47,13 @@ void WritePoints(const std::filesystem::path& path, const std::vector<MapPoint>&
 // The points in file order. Throws InputError when the file is missing, damaged, not of kind
 // "points" or too new, when its arrays do not fit each other, or a number is not possible.
 std::vector<MapPoint> ReadPoints(const std::filesystem::path& path);
+
+// Writes matches.h5 as WritePoints does points.h5.
+void WriteMatches(const std::filesystem::path& path, const std::vector<PointTrack>& tracks,
+                  const ArtefactInfo& info);
+// The tracks in file order. Throws as ReadPoints, for kind "matches", and for a track with fewer
+// than two observations, or whose frame ids do not ascend.
+std::vector<PointTrack> ReadMatches(const std::filesystem::path& path);
 
 // Kinds "associations", "planes" and "world".
 void WriteAssociations(const std::filesystem::path& path, const Associations& associations,

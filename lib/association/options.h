@@ -59,6 +59,7 @@ struct AssociateOptions {
   double min_detection_share = 0.1;
   double min_best_score = 0.35;
   int max_views = 16;
+  bool shared_points = false;
 
   void Describe(OptionVisitor& visit) {
     visit.Group("Association");
@@ -117,6 +118,10 @@ struct AssociateOptions {
     visit.Real("unknown_height_m", &unknown_height_m, {1e-6, 1e6},
                "without planes: height of objects whose label has none in the semantic table; its "
                "standard deviation is a factor of e");
+    visit.Group("Points");
+    visit.Flag("shared_points", &shared_points,
+               "points that several images show (soslam-match) tell which boxes show the same "
+               "object; needs images");
     visit.Group("Merged and false objects");
     visit.Real("merge_share", &merge_share, {0.0, 1.0},
                "two tracks are one object when the larger one explains at least this share of the "

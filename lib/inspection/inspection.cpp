@@ -63,6 +63,7 @@ const std::map<std::string, std::string> kHdf5Kinds = {
     {"appearance", "which side of its object each box shows"},
     {"edges", "edges, distances and corners of images"},
     {"head", "which way things face, from the inner layers of a detector network"},
+    {"matches", "points that several images show"},
     {"points", "sparse points of structure from motion"},
     {"symmetry", "what symmetry and edges say about the yaw of observations"}};
 

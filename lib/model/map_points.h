@@ -26,6 +26,11 @@ struct MapPoint {
   std::vector<PointObservation> observations;
 };
 
+// A point of the scene that several images show, of unknown position.
+struct PointTrack {
+  std::vector<PointObservation> observations;  // by frame, one of each
+};
+
 // Index in Sequence::frames of the frame that observes a point; none where the sequence does not
 // have it.
 inline std::optional<size_t> FrameIndexOf(const Sequence& sequence,

@@ -131,7 +131,7 @@ std::vector<std::string> PossibleVariants(const fs::path& pipelines, const std::
   if (std::ranges::any_of(FindFiles(dataset).others, HasNameOfImage)) return variants;
   std::erase_if(variants, [&](const std::string& variant) {
     const StageOptions options = ReadVariant(pipelines, name, variant).options;
-    return options.contains("edges") || options.contains("appearance");
+    return options.contains("edges") || options.contains("match") || options.contains("appearance");
   });
   return variants;
 }

@@ -22,6 +22,7 @@ struct GroundOptions;
 struct ImportOptions;
 struct InitialiseOptions;
 struct LearnPriorsOptions;
+struct MatchOptions;
 struct OptimiseOptions;
 struct OrientationOptions;
 struct PlanesOptions;
@@ -111,6 +112,12 @@ void RunReconstruct(const ReconstructOptions& options, const StageFiles& files, 
 // Throws InputError for a bad image, NothingUsableError when no frame has an image.
 void RunTrack(const TrackOptions& options, const StageFiles& files, int threads);
 
+// soslam-match: points that several images show, also images far apart: features that lie on each
+// other's epipolar lines by the frames' poses, and look alike. Files: "dataset", the folder of the
+// frames' images; "sequence", sequence.json; "output", matches.h5. Prints a one-line summary. Where
+// no two images share a point, the file is empty, with a warning. Throws as RunTrack.
+void RunMatch(const MatchOptions& options, const StageFiles& files, int threads);
+
 // soslam-edges: computes the edge maps of the undistorted image of every frame. Files: "dataset",
 // the folder of the frames' images; "sequence", sequence.json; "output", edges.h5. Throws
 // InputError for an image that is missing, damaged, outside the dataset folder or not of the
@@ -119,10 +126,10 @@ void RunEdges(const EdgesOptions& options, const StageFiles& files, int threads)
 
 // soslam-associate: estimates which detections belong to the same object. Files: "sequence",
 // sequence.json, whose objects and ids are used only to measure the agreement; "table", the
-// semantic table; "output", the sequence with the estimated objects, to write; "associations",
-// associations.json to write: all decisions and their reasons. Throws InputError;
-// NothingUsableError when no object is found; SettingsError, also when the setting `association` is
-// `given`.
+// semantic table; "matches" (optional), matches.h5; "output", the sequence with the estimated
+// objects, to write; "associations", associations.json to write: all decisions and their reasons.
+// Throws InputError; NothingUsableError when no object is found; SettingsError, also when the
+// setting `association` is `given`.
 void RunAssociate(const AssociateOptions& options, const StageFiles& files, int threads);
 
 // soslam-planes: files "sequence", "table" and, with verticals, the images of folder "dataset" to

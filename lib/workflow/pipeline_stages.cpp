@@ -10,6 +10,7 @@
 #include "evaluation/alignment.h"
 #include "ground/options.h"
 #include "image/edge_maps.h"
+#include "image/feature_matches.h"
 #include "image/feature_tracks.h"
 #include "initialisation/options.h"
 #include "mapping/options.h"
@@ -53,6 +54,7 @@ std::vector<PipelineStage> MakeStages() {
   const StageInput edges_of_symmetry = {
       "edges", {"edges"}, {{"symmetry", true}, {"edge_alignment", true}}};
   const StageInput points = {"points", {"track"}, {{"point_evidence", true}}};
+  const StageInput matches = {"matches", {"match"}, {{"shared_points", true}}};
   const StageInput appearance = {
       "appearance", {"appearance"}, {{"picture_yaw", true}, {"picture_ratios", true}}};
   const StageInput start = {"landmarks", {"refine", "initialise"}};
@@ -63,12 +65,13 @@ std::vector<PipelineStage> MakeStages() {
       Stage<GroundOptions>("ground", {sequence},
                            {dataset, {"points", "$(dataset)/points.h5"}, table},
                            {sequence_file, {"world", "world.json"}}, "ground"),
-      Stage<AssociateOptions>("associate", {sequence}, {table},
+      // Neither matches nor points nor edge maps depend on the world or its unit.
+      Stage<MatchOptions>("match", {imported}, {dataset}, {{"output", "matches.h5"}}),
+      Stage<AssociateOptions>("associate", {sequence, matches}, {table},
                               {sequence_file, {"associations", "associations.json"}},
                               "association"),
       Stage<PlanesOptions>("planes", {sequence}, {dataset, table},
                            {sequence_file, {"report", "planes.json"}}, "planes"),
-      // Neither edge maps nor points depend on the world or its unit.
       Stage<EdgesOptions>("edges", {imported}, {dataset}, {{"output", "edges.h5"}}),
       Stage<TrackOptions>("track", {imported}, {dataset}, {{"output", "points.h5"}}),
       Stage<NoOptions>("appearance", {sequence},

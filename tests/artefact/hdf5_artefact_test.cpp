@@ -246,5 +246,77 @@ TEST_F(PointsFileTest, ArraysThatDoNotFitAreRefused) {
   ExpectError<InputError>(read, {"/observation_pixel", "expected 2 x 2"});
 }
 
+std::vector<PointTrack> TwoTracks() {
+  return {{{{0, {10.0, 20.5}}, {7, {11.0, 21.0}}, {8, {-0.5, 639.0}}}},
+          {{{3, {1.0, 2.0}}, {7, {4.0, 5.0}}}}};
+}
+
+class MatchesFileTest : public FolderTest {
+ protected:
+  // The error of the reader for two tracks, changed.
+  void ExpectRefused(const std::function<void(std::vector<PointTrack>*)>& change,
+                     const std::vector<std::string>& parts) {
+    std::vector<PointTrack> tracks = TwoTracks();
+    change(&tracks);
+    WriteMatches(path_, tracks, {});
+    ExpectError<InputError>([&] { ReadMatches(path_); }, parts);
+  }
+
+  // A file of three observations.
+  void WriteArrays(const std::vector<int>& begins, int pixel_rows = 3) {
+    Hdf5File file = CreateArtefact(path_, "matches", {});
+    file.WriteVector("/observation_begin", begins);
+    file.WriteVector("/observation_frame", std::vector<int>{0, 1, 2});
+    file.WriteMatrix("/observation_pixel", cv::Mat::zeros(pixel_rows, 2, CV_64FC1));
+    file.Close();
+  }
+
+  std::filesystem::path path_ = folder_ / "matches.h5";
+};
+
+TEST_F(MatchesFileTest, TracksComeBack) {
+  WriteMatches(path_, TwoTracks(), {});
+  const auto tracks = ReadMatches(path_);
+  ASSERT_EQ(tracks.size(), 2u);
+  ASSERT_EQ(tracks[0].observations.size(), 3u);
+  EXPECT_EQ(tracks[0].observations[2].pixel, Eigen::Vector2d(-0.5, 639.0));
+  EXPECT_EQ(tracks[1].observations.at(1).frame_id, 7);
+  WriteMatches(folder_ / "again.h5", tracks, {});
+  EXPECT_TRUE(FileBytes(folder_ / "again.h5") == FileBytes(path_));
+  WriteMatches(path_, {}, {});
+  EXPECT_TRUE(ReadMatches(path_).empty());
+}
+
+TEST_F(MatchesFileTest, ImpossibleTracksAreRefused) {
+  ExpectRefused([](auto* tracks) { (*tracks)[0].observations[1].pixel.x() = std::nan(""); },
+                {"matches.h5", "/observation_pixel", "row 1", "nan", "finite"});
+  ExpectRefused([](auto* tracks) { (*tracks)[1].observations[0].frame_id = -4; },
+                {"/observation_frame", "row 3", "-4", "at least 0"});
+  ExpectRefused([](auto* tracks) { (*tracks)[1].observations[1].frame_id = 3; },
+                {"/observation_frame", "row 4", "found 3", "more than the id above"});
+  ExpectRefused([](auto* tracks) { (*tracks)[0].observations.resize(1); },
+                {"/observation_begin", "row 1", "found 1", "two more"});
+  ExpectRefused([](auto* tracks) { (*tracks)[1].observations.clear(); },
+                {"/observation_begin", "row 2", "found 3", "two more"});
+}
+
+TEST_F(MatchesFileTest, ArraysThatDoNotFitAreRefused) {
+  const auto read = [&] { ReadMatches(path_); };
+  WriteArrays({0, 3});
+  EXPECT_NO_THROW(read());
+  WriteArrays({});
+  ExpectError<InputError>(read, {"/observation_begin", "row 0", "found none", "expected 0"});
+  WriteArrays({1, 3});
+  ExpectError<InputError>(read, {"/observation_begin", "row 0", "found 1", "expected 0"});
+  WriteArrays({0, 5, 3});
+  ExpectError<InputError>(read, {"/observation_begin", "row 2", "found 3", "above"});
+  WriteArrays({0, 2});
+  ExpectError<InputError>(read, {"/observation_begin", "found 2", "number of rows"});
+  WriteArrays({0, 3}, 2);
+  ExpectError<InputError>(read, {"/observation_pixel", "expected 3 x 2"});
+  WritePoints(path_, TwoPoints(), {});
+  ExpectError<InputError>(read, {"matches.h5", "points", "matches"});
+}
+
 }  // namespace
 }  // namespace soslam

@@ -1,52 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include <opencv2/imgproc.hpp>
-
 #include "artefact/files.h"
 #include "geometry/distortion.h"
 #include "image/feature_tracks.h"
 #include "stage/stages.h"
-#include "support/drawn_photos.h"
-#include "support/folder_test.h"
-#include "support/image_files.h"
 #include "support/printed.h"
 #include "support/temporary_folder.h"
+#include "support/wall_sequence.h"
 
 namespace soslam {
 namespace {
 
-constexpr double kFocalPx = 300.0;
-constexpr double kDepthM = 3.0;  // of the picture that all cameras look at
-constexpr int kShiftPx = 6;      // per image
-constexpr int kImages = 9;       // more than one batch of two threads
-
-// A camera that moves along a wall with a picture, and its sequence.json.
-class RunTrackTest : public FolderTest {
+class RunTrackTest : public WallSequenceTest {
  protected:
-  RunTrackTest() {
-    sequence_.name = "wall";
-    sequence_.camera = {320, 240, kFocalPx, kFocalPx, 159.5, 119.5};
-    for (int i = 0; i < kImages; ++i) {
-      const std::string name = "rgb/" + std::to_string(i) + ".png";
-      const Eigen::Vector3d place(i * kShiftPx * kDepthM / kFocalPx, 0.0, 0.0);
-      sequence_.frames.push_back(
-          {5 * i, 0.1 * i, name, {Eigen::Quaterniond::Identity(), place}, {}});
-      cv::Mat soft;
-      cv::GaussianBlur(DrawnView(i * kShiftPx), soft, {}, 1.0);
-      Write(name, EncodedImage(".png", soft));
-    }
-  }
-
   std::vector<MapPoint> Run(int threads = 2) {
     WriteSequence(folder_ / "sequence.json", sequence_, {});
     RunTrack({}, files_, threads);
     return ReadPoints(files_.at("output"));
   }
-  StageFiles files_ = {{"dataset", folder_.path()},
-                       {"sequence", folder_ / "sequence.json"},
-                       {"output", folder_ / "points.h5"}};
-  Sequence sequence_;
 };
 
 TEST_F(RunTrackTest, PointsLieOnThePicture) {

@@ -123,6 +123,9 @@ TEST_F(PlanTest, StagesReadTheLatestOfWhatTheyNeed) {
   Write("pipelines/variants/Ratios.json",
         R"({"extends": "Pictures",
             "optimise": {"picture_yaw": false, "picture_ratios": true}})");
+  Write("pipelines/variants/Matched.json",
+        R"({"stages": ["import", "match", "initialise", "evaluate"],
+            "associate": {"association": "estimated", "shared_points": true}})");
   ExpectError<InputError>([&] { Make({"Pictures"}); },
                           {"heads/yolox_nano.h5", "does not exist", "'Pictures'"});
   Write("pipelines/heads/yolox_nano.h5", "a head");
@@ -140,6 +143,9 @@ TEST_F(PlanTest, StagesReadTheLatestOfWhatTheyNeed) {
                        {"Full", "optimise", "landmarks", "refine/refined.json"},
                        {"Full", "optimise", "edges", "edges/edges.h5"},
                        {"Full", "evaluate", "landmarks", "optimise/map.json"},
+                       {"Matched", "match", "sequence", "import/sequence.json"},
+                       {"Matched", "associate", "sequence", "import/sequence.json"},
+                       {"Matched", "associate", "matches", "match/matches.h5"},
                        {"Points", "track", "sequence", "import/sequence.json"},
                        {"Points", "initialise", "points", ""},
                        {"Points", "optimise", "points", "track/points.h5"},
@@ -148,6 +154,7 @@ TEST_F(PlanTest, StagesReadTheLatestOfWhatTheyNeed) {
   // Images do not depend on what is estimated from boxes.
   expect_inputs(R"({"associate": {"association": "estimated"}})",
                 {{"Full", "associate", "sequence", "import/sequence.json"},
+                 {"Full", "associate", "matches", ""},
                  {"Full", "edges", "sequence", "import/sequence.json"},
                  {"Pictures", "appearance", "sequence", "associate/sequence.json"},
                  {"Full", "initialise", "sequence", "associate/sequence.json"},

@@ -56,6 +56,8 @@ const FuzzTarget kHdf5("hdf5", [](const HostileInput& input) {
   ReadBy(file, ReadSymmetry, ReadAppearance, [](const auto& path) { const Head head(path); });
   const auto points = input.Output("points.h5");
   if (IsAccepted(file, [&] { WritePoints(points, ReadPoints(file), {}); })) ReadPoints(points);
+  const auto matches = input.Output("matches.h5");
+  if (IsAccepted(file, [&] { WriteMatches(matches, ReadMatches(file), {}); })) ReadMatches(matches);
   IsAccepted(file, [&] {
     const EdgesReader reader(file);
     for (const int frame_id : reader.FrameIds()) reader.Read(frame_id);
