@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "image/feature_matches.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <opencv2/features2d.hpp>
@@ -16,6 +19,9 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // Pixels at which a second feature is another place, not the same one at another scale.
 constexpr double kElsewherePx = 8.0;
+
+// Rounding errors of a translation, such as that of a camera that only turns.
+double RoundingOf(const Eigen::Vector3d& place) { return 1e-9 * (1.0 + place.norm()); }
 
 // One row per feature.
 using Coordinates = Eigen::Array<float, Eigen::Dynamic, 2>;
@@ -51,15 +57,13 @@ class TwoViewGeometry {
   TwoViewGeometry(const FeatureView& first, const FeatureView& second)
       : first_pixels_(first.features.pixels.cast<float>().transpose().array()),
         second_pixels_(second.features.pixels.cast<float>().transpose().array()) {
-    constexpr double kRounding = 1e-9;
     const Rigid3d second_from_first = second.world_from_camera.Inverse() * first.world_from_camera;
     const Eigen::Matrix3d rotation = second_from_first.rotation.toRotationMatrix();
     const Eigen::Matrix3d first_ray_from_pixel = first.camera.Intrinsics().inverse();
     const Eigen::Matrix3d second_ray_from_pixel = second.camera.Intrinsics().inverse();
     const Eigen::Matrix3d homography = second.camera.Intrinsics() * rotation * first_ray_from_pixel;
     translation_ = second_from_first.translation;
-    only_turns_ =
-        translation_.norm() <= kRounding * (1.0 + first.world_from_camera.translation.norm());
+    only_turns_ = translation_.norm() <= RoundingOf(first.world_from_camera.translation);
     at_infinity_ = Moved(homography, first.features.pixels);
     if (only_turns_) {
       back_at_infinity_ = Moved(homography.inverse(), second.features.pixels);
@@ -179,6 +183,46 @@ BestCandidates FindBest(const std::vector<Candidate>& candidates, int Candidate:
   return found;
 }
 
+// True if all views of a track see one point, which may be at infinity, within this distance of its
+// projections. Pairs of images alone let a match slide along the epipolar line.
+bool HasOnePoint(const FeatureTrack& track, const std::vector<FeatureView>& views,
+                 double max_error_px) {
+  // The homogeneous point (x, w) with the smallest sum of |across (x - w centre)|^2, where `across`
+  // projects along a ray; centres are relative to the first one, in units of their spread.
+  const Eigen::Vector3d origin = views[track.places.front().image].world_from_camera.translation;
+  double spread = 0.0;
+  for (const FeatureTrack::Place& place : track.places) {
+    spread = std::max(spread, (views[place.image].world_from_camera.translation - origin).norm());
+  }
+  const bool only_turns = spread <= RoundingOf(origin);
+  const double unit = only_turns ? 1.0 : spread;
+  Eigen::Matrix4d normal_matrix = Eigen::Matrix4d::Zero();
+  if (only_turns) normal_matrix(3, 3) = 1.0;  // all points are at infinity
+  for (const FeatureTrack::Place& place : track.places) {
+    const FeatureView& view = views[place.image];
+    const Eigen::Vector3d ray =
+        (view.world_from_camera.rotation * view.camera.Ray(place.pixel)).normalized();
+    const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - ray * ray.transpose();
+    Eigen::Matrix<double, 3, 4> residual;
+    residual << across, -across * (view.world_from_camera.translation - origin) / unit;
+    normal_matrix += residual.transpose() * residual;
+  }
+  const Eigen::Vector4d point =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(normal_matrix).eigenvectors().col(0);
+  const auto error_px = [&](const FeatureTrack::Place& place, double sign) {
+    const FeatureView& view = views[place.image];
+    const Eigen::Vector3d centre = (view.world_from_camera.translation - origin) / unit;
+    const auto pixel = view.camera.Project(view.world_from_camera.rotation.conjugate() *
+                                           (sign * (point.head<3>() - point.w() * centre)));
+    return pixel ? (*pixel - place.pixel).norm() : std::numeric_limits<double>::infinity();
+  };
+  return std::ranges::any_of(std::array{1.0, -1.0}, [&](double sign) {
+    return std::ranges::all_of(track.places, [&](const FeatureTrack::Place& place) {
+      return error_px(place, sign) <= max_error_px;
+    });
+  });
+}
+
 }  // namespace
 
 ImageFeatures FindFeatures(const cv::Mat& grey, const MatchOptions& options) {
@@ -258,7 +302,8 @@ std::vector<std::pair<int, int>> ImagePairs(const std::vector<int>& segments) {
 
 std::vector<FeatureTrack> JoinMatches(const std::vector<FeatureView>& views,
                                       const std::vector<std::pair<int, int>>& pairs,
-                                      const std::vector<std::vector<FeatureMatch>>& matches) {
+                                      const std::vector<std::vector<FeatureMatch>>& matches,
+                                      const MatchOptions& options) {
   // All features are counted in one row, view after view. Those of one pixel, which differ in the
   // orientation of their descriptors, are the first of them.
   std::vector<int> begins, view_of, first_of_pixel;
@@ -293,23 +338,33 @@ std::vector<FeatureTrack> JoinMatches(const std::vector<FeatureView>& views,
     for (int i = next[feature]; i != feature; i = next[i]) ring.push_back(i);
     return ring;
   };
-  std::vector<const Link*> last_link(views.size());  // whose first feature's track has the view
+  const auto track_of = [&](std::vector<int> features) {
+    std::ranges::sort(features);
+    FeatureTrack track;
+    for (const int feature : features) {
+      const int view = view_of[feature];
+      track.places.push_back({view, views[view].features.pixels.col(feature - begins[view])});
+    }
+    return track;
+  };
+  const auto has_an_image_twice = [](const FeatureTrack& track) {
+    return std::ranges::adjacent_find(track.places, {}, &FeatureTrack::Place::image) !=
+           track.places.end();
+  };
   for (const Link& link : links) {
-    for (const int i : ring_of(link.first)) last_link[view_of[i]] = &link;
-    const bool share_a_view = std::ranges::any_of(
-        ring_of(link.second), [&](int i) { return last_link[view_of[i]] == &link; });
-    if (!share_a_view) std::swap(next[link.first], next[link.second]);
+    std::vector<int> features = ring_of(link.first);
+    std::ranges::copy(ring_of(link.second), std::back_inserter(features));
+    const FeatureTrack joined = track_of(std::move(features));
+    if (!has_an_image_twice(joined) &&
+        HasOnePoint(joined, views, options.max_reprojection_error_px)) {
+      std::swap(next[link.first], next[link.second]);
+    }
   }
   std::vector<FeatureTrack> tracks;
   for (int i = 0; i < static_cast<int>(next.size()); ++i) {
     std::vector<int> ring = ring_of(i);
-    if (ring.size() < 2 || std::ranges::min(ring) < i) continue;
-    std::ranges::sort(ring);
-    FeatureTrack& track = tracks.emplace_back();
-    for (const int feature : ring) {
-      const int view = view_of[feature];
-      track.places.push_back({view, views[view].features.pixels.col(feature - begins[view])});
-    }
+    if (ring.size() >= 2 && std::ranges::min(ring) == i)
+      tracks.push_back(track_of(std::move(ring)));
   }
   return tracks;
 }

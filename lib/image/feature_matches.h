@@ -20,6 +20,7 @@ struct MatchOptions {
   double max_epipolar_px = 3.0;
   double max_descriptor_distance = 0.7;
   double max_ratio = 0.85;
+  double max_reprojection_error_px = 5.0;
 
   void Describe(OptionVisitor& visit) {
     visit.Group("Features");
@@ -37,6 +38,10 @@ struct MatchOptions {
     visit.Real("max_ratio", &max_ratio, {0.01, 1.0},
                "largest descriptor distance of a match, as a fraction of that of the next best "
                "feature elsewhere in the same image");
+    visit.Group("Tracks");
+    visit.Real("max_reprojection_error_px", &max_reprojection_error_px, {0.1, 1e6},
+               "two tracks are not joined if a pixel would be further from the projection of the "
+               "point that fits all of them");
   }
 };
 
@@ -77,10 +82,11 @@ std::vector<FeatureMatch> MatchFeatures(const FeatureView& first, const FeatureV
 std::vector<std::pair<int, int>> ImagePairs(const std::vector<int>& segments);
 
 // Tracks of at least two images, by first image, then feature: matches joined in the order of their
-// descriptor distances, unless a track would then have two pixels of an image. `matches` has those
-// of each pair of views.
+// descriptor distances, unless a track would then have two pixels of an image, or pixels that no
+// one point explains. `matches` has those of each pair of views.
 std::vector<FeatureTrack> JoinMatches(const std::vector<FeatureView>& views,
                                       const std::vector<std::pair<int, int>>& pairs,
-                                      const std::vector<std::vector<FeatureMatch>>& matches);
+                                      const std::vector<std::vector<FeatureMatch>>& matches,
+                                      const MatchOptions& options);
 
 }  // namespace soslam

@@ -57,7 +57,7 @@ void RunMatch(const MatchOptions& options, const StageFiles& files, int threads)
     matches[i] = MatchFeatures(views[pairs[i].first], views[pairs[i].second], options);
   });
   std::vector<PointTrack> tracks;
-  for (const FeatureTrack& track : JoinMatches(views, pairs, matches)) {
+  for (const FeatureTrack& track : JoinMatches(views, pairs, matches, options)) {
     tracks.push_back(AsStored(sequence, images, track));
   }
   if (tracks.empty()) {

@@ -188,20 +188,25 @@ TEST(ImagePairsTest, AreCloseOrFurtherApartBySteps) {
   EXPECT_THAT(ImagePairs({0}), IsEmpty());
 }
 
+// Three cameras side by side, which see two things twice at one pixel and another elsewhere.
 class JoinMatchesTest : public testing::Test {
  protected:
-  // Images of three features each: two at the same pixel, and one elsewhere.
   JoinMatchesTest() {
-    views_.resize(3);
-    for (FeatureView& view : views_) {
-      view.features = FeaturesOf({{1.0, 2.0}, {1.0, 2.0}, {30.0, 4.0}},
-                                 std::vector<Eigen::ArrayXd>(3, Eigen::ArrayXd::Ones(128)));
+    const Camera camera{640, 480, 500.0, 500.0, 319.5, 239.5};
+    for (int i = 0; i < 3; ++i) {
+      const Pixels pixels = {{300.0 - 20.0 * i, 100.0}, {300.0 - 20.0 * i, 100.0}, {400.0, 100.0}};
+      views_.push_back(
+          {camera,
+           {Eigen::Quaterniond::Identity(), {100.0 + 0.1 * i, 50.0, 0.0}},
+           FeaturesOf(pixels, std::vector<Eigen::ArrayXd>(3, Eigen::ArrayXd::Ones(128)))});
     }
   }
   // "image:x" of each place.
-  std::vector<std::string> Join(const std::vector<std::vector<FeatureMatch>>& matches) const {
+  std::vector<std::string> Join(const std::vector<std::vector<FeatureMatch>>& matches,
+                                double max_error_px = 1e6) const {
     std::vector<std::string> texts;
-    for (const FeatureTrack& track : JoinMatches(views_, {{0, 1}, {0, 2}, {1, 2}}, matches)) {
+    for (const FeatureTrack& track : JoinMatches(views_, {{0, 1}, {0, 2}, {1, 2}}, matches,
+                                                 {.max_reprojection_error_px = max_error_px})) {
       std::string& text = texts.emplace_back();
       for (const auto& [image, pixel] : track.places) {
         text += (text.empty() ? "" : " ") + std::to_string(image) + ":" +
@@ -214,17 +219,33 @@ class JoinMatchesTest : public testing::Test {
 };
 
 TEST_F(JoinMatchesTest, TracksHaveOnePixelOfAnImage) {
-  EXPECT_THAT(Join({{{0, 2, 0.1F}}, {}, {{2, 0, 0.1F}}}), ElementsAre("0:1 1:30 2:1"));
+  EXPECT_THAT(Join({{{0, 0, 0.1F}}, {}, {{0, 0, 0.1F}}}), ElementsAre("0:300 1:280 2:260"));
   // The match between images 0 and 2 contradicts the two others, of which the worse one yields.
-  EXPECT_THAT(Join({{{0, 0, 0.1F}}, {{0, 2, 0.2F}}, {{0, 0, 0.3F}}}), ElementsAre("0:1 1:1 2:30"));
-  EXPECT_THAT(Join({{{0, 0, 0.1F}}, {{0, 2, 0.3F}}, {{0, 0, 0.2F}}}), ElementsAre("0:1 1:1 2:1"));
-  EXPECT_THAT(Join({{{2, 0, 0.1F}, {0, 2, 0.1F}}, {}, {}}), ElementsAre("0:1 1:30", "0:30 1:1"));
+  EXPECT_THAT(Join({{{0, 0, 0.1F}}, {{0, 2, 0.2F}}, {{0, 0, 0.3F}}}),
+              ElementsAre("0:300 1:280 2:400"));
+  EXPECT_THAT(Join({{{0, 0, 0.1F}}, {{0, 2, 0.3F}}, {{0, 0, 0.2F}}}),
+              ElementsAre("0:300 1:280 2:260"));
+  EXPECT_THAT(Join({{{2, 2, 0.1F}, {0, 0, 0.1F}}, {}, {}}),
+              ElementsAre("0:300 1:280", "0:400 1:400"));
   EXPECT_THAT(Join({{}, {}, {}}), IsEmpty());
 }
 
 TEST_F(JoinMatchesTest, FeaturesOfOnePixelAreOnePoint) {
-  EXPECT_THAT(Join({{{0, 0, 0.1F}, {1, 1, 0.2F}}, {}, {{1, 2, 0.3F}}}),
-              ElementsAre("0:1 1:1 2:30"));
+  EXPECT_THAT(Join({{{0, 0, 0.1F}}, {}, {{1, 0, 0.3F}}}), ElementsAre("0:300 1:280 2:260"));
+}
+
+// Each pair of pixels alone lies on epipolar lines.
+TEST_F(JoinMatchesTest, TracksAreOfOnePoint) {
+  EXPECT_THAT(Join({{{0, 0, 0.1F}}, {}, {{0, 0, 0.2F}}}, 0.1), ElementsAre("0:300 1:280 2:260"));
+  EXPECT_THAT(Join({{{2, 2, 0.1F}}, {}, {{2, 2, 0.2F}}}, 0.1), ElementsAre("0:400 1:400 2:400"))
+      << "a point at infinity";
+  views_[2].features.pixels(0, 0) = views_[2].features.pixels(0, 1) = 190.0;
+  EXPECT_THAT(Join({{{0, 0, 0.1F}}, {}, {{0, 0, 0.2F}}}, 5.0), ElementsAre("0:300 1:280"));
+  EXPECT_EQ(Join({{{0, 0, 0.1F}}, {}, {{0, 0, 0.2F}}}, 30.0).size(), 1u);
+  // The cameras have one place.
+  for (FeatureView& view : views_) view.world_from_camera.translation.setZero();
+  EXPECT_THAT(Join({{{2, 2, 0.1F}}, {}, {{2, 2, 0.2F}}}, 0.1), ElementsAre("0:400 1:400 2:400"));
+  EXPECT_THAT(Join({{{0, 0, 0.1F}}, {}, {{0, 0, 0.2F}}}, 5.0), IsEmpty());
 }
 
 TEST(FindFeaturesTest, DescriptorsAreUnitVectorsAndPixelsInOrder) {
