@@ -248,7 +248,7 @@ TEST_F(PlanTest, RefusalsNameTheFile) {
       {R"({"initialise": 3})", "initialise"},
       {R"({"initialize": {}})", "initialize"},
       {R"({"stages": ["import", "fly"]})", "fly"},
-      {R"({"stages": ["import", "ground"]})", "expected one of import, edges"},
+      {R"({"stages": ["import", "ground"]})", "expected one of import, match, edges"},
       {R"({"stages": ["import", "import"]})", "twice"},
       {R"({"stages": []})", "stages"},
       {R"({"stages": null})", "stages"},
