@@ -62,7 +62,7 @@ void RunMatch(const MatchOptions& options, const StageFiles& files, int threads)
   }
   if (tracks.empty()) {
     info.findings = {{"no_shared_points", Severity::kWarning,
-                      fmt::format("no point that two of {} show", Counted(images.size(), "image")),
+                      fmt::format("no two of {} share a point", Counted(images.size(), "image")),
                       "some",
                       "the images show little texture or have little in common, or the poses do "
                       "not fit them",

@@ -46,9 +46,8 @@ TEST_F(RunMatchTest, TracksAreOfOnePlaceOfThePicture) {
   EXPECT_GT(through_all, 20u);
 }
 
-// The camera comes back after images of another wall.
+// Frames between have no image.
 TEST_F(RunMatchTest, ThePlaceIsFoundAgain) {
-  const std::vector<Frame> frames = sequence_.frames;
   for (const int i : {1, 2, 3}) sequence_.frames[i].image.clear();
   size_t found = 0;
   for (const PointTrack& track : Run()) {
@@ -92,7 +91,7 @@ TEST_F(RunMatchTest, TracksStayInTheirSegment) {
 TEST_F(RunMatchTest, WithoutMatchesTheCauseIsNamed) {
   sequence_.frames.resize(1);
   const std::string warning = PrintedBy([&] { EXPECT_TRUE(Run().empty()); }).errors;
-  EXPECT_THAT(warning, testing::HasSubstr("no point that two of 1 image show"));
+  EXPECT_THAT(warning, testing::HasSubstr("no two of 1 image share a point"));
   sequence_.frames[0].image.clear();
   ExpectError<NothingUsableError>([&] { Run(); }, {"sequence.json", "has an image"});
 }
