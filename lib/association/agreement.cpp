@@ -15,14 +15,10 @@ namespace {
 constexpr double kNegligibleProbability = 0.01;
 
 const char* ReasonNotUsed(const Association& association, const DetectionDecision& decision) {
-  if (decision.decision == LinkDecision::kDuplicate || decision.superseded) {
-    return "duplicate_of_another_box";
-  }
-  int track = decision.track;
-  while (association.tracks[track].fate == TrackFate::kMerged) {
-    track = association.tracks[track].merge.into;
-  }
-  return NameOf(association.tracks[track].fate);
+  if (decision.fate == BoxFate::kDuplicate) return "duplicate_of_another_box";
+  const TrackFate fate = association.tracks[decision.track].fate;
+  if (fate != TrackFate::kObject) return NameOf(fate);
+  return decision.fate == BoxFate::kSecond ? "duplicate_of_another_box" : "not_explained";
 }
 
 }  // namespace
@@ -101,6 +97,10 @@ Sequence AssociatedSequence(const Sequence& sequence, const Association& associa
     if (decision.object >= 0) {
       Detection detection = sequence.detections[i];
       detection.object_index = decision.object;
+      if (decision.match && decision.match->cut_edge == BoxSide::kBottom &&
+          association.tracks[decision.track].fit->feet_are_hidden) {
+        detection.is_one_sided[static_cast<size_t>(BoxSide::kBottom)] = true;
+      }
       const int plane = associated.ObjectOf(detection).plane_index;
       if (plane != kNoPlane && !sequence.HasSupports()) {
         detection.plane_in_camera =
@@ -133,15 +133,12 @@ Associations ReportOf(const Sequence& sequence, const Association& association,
   Associations report;
   for (size_t i = 0; i < association.detections.size(); ++i) {
     const DetectionDecision& decision = association.detections[i];
-    Associations::DetectionRow row = {name_of(sequence.detections[i]), decision.decision};
-    if (decision.decision == LinkDecision::kLinked ||
-        decision.decision == LinkDecision::kRevisited) {
-      row.link = {decision.match.overlap, decision.match.distance, decision.match.cut_edge,
-                  decision.frames_since_seen};
+    Associations::DetectionRow row = {name_of(sequence.detections[i]), decision.fate};
+    if (decision.match) {
+      row.match = {decision.match->overlap, decision.match->distance, decision.match->cut_edge};
     }
     row.track = if_any(decision.track, 0);
     row.object = if_any(decision.object, 1);
-    row.superseded = decision.superseded;
     if (decision.duplicate_of >= 0) {
       row.duplicate_of = name_of(sequence.detections[decision.duplicate_of]);
     }
@@ -149,11 +146,8 @@ Associations ReportOf(const Sequence& sequence, const Association& association,
   }
   for (const Track& track : association.tracks) {
     Associations::TrackRow row = {static_cast<int>(report.tracks.size()), track.fate};
-    if (track.fate == TrackFate::kMerged) {
-      row.merge = {track.merge.into, track.merge.explained, track.merge.tried,
-                   track.merge.shared_frames};
-    }
-    row.linked_detections = track.linked;
+    row.boxes = static_cast<int>(track.boxes.size());
+    row.feet_are_hidden = track.fit && track.fit->feet_are_hidden;
     row.detections = static_cast<int>(track.detections.size());
     row.frames_in_sight = track.frames_in_sight;
     report.tracks.push_back(row);

@@ -87,59 +87,118 @@ AssociationModel::AssociationModel(const Sequence& sequence, const SemanticTable
       labels_(LabelsOf(sequence), options),
       moving_labels_(NormalisedLabels("moving_labels", options.moving_labels)) {}
 
-void AssociationModel::Try(const Track& track, const std::string& label,
-                           Hypotheses* hypotheses) const {
-  ShapePrior prior = PriorOfLabel(table_, label, options_);
-  if (!sequence_.planes.empty()) prior = TurnedToSupport(prior);
-  const double cost_of_votes = labels_.CostOfVotes(track.votes, label);
-  const auto cost_of = [&](const FittedObject& fit) {
-    return cost_of_votes + options_.label_evidence_weight * fit.cost;
-  };
+std::vector<Support> AssociationModel::SupportsOf(const Track& track) const {
+  if (sequence_.planes.empty()) return {{kNoPlane, up_of_segments_.at(SegmentOf(track))}};
   std::vector<Support> supports;
-  if (sequence_.planes.empty()) supports = {{kNoPlane, up_of_segments_.at(SegmentOf(track))}};
   for (int i = 0; i < static_cast<int>(sequence_.planes.size()); ++i) {
     if (sequence_.HasSupports() && i != track.plane_index) continue;
     supports.push_back({i, sequence_.planes[i].plane_in_world});
   }
-  for (const Support& support : supports) {
-    const double cost_of_plane =
-        sequence_.planes.empty() || sequence_.HasSupports()
-            ? 0.0
-            : CostOfPlane(sequence_, std::get<Plane>(support.in_world), prior);
-    if (!std::isfinite(cost_of_plane)) continue;
-    const auto fit = FitTrack(sequence_, track.detections, prior, options_, support.in_world);
-    if (!fit) continue;
-    const double cost = cost_of(*fit) + cost_of_plane;
-    const auto [of_label, is_first] = hypotheses->cost_of_label.emplace(label, cost);
-    of_label->second = std::min(of_label->second, cost);
-    if (cost >= hypotheses->cost) continue;
-    hypotheses->cost = cost;
-    hypotheses->fit = fit;
-    hypotheses->plane_index = support.plane_index;
-  }
+  return supports;
+}
+
+double AssociationModel::CostOfLabel(const Track& track, const std::string& label,
+                                     const FittedObject& fit) const {
+  return labels_.CostOfVotes(track.votes, label) + options_.label_evidence_weight * fit.cost;
+}
+
+void AssociationModel::Try(const Track& track, const std::string& label, const Support& support,
+                           const std::vector<Landmark>& starts, Hypotheses* hypotheses) const {
+  const ShapePrior prior = PriorOf(label);
+  const double cost_of_plane =
+      sequence_.planes.empty() || sequence_.HasSupports()
+          ? 0.0
+          : CostOfPlane(sequence_, std::get<Plane>(support.in_world), prior);
+  if (!std::isfinite(cost_of_plane)) return;
+  const auto fit =
+      FitTrack(sequence_, track.detections, prior, options_, support.in_world, {starts});
+  if (!fit) return;
+  const double cost = CostOfLabel(track, label, *fit) + cost_of_plane;
+  const auto [of_label, is_first] = hypotheses->cost_of_label.emplace(label, cost);
+  of_label->second = std::min(of_label->second, cost);
+  if (cost >= hypotheses->cost) return;
+  hypotheses->cost = cost;
+  hypotheses->prior_cost = 2.0 * (fit->prior_cost + cost_of_plane);
+  hypotheses->fit = fit;
+  hypotheses->plane_index = support.plane_index;
+  hypotheses->label = label;
+}
+
+void AssociationModel::TryFreeHeight(const Track& track, const std::string& label,
+                                     Hypotheses* hypotheses) const {
+  const ShapePrior prior = PriorOf(label);
   if (sequence_.planes.empty() || prior.mount != Mount::kStanding) return;
   const UpEstimate up{UpOfPlanes(sequence_), Eigen::Matrix3d::Zero()};
-  const auto free = FitTrack(sequence_, track.detections, prior, options_, up);
+  const auto free =
+      FitTrack(sequence_, track.detections, prior, options_, up, {.feet_may_be_hidden = false});
   if (!free || MayStandOnSome(sequence_, *free)) return;
-  hypotheses->cost_at_free_height = std::min(
-      hypotheses->cost_at_free_height, cost_of(*free) - std::log(options_.no_support_probability));
+  hypotheses->cost_at_free_height =
+      std::min(hypotheses->cost_at_free_height,
+               CostOfLabel(track, label, *free) - std::log(options_.no_support_probability));
 }
 
 void AssociationModel::Fit(Track* track) const {
   Hypotheses hypotheses;
   for (const std::string& label : labels_.Candidates(track->votes)) {
-    if (track->votes.contains(label) || table_.Contains(label)) Try(*track, label, &hypotheses);
+    if (!track->votes.contains(label) && !table_.Contains(label)) continue;
+    for (const Support& support : SupportsOf(*track)) Try(*track, label, support, {}, &hypotheses);
+    TryFreeHeight(*track, label, &hypotheses);
   }
+  Settle(hypotheses, track);
+}
+
+void AssociationModel::FitAsDetected(Track* track) const {
+  Hypotheses hypotheses;
+  const auto try_label = [&](const std::string& label) {
+    for (const Support& support : SupportsOf(*track)) Try(*track, label, support, {}, &hypotheses);
+  };
+  for (const auto& [label, votes] : track->votes) try_label(label);
+  const double misfit =
+      hypotheses.fit ? hypotheses.fit->cost_of_misfit : std::numeric_limits<double>::infinity();
+  if (options_.label_evidence_weight * misfit > -std::log(options_.similar_label_confusion)) {
+    for (const std::string& label : labels_.Candidates(track->votes)) {
+      if (!track->votes.contains(label) && table_.Contains(label)) try_label(label);
+    }
+  }
+  Settle(hypotheses, track);
+}
+
+void AssociationModel::FitLike(const std::vector<const Track*>& parts, Track* track) const {
+  std::set<std::pair<std::string, int>> ways;
+  std::vector<Landmark> starts;
+  for (const Track* part : parts) {
+    if (!part->fit) continue;
+    ways.emplace(part->fit_label, part->plane_index);
+    if (parts.size() <= 2) starts.push_back(part->fit->landmark_in_world);
+  }
+  Hypotheses hypotheses;
+  for (const auto& [label, plane_index] : ways) {
+    for (const Support& support : SupportsOf(*track)) {
+      if (support.plane_index == plane_index) Try(*track, label, support, starts, &hypotheses);
+    }
+  }
+  Settle(hypotheses, track);
+}
+
+void AssociationModel::Settle(const Hypotheses& hypotheses, Track* track) const {
+  std::map<std::string, double> cost_of_label = hypotheses.cost_of_label;
   if (hypotheses.fit) {
     track->fit = hypotheses.fit;
+    track->fit_label = hypotheses.label;
+    track->prior_cost = hypotheses.prior_cost;
     track->plane_index = hypotheses.plane_index;
     track->has_support = hypotheses.cost <= hypotheses.cost_at_free_height;
   } else {
     for (const auto& [label, score] : track->votes) {
-      hypotheses.cost_of_label[label] = labels_.CostOfVotes(track->votes, label);
+      cost_of_label[label] = labels_.CostOfVotes(track->votes, label);
     }
   }
-  track->labels = ProbabilitiesOfLabels(hypotheses.cost_of_label);
+  track->labels = ProbabilitiesOfLabels(cost_of_label);
+}
+
+ShapePrior AssociationModel::PriorOf(const std::string& label) const {
+  const ShapePrior prior = PriorOfLabel(table_, label, options_);
+  return sequence_.planes.empty() ? prior : TurnedToSupport(prior);
 }
 
 int AssociationModel::SegmentOf(const Track& track) const {
@@ -173,6 +232,25 @@ std::optional<BoxMatch> AssociationModel::Match(const Track& track, const Predic
   return match->cost < NewObjectCost(detection) ? match : std::nullopt;
 }
 
+bool AssociationModel::MayShareSupport(const Track& one, const Track& other) const {
+  return SegmentOf(one) == SegmentOf(other) &&
+         (!sequence_.HasSupports() || one.plane_index == other.plane_index);
+}
+
+std::vector<std::optional<BoxMatch>> AssociationModel::Explain(const Track& track) const {
+  std::vector<std::optional<BoxMatch>> matches(track.detections.size());
+  if (!track.fit) return matches;
+  FittedObject exact = *track.fit;
+  exact.covariance.setZero();
+  const int middle = DetectionAt(track.detections[track.detections.size() / 2]).frame_index;
+  for (size_t i = 0; i < matches.size(); ++i) {
+    const Detection& detection = DetectionAt(track.detections[i]);
+    const auto prediction = boxes_.Predict(exact, middle, detection.frame_index);
+    if (prediction) matches[i] = Match(track, *prediction, detection);
+  }
+  return matches;
+}
+
 bool AssociationModel::Moves(const Track& track) const {
   return moving_labels_.contains(NormalisedLabel(soslam::LabelOf(track)));
 }
@@ -182,6 +260,13 @@ bool AssociationModel::MayBeOneObject(const Track& one, const Track& other) cons
          std::ranges::all_of(other.votes, [&](const auto& vote) {
            return labels_.Probability(vote.first, one.labels) > 0.0;
          });
+}
+
+double AssociationModel::UnexplainedCost(const Track& track, const Detection& detection) const {
+  constexpr double kUnexplained = 0.0025;
+  return boxes_.CostOfAnyBox(detection) -
+         2.0 * std::log(labels_.Probability(LabelOf(detection), track.labels)) -
+         2.0 * std::log(kUnexplained);
 }
 
 double AssociationModel::NewObjectCost(const Detection& detection) const {

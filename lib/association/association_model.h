@@ -41,6 +41,12 @@ class AssociationModel {
   // its support plane is unknown, each plane. Boxes, sizes and votes decide among them. When the
   // boxes determine no landmark, the track keeps its previous one.
   void Fit(Track* track) const;
+  // The same with the labels and supports of its parts alone, which have been fitted; from their
+  // landmarks, if they are two or fewer.
+  void FitLike(const std::vector<const Track*>& parts, Track* track) const;
+  // The same with the labels that it is detected with, with similar ones only where these misfit by
+  // more than that costs, and without asking whether it has a support.
+  void FitAsDetected(Track* track) const;
 
   // Expected box of a track in a frame. None when the track has no landmark, its landmark is not
   // entirely in front of the camera, or the frame is of another segment. Odometry drift is counted
@@ -51,6 +57,12 @@ class AssociationModel {
   // likely, or the detection is on another plane.
   std::optional<BoxMatch> Match(const Track& track, const Prediction& prediction,
                                 const Detection& detection) const;
+  // True if both may be in one place: they are of one segment and, if supports are known, on one
+  // plane.
+  bool MayShareSupport(const Track& one, const Track& other) const;
+  // The match of each of the track's boxes by its own landmark, which is taken as exact in the
+  // frame in the middle of the track, from which drift is counted.
+  std::vector<std::optional<BoxMatch>> Explain(const Track& track) const;
   // True if the segment of two tracks is the same and the detector may give the labels of the other
   // track to an object like the first.
   bool MayBeOneObject(const Track& one, const Track& other) const;
@@ -58,6 +70,8 @@ class AssociationModel {
   bool Moves(const Track& track) const;
   // Cost of assigning the detection to an unseen object, comparable to BoxMatch::cost.
   double NewObjectCost(const Detection& detection) const;
+  // Cost of assigning the detection to a track whose landmark does not explain its box.
+  double UnexplainedCost(const Track& track, const Detection& detection) const;
 
  private:
   int SegmentOf(const Track& track) const;
@@ -67,9 +81,17 @@ class AssociationModel {
     double cost = std::numeric_limits<double>::infinity();
     double cost_at_free_height = std::numeric_limits<double>::infinity();
     std::optional<FittedObject> fit;
+    double prior_cost = 0.0;
     int plane_index = kNoPlane;
+    std::string label;
   };
-  void Try(const Track& track, const std::string& label, Hypotheses* hypotheses) const;
+  std::vector<Support> SupportsOf(const Track& track) const;
+  void Try(const Track& track, const std::string& label, const Support& support,
+           const std::vector<Landmark>& starts, Hypotheses* hypotheses) const;
+  void TryFreeHeight(const Track& track, const std::string& label, Hypotheses* hypotheses) const;
+  double CostOfLabel(const Track& track, const std::string& label, const FittedObject& fit) const;
+  ShapePrior PriorOf(const std::string& label) const;
+  void Settle(const Hypotheses& hypotheses, Track* track) const;
 
   const Sequence& sequence_;
   const SemanticTable& table_;
@@ -80,15 +102,7 @@ class AssociationModel {
   std::set<std::string> moving_labels_;  // normalised
 };
 
-// Merges tracks of the same object: the larger track's landmark fits at least merge_share of the
-// smaller one's boxes (at most max_views of them, evenly spread), and the two are detected in the
-// same frame in at most max_shared_frames of the smaller one's frames; or their bodies take up the
-// same place (same_place_overlap). Smallest tracks first, each into the one that fits most of its
-// boxes, until no pair is left to merge. Where a merged object has two detections in a frame, the
-// one with the lower score is superseded. Landmarks of grown tracks are refitted.
-void MergeTracks(const AssociationModel& model, int threads, Association* association);
-
-// Decides which of the tracks left after merging are objects, and sets the fate of all.
+// Decides which of the tracks are objects, and sets the fate of all.
 void DropFalseTracks(const AssociationModel& model, int threads, Association* association);
 
 }  // namespace soslam

@@ -90,6 +90,7 @@ std::optional<Prediction> BoxLikelihood::Predict(const FittedObject& object, int
                                                  int frame_index) const {
   const Frame& frame = sequence_.frames[frame_index];
   Prediction prediction;
+  prediction.feet_are_hidden = object.feet_are_hidden;
   prediction.camera_from_world = frame.world_from_camera.Inverse();
   prediction.landmark_in_camera = Transform(prediction.camera_from_world, object.landmark_in_world);
   const Camera& camera = sequence_.CameraOf(frame);
@@ -139,13 +140,15 @@ std::optional<BoxMatch> BoxLikelihood::Match(const Prediction& prediction,
   const NormalDensity whole = DensityOf(residuals, covariance, {0, 1, 2, 3});
   best.cost = whole.cost - 2.0 * std::log(1.0 - 4.0 * p);
   best.distance = whole.distance;
-  for (int cut = 0; cut < 4 && p > 0.0; ++cut) {
+  for (int cut = 0; cut < 4; ++cut) {
+    const double p_cut = cut == 3 && prediction.feet_are_hidden ? kHiddenFeetInView : p;
+    if (p_cut == 0.0) continue;
     std::vector<int> others = {0, 1, 2, 3};
     std::erase(others, cut);
     const NormalDensity rest = DensityOf(residuals, covariance, others);
     const double extent_px =
         cut % 2 == 0 ? prediction.outline.Width() : prediction.outline.Height();
-    const double cost = rest.cost - 2.0 * std::log(p / extent_px);
+    const double cost = rest.cost - 2.0 * std::log(p_cut / extent_px);
     if (cost < best.cost) best = {best.overlap, rest.distance, BoxSide(cut), cost};
   }
   return best;

@@ -52,6 +52,7 @@ struct Prediction {
   Box outline;
   // Covariance of the outward offsets of the edges (left, top, right, bottom), px^2.
   Eigen::Matrix4d outline_covariance;
+  bool feet_are_hidden = false;  // see FittedObject
 };
 
 // Likelihood of a detected box given an object. The four edges are normally distributed about the

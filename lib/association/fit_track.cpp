@@ -48,15 +48,59 @@ FittedObject FittedAt(const ObjectEvidence& evidence, const Landmark& landmark,
   const double log_normalisation = prior.log_sigma.array().log().sum() +
                                    0.5 * std::log(conditional) +
                                    (prior.height_m ? std::log(prior.height_m->log_sigma) : 0.0);
-  return {landmark, covariance,
-          model.cost + log_normalisation + 0.5 * solver.vectorD().array().log().sum()};
+  double prior_cost = log_normalisation + 0.5 * solver.vectorD().array().log().sum();
+  FittedObject fitted{landmark, covariance, model.cost + prior_cost};
+  fitted.cost_of_misfit = model.cost;
+  for (const auto& term : PriorTerms(evidence)) {
+    Eigen::VectorXd residuals(term->NumResiduals());
+    term->Evaluate(landmark, residuals, nullptr);
+    prior_cost += 0.5 * residuals.squaredNorm();
+  }
+  fitted.prior_cost = prior_cost;
+  return fitted;
+}
+
+// The best fit on any face that the object may rest on, all of which are equally probable.
+std::optional<FittedObject> FitOnFaces(const ObjectEvidence& evidence,
+                                       const Eigen::Matrix3d& up_covariance,
+                                       const std::vector<Landmark>& all_starts,
+                                       const AssociateOptions& options) {
+  const auto on_faces = OnEachFace(evidence);
+  std::optional<FittedObject> best;
+  for (const ObjectEvidence& on_face : on_faces) {
+    std::vector<Landmark> starts;
+    for (const Landmark& start : all_starts) {
+      if (start.rests_on != on_face.RestsOn()) continue;
+      starts.push_back(start);
+      starts.back().shape_exponents = on_face.Exponents();
+    }
+    if (starts.empty()) starts = ProfileOverYaw(on_face, options.upright.YawStep()).Minima(1);
+    const auto fits = FitObject(on_face, starts, {.max_hypotheses = 1});
+    if (fits.empty()) continue;
+    const FittedObject fit = FittedAt(on_face, fits.front().landmark, up_covariance);
+    if (!fit.covariance.allFinite() || !std::isfinite(fit.cost)) continue;
+    if (!best || fit.cost < best->cost) best = fit;
+  }
+  const double cost_of_face = std::log(static_cast<double>(on_faces.size()));
+  if (best) best->cost += cost_of_face;
+  if (best) best->prior_cost += cost_of_face;
+  return best;
+}
+
+// -log of the density of the lower edge of a box whose foot may be hidden, anywhere within twice
+// the box's height, over that of one where it is expected.
+double CostOfHiddenFoot(const BoxView& view) {
+  const double height_px = std::abs((view.edges[1].plane + view.edges[3].plane).z());
+  return std::log(2.0 * height_px /
+                  (kHiddenFeetInView * std::sqrt(2.0 * std::numbers::pi) * view.edges[3].sigma_px));
 }
 
 }  // namespace
 
 std::optional<FittedObject> FitTrack(const Sequence& sequence, const std::vector<int>& detections,
                                      const ShapePrior& prior, const AssociateOptions& options,
-                                     const std::variant<Plane, UpEstimate>& support_in_world) {
+                                     const std::variant<Plane, UpEstimate>& support_in_world,
+                                     const TrackFitOptions& how) {
   ObjectEvidence evidence =
       EvidenceInWorld(sequence, SpreadOver(detections, static_cast<size_t>(options.max_views)),
                       prior, options.upright);
@@ -65,20 +109,21 @@ std::optional<FittedObject> FitTrack(const Sequence& sequence, const std::vector
   evidence.plane = up != nullptr ? Plane{up->up_in_world, 0.0} : std::get<Plane>(support_in_world);
   evidence.size_is_known = true;
   WeighViews(options.upright.ViewCorrelation(), &evidence);
-  const auto on_faces = OnEachFace(evidence);
-  std::optional<FittedObject> best;
-  for (const ObjectEvidence& on_face : on_faces) {
-    const auto starts = ProfileOverYaw(on_face, options.upright.YawStep()).Minima(1);
-    const auto fits = FitObject(on_face, starts, {.max_hypotheses = 1});
-    if (fits.empty()) continue;
-    const FittedObject fit = FittedAt(on_face, fits.front().landmark,
-                                      up != nullptr ? up->covariance : Eigen::Matrix3d::Zero());
-    if (!fit.covariance.allFinite() || !std::isfinite(fit.cost)) continue;
-    if (!best || fit.cost < best->cost) best = fit;
+  const Eigen::Matrix3d up_covariance = up != nullptr ? up->covariance : Eigen::Matrix3d::Zero();
+  std::optional<FittedObject> best = FitOnFaces(evidence, up_covariance, how.starts, options);
+  // Boxes that do not fit cost more than the edges that would be left out, or these are not tried.
+  double cost_of_hiding = -std::log(kHiddenFeet);
+  for (const BoxView& view : evidence.views) {
+    if (!view.edges[3].is_one_sided) cost_of_hiding += view.weight * CostOfHiddenFoot(view);
   }
-  // All faces are equally probable.
-  if (best) best->cost += std::log(static_cast<double>(on_faces.size()));
-  return best;
+  if (!best || !how.feet_may_be_hidden || best->cost_of_misfit <= cost_of_hiding) return best;
+  for (BoxView& view : evidence.views) view.edges[3].is_one_sided = true;
+  auto hidden = FitOnFaces(evidence, up_covariance, how.starts, options);
+  if (!hidden) return best;
+  hidden->cost += cost_of_hiding;
+  hidden->prior_cost -= std::log(kHiddenFeet);
+  hidden->feet_are_hidden = true;
+  return hidden->cost < best->cost ? hidden : best;
 }
 
 }  // namespace soslam

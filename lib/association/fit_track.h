@@ -20,7 +20,16 @@ struct FittedObject {
   // -log of the probability of the boxes given prior and support (Laplace's approximation), up to a
   // constant that only depends on the boxes.
   double cost = 0.0;
+  // The part of it that is not of boxes: prior, and volume of the posterior.
+  double prior_cost = 0.0;
+  double cost_of_misfit = 0.0;   // the part that is of boxes and prior at the landmark
+  bool feet_are_hidden = false;  // behind something unknown, in most views
 };
+
+// Probabilities that something unknown hides the feet of an object, as a table those of its chairs,
+// and that it does so in a view, if it does.
+inline constexpr double kHiddenFeet = 0.1;
+inline constexpr double kHiddenFeetInView = 0.5;
 
 // What an object stands on: a plane of the sequence or, where there is none, anything, with this
 // direction as up.
@@ -29,16 +38,23 @@ struct Support {
   std::variant<Plane, UpEstimate> in_world;
 };
 
+struct TrackFitOptions {
+  // Where to start; empty: at the minima of the profile over yaw.
+  std::vector<Landmark> starts = {};
+  bool feet_may_be_hidden = true;
+};
+
 // Fits an object's landmark to its detections (indices in Sequence::detections, at least one), of
-// which at most max_views are used, on the face that fits best. The covariance is the inverse of
-// the information of boxes and prior; views from one side count as one. None when the boxes do not
-// determine a landmark in front of the cameras.
+// which at most max_views are used, on the face that fits best, with or without hidden feet. The
+// covariance is the inverse of the information of boxes and prior; views from one side count as
+// one. None when the boxes do not determine a landmark in front of the cameras.
 //
 // An object without a plane is upright at a free height, and its prior's height_m fixes the scale
 // and thus the distance. The covariance includes the uncertainty of up, with the landmark adapting
 // to it.
 std::optional<FittedObject> FitTrack(const Sequence& sequence, const std::vector<int>& detections,
                                      const ShapePrior& prior, const AssociateOptions& options,
-                                     const std::variant<Plane, UpEstimate>& support_in_world);
+                                     const std::variant<Plane, UpEstimate>& support_in_world,
+                                     const TrackFitOptions& how = {});
 
 }  // namespace soslam

@@ -52,8 +52,6 @@ struct AssociateOptions {
   double odometry_rotation_sigma_deg = 0.1;
   double odometry_translation_sigma_m = 0.003;
   double duplicate_overlap = 0.85;
-  double merge_share = 0.5;
-  double max_shared_frames = 0.1;
   double same_place_overlap = 0.5;
   int min_observations = 3;
   double min_detection_share = 0.1;
@@ -122,18 +120,10 @@ struct AssociateOptions {
     visit.Flag("shared_points", &shared_points,
                "points that several images show (soslam-match) tell which boxes show the same "
                "object; needs images");
-    visit.Group("Merged and false objects");
-    visit.Real("merge_share", &merge_share, {0.0, 1.0},
-               "two tracks are one object when the larger one explains at least this share of the "
-               "other's boxes");
-    visit.Real("max_shared_frames", &max_shared_frames, {0.0, 1.0},
-               "two tracks are not one object when both are detected together in more than this "
-               "share of the smaller one's frames");
-    visit.Real(
-        "same_place_overlap", &same_place_overlap, {0.0, 1.0},
-        "two tracks that are detected together are one object when their bodies share at "
-        "least this fraction of the smaller one's volume and, without planes, their boxes in "
-        "one frame overlap as much (intersection over union)");
+    visit.Group("Objects at one place, and false ones");
+    visit.Real("same_place_overlap", &same_place_overlap, {0.0, 1.0},
+               "two bodies that share at least this fraction of the smaller one's volume are at "
+               "one place, where two objects of like labels hardly are");
     visit.Integer(
         "min_observations", &min_observations, {1, 1000000},
         "objects with fewer detections that show at least three of their edges are false");

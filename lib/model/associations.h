@@ -17,20 +17,21 @@ namespace soslam {
 // The content of associations.json: which detections were found to be of the same object, and why.
 // Frames and objects are named by their ids.
 
-// Result of linking one detection to the tracks of earlier frames.
-enum class LinkDecision {
-  kNewTrack,   // no track fits it better than an unseen object does
-  kLinked,     // to a track that stayed in the image since its last detection
-  kRevisited,  // to a track that left the image since its last detection
-  kDuplicate,  // dropped: a box with a higher score covers the same place
+// What a detection is to the track that it is of.
+enum class BoxFate {
+  kAlone,        // its only box
+  kExplained,    // its body explains the box
+  kSecond,       // so it does, but it explains another box of the frame better
+  kUnexplained,  // its body does not explain the box, which points or labels hold
+  kDuplicate,    // of none: a box with a higher score covers the same place
 };
-inline constexpr std::array kLinkDecisionNames = {"new_track", "linked", "revisited", "duplicate"};
-inline constexpr const auto& NamesOf(LinkDecision) { return kLinkDecisionNames; }
+inline constexpr std::array kBoxFateNames = {"alone", "explained", "second", "unexplained",
+                                             "duplicate"};
+inline constexpr const auto& NamesOf(BoxFate) { return kBoxFateNames; }
 
-// Result of a track after merging and removal of false tracks.
+// What became of a track.
 enum class TrackFate {
   kObject,
-  kMerged,            // into another track that fits enough of its boxes
   kTooFewDetections,  // false: fewer than min_observations
   kRarelyDetected,    // false: in less than min_detection_share of the frames that should show it
   kNoLandmark,        // its boxes determine no landmark
@@ -40,8 +41,8 @@ enum class TrackFate {
   kNeverWhole,        // false: none of its detections shows all edges
 };
 inline constexpr std::array kTrackFateNames = {
-    "object",     "merged", "too_few_detections", "rarely_detected", "no_landmark",
-    "no_support", "moves",  "low_scores",         "never_whole"};
+    "object", "too_few_detections", "rarely_detected", "no_landmark", "no_support",
+    "moves",  "low_scores",         "never_whole"};
 inline constexpr const auto& NamesOf(TrackFate) { return kTrackFateNames; }
 
 struct Associations {
@@ -49,32 +50,24 @@ struct Associations {
     int frame = 0;
     int given_object = 0;
   };
-  struct Link {
+  struct Match {
     double overlap = 0.0;
     double distance_sigmas = 0.0;
     std::optional<BoxSide> cut_edge = {};
-    int frames_since_seen = 0;
   };
   struct DetectionRow {
     DetectionName name;
-    LinkDecision decision = LinkDecision::kNewTrack;
-    std::optional<Link> link = {};
+    BoxFate fate = BoxFate::kAlone;
+    std::optional<Match> match = {};
     std::optional<int> track = {}, object = {};
-    bool superseded = false;
     std::optional<DetectionName> duplicate_of = {};
-  };
-  struct MergeRow {
-    int into_track = 0;
-    int explained_boxes = 0;
-    int tried_boxes = 0;
-    int shared_frames = 0;
   };
   struct TrackRow {
     int track = 0;
     TrackFate fate = TrackFate::kObject;
-    std::optional<MergeRow> merge = {};
-    int linked_detections = 0;
+    int boxes = 0;
     int detections = 0;
+    bool feet_are_hidden = false;
     std::optional<int> frames_in_sight = {};
   };
   struct ObjectRow {
@@ -106,63 +99,51 @@ void Describe(Visitor& visit, Associations::DetectionName& name) {
 }
 
 template <typename Visitor>
-void Describe(Visitor& visit, Associations::Link& link) {
-  visit.Field("overlap", &link.overlap,
-              "intersection over union of the box and that of the outline of the track's landmark",
+void Describe(Visitor& visit, Associations::Match& match) {
+  visit.Field("overlap", &match.overlap,
+              "intersection over union of the box and that of the outline of the track's body",
               kShare);
-  visit.Field("distance_sigmas", &link.distance_sigmas,
-              "Mahalanobis distance of the box from the expected one: spread of boxes, covariance "
-              "of the landmark, drift of the odometry since it was last seen",
+  visit.Field("distance_sigmas", &match.distance_sigmas,
+              "Mahalanobis distance of the box from the outline: spread of boxes, and drift of the "
+              "odometry from the frame in the middle of the track",
               kNotNegative);
-  visit.Field("cut_edge", &link.cut_edge,
+  visit.Field("cut_edge", &match.cut_edge,
               "edge that was taken as cut off by something unknown, and left out of the distance");
-  visit.Field("frames_since_seen", &link.frames_since_seen, "since the track's last detection",
-              kAtLeastOne);
 }
 
 template <typename Visitor>
 void Describe(Visitor& visit, Associations::DetectionRow& row) {
   Describe(visit, row.name);
-  visit.Field("decision", &row.decision,
-              "new_track: no track fits it better than an unseen object does; linked: to a track "
-              "that stayed in the image since its last detection; revisited: to one that left it; "
-              "duplicate: a box with a higher score covers the same place");
-  visit.Field("link", &row.link, "fit of the track to the box; null without a link");
-  visit.Field("track", &row.track, "that it was linked to or started; null for duplicates",
-              kNotNegative);
+  visit.Field("fate", &row.fate,
+              "alone: no other box is of its track; explained: by the track's body; second: so it "
+              "is, but another box of the frame better; unexplained: of the track by points or "
+              "labels, against its body; duplicate: a box with a higher score covers the same "
+              "place");
+  visit.Field("match", &row.match,
+              "fit of the track's body to the box; null if it does not "
+              "explain it");
+  visit.Field("track", &row.track, "that it is of; null for duplicates", kNotNegative);
   visit.Field("object", &row.object,
-              "id of the object that it is of; null where it is not used: it is a duplicate or "
-              "superseded, or the fate of its track says why",
+              "id of the object that it is of; null where it is not used: its own fate or that of "
+              "its track says why",
               kAtLeastOne);
-  visit.Field("superseded", &row.superseded,
-              "not used: its object has another box in the frame, from a track that was merged");
   visit.Field("duplicate_of", &row.duplicate_of, "the detection that it is a duplicate of");
-}
-
-template <typename Visitor>
-void Describe(Visitor& visit, Associations::MergeRow& merge) {
-  visit.Field("into_track", &merge.into_track, "the track that took it up", kNotNegative);
-  visit.Field("explained_boxes", &merge.explained_boxes, "of its boxes that the other one fits",
-              kNotNegative);
-  visit.Field("tried_boxes", &merge.tried_boxes, "of its boxes that were tested", kAtLeastOne);
-  visit.Field("shared_frames", &merge.shared_frames, "in which both have a detection",
-              kNotNegative);
 }
 
 template <typename Visitor>
 void Describe(Visitor& visit, Associations::TrackRow& row) {
   visit.Field("track", &row.track, "position in this list, from 0", kNotNegative);
   visit.Field("fate", &row.fate,
-              "object: it is one; merged: into another track; the others are false: "
-              "too_few_detections; rarely_detected, for the frames that should show it; "
+              "object: it is one; the others are false: too_few_detections; rarely_detected, for "
+              "the frames that should show it; "
               "no_landmark: its boxes determine no body; no_support: they fit better at a free "
               "height than on any support plane; moves: its label is one of moving_labels; "
               "low_scores: none of its detections has min_best_score; never_whole: none of its "
               "detections shows all edges");
-  visit.Field("merge", &row.merge, "why it was merged; null where it was not");
-  visit.Field("linked_detections", &row.linked_detections, "linked frame by frame", kAtLeastOne);
-  visit.Field("detections", &row.detections, "with those of tracks merged into it, one per frame",
-              kAtLeastOne);
+  visit.Field("boxes", &row.boxes, "all that are of it", kAtLeastOne);
+  visit.Field("detections", &row.detections, "those that are used, one per frame", kAtLeastOne);
+  visit.Field("feet_are_hidden", &row.feet_are_hidden,
+              "something unknown hides its lower edge in most views");
   visit.Field("frames_in_sight", &row.frames_in_sight,
               "frames that should show it: in the image, near enough and not hidden; null where "
               "its fate was decided without",
@@ -200,7 +181,7 @@ template <typename Visitor>
 void Describe(Visitor& visit, Associations& associations) {
   visit.Field("detections", &associations.detections,
               "all detections of the sequence that was read, in its order");
-  visit.Field("tracks", &associations.tracks, "in the order in which they were started");
+  visit.Field("tracks", &associations.tracks, "in the order of their first detections");
   visit.Field("objects", &associations.objects, "of the sequence that was written, by id");
   visit.Field("agreement", &associations.agreement, "of the objects with the given ones");
   visit.Check([&] {
@@ -211,9 +192,6 @@ void Describe(Visitor& visit, Associations& associations) {
     }
     for (const Associations::DetectionRow& row : associations.detections) {
       if (row.track) named.emplace_back("a detection is of", *row.track);
-    }
-    for (const Associations::TrackRow& row : associations.tracks) {
-      if (row.merge) named.emplace_back("a track was merged into", row.merge->into_track);
     }
     for (const auto& [what, track] : named) {
       if (track < tracks) continue;

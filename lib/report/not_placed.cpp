@@ -21,15 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The track that has the boxes of this one after merging.
-const Associations::TrackRow& AfterMerging(const Associations& associations, int track) {
-  const Associations::TrackRow* row = &associations.tracks.at(track);
-  for (size_t merges = 0; merges < associations.tracks.size() && row->merge; ++merges) {
-    row = &associations.tracks.at(row->merge->into_track);
-  }
-  return *row;
-}
-
 std::string MostFrequent(const std::map<std::string, int>& counts) {
   return std::ranges::max_element(counts, {}, [](const auto& pair) { return pair.second; })->first;
 }
@@ -76,7 +67,7 @@ std::vector<NotPlaced> TracksLeftOut(const Associations& associations, const Seq
     const RejectedDetection& seen = **next++;
     if (detection.name.frame != sequence.frames[seen.frame_index].id) throw other;
     if (!detection.track) continue;  // a second box of something
-    const Associations::TrackRow& track = AfterMerging(associations, *detection.track);
+    const Associations::TrackRow& track = associations.tracks.at(*detection.track);
     if (track.fate == TrackFate::kObject) continue;
     left_out[&track].boxes.push_back(BoxOf(sequence, seen));
     ++labels[&track][seen.label];

@@ -52,7 +52,13 @@ void RunAssociate(const AssociateOptions& options, const StageFiles& files, int 
   Sequence sequence = ReadSequence(files.at("sequence"), PlaneNeed::kNotNeeded);
   const SemanticTable table = ReadSemanticTable(files.at("table"));
   if (!options.use_planes) sequence = WithoutPlanes(std::move(sequence));
-  const Association association = Associate(sequence, table, options, threads);
+  if (options.shared_points && !files.contains("matches")) {
+    throw SettingsError("shared_points = true needs --matches, the matches.h5 of soslam-match");
+  }
+  const SharedPoints points = options.shared_points
+                                  ? SharedPoints(sequence, ReadMatches(files.at("matches")))
+                                  : SharedPoints();
+  const Association association = Associate(sequence, table, points, options, threads);
   if (association.objects.empty()) {
     throw NothingUsableError(fmt::format("{}: no object in {} detections; tracks: {}",
                                          files.at("sequence").string(), sequence.detections.size(),
@@ -62,9 +68,16 @@ void RunAssociate(const AssociateOptions& options, const StageFiles& files, int 
   ArtefactInfo info = {.settings = OptionsToJson(options),
                        .inputs = {files.at("sequence"), files.at("table")},
                        .stage = "associate"};
+  if (options.shared_points) info.inputs.push_back(files.at("matches"));
   for (const auto& [segment, up] : association.up_of_segments) {
     info.findings = CheckUp(up.holding, up.holdings, up.holding_tilt_variance);
     if (!info.findings.empty()) break;  // the first segment whose up direction is ambiguous
+  }
+  if (!association.is_settled) {
+    info.findings.push_back({"association_not_settled", Severity::kWarning,
+                             "boxes still changed objects when the limit of rounds was reached",
+                             "none that does", "boxes that fit several objects about as well",
+                             "look at the boxes of the objects: soslam-inspect, or the page"});
   }
   const Sequence associated = AssociatedSequence(sequence, association, agreement);
   ReportFindings("associate", info.findings);

@@ -162,14 +162,23 @@ void CheckSectionsAreUsed(const VariantSettings& settings, const json& own_layer
 // Resolved options of the stages that run.
 StageOptions OptionsOf(const json& merged, const std::string& file) {
   const auto listed = merged.at("stages").get<std::set<std::string>>();
+  const auto resolve = [&](const PipelineStage& stage) {
+    return stage.resolve(merged.value(stage.name, json::object()),
+                         fmt::format("{}: {}", file, stage.name));
+  };
   StageOptions options;
+  std::set<std::string> added;
   for (const PipelineStage& stage : Stages()) {
     const bool is_listed = listed.contains(stage.name);
     if (!is_listed && stage.asked_by == nullptr) continue;
-    const json resolved = stage.resolve(merged.value(stage.name, json::object()),
-                                        fmt::format("{}: {}", file, stage.name));
-    if (is_listed || resolved.at(stage.asked_by) != "given") options[stage.name] = resolved;
+    const json resolved = resolve(stage);
+    if (!is_listed && resolved.at(stage.asked_by) == "given") continue;
+    options[stage.name] = resolved;
+    for (const StageInput& input : stage.inputs) {
+      if (input.adds_maker && AskingSetting(input, resolved)) added.insert(input.makers.back());
+    }
   }
+  for (const std::string& name : added) options[name] = resolve(*FindStage(name));
   return options;
 }
 

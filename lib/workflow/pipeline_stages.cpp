@@ -54,7 +54,7 @@ std::vector<PipelineStage> MakeStages() {
   const StageInput edges_of_symmetry = {
       "edges", {"edges"}, {{"symmetry", true}, {"edge_alignment", true}}};
   const StageInput points = {"points", {"track"}, {{"point_evidence", true}}};
-  const StageInput matches = {"matches", {"match"}, {{"shared_points", true}}};
+  const StageInput matches = {"matches", {"match"}, {{"shared_points", true}}, /*adds_maker=*/true};
   const StageInput appearance = {
       "appearance", {"appearance"}, {{"picture_yaw", true}, {"picture_ratios", true}}};
   const StageInput start = {"landmarks", {"refine", "initialise"}};

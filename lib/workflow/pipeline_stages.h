@@ -27,6 +27,7 @@ struct StageInput {
   std::vector<std::string> makers;  // the first of these stages that has run writes it
   // Settings of the reading stage, each of which asks for it with this value; none: always read.
   std::vector<std::pair<std::string, nlohmann::json>> asked_by = {};
+  bool adds_maker = false;  // what asks for it makes its maker run, which 'stages' need not list
 };
 
 // A stage that variants may run.

@@ -61,7 +61,7 @@ TEST_F(JsonFileTest, HeaderNamesWhatShapedTheArtefact) {
   WriteArtefact(file, "landmarks", {{{"yaw", 3}}, {b, a}, {}, "refine"}, kEmptyLandmarks);
   const json header = ReadArtefact(file, "landmarks").at("artefact");
   EXPECT_EQ(header.at("kind"), "landmarks");
-  EXPECT_EQ(header.at("schema_version"), json({1, 10}));
+  EXPECT_EQ(header.at("schema_version"), json({1, 11}));
   EXPECT_THAT(header.at("software").get<std::string>(), testing::StartsWith("soslam "));
   EXPECT_EQ(header.at("stage"), "refine");
   EXPECT_EQ(header.at("settings").at("yaw"), 3);
@@ -85,8 +85,8 @@ TEST_F(JsonFileTest, HeadersThatAreNotOursAreRefused) {
   for (const auto& [header, words] : std::vector<std::pair<json, std::string>>{
            {HeaderOfVersion({2, 0}),
             "has schema version [2, 0] of kind 'landmarks'; this software "
-            "reads up to [1, 10]"},
-           {HeaderOfVersion({1, 11}), "[1, 10]"},
+            "reads up to [1, 11]"},
+           {HeaderOfVersion({1, 12}), "[1, 11]"},
            {HeaderOfVersion("1.0"), "schema_version is \"1.0\""},
            {HeaderOfVersion({1, -1}), "schema_version is [1,-1]"},
            {ArtefactHeader("map", {}), "kind is \"map\"; expected \"landmarks\""},
@@ -102,7 +102,7 @@ TEST_F(JsonFileTest, AnOlderFileThatLacksAFieldIsSaidToBeOlder) {
   const json document = {{"artefact", HeaderOfVersion({1, 8})}};
   ExpectError<InputError>([&] { ReadArtefact(Write("some.json", document.dump()), "landmarks"); },
                           {"some.json: ", "has no field \"observations\"; expected one",
-                           "schema version is [1,8]", "[1, 10]: run the stage"});
+                           "schema version is [1,8]", "[1, 11]: run the stage"});
 }
 
 TEST_F(JsonFileTest, FindingsOfWhatIsNoArtefactAreRefused) {

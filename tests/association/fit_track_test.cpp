@@ -36,5 +36,55 @@ TEST(FitObjectWithoutPlanesTest, OneBoxGivesABodyOfThePriorsHeight) {
   }
 }
 
+// The lower half of a thing whose height is known is hidden in all views, as that of a chair behind
+// a table: as low as it looks, it would stand farther away.
+TEST(FitObjectTest, ThingsWithHiddenFeetStandWhereTheyAre) {
+  Scene scene = LabelledScene(4, 1, 40, {"chair"});
+  scene.objects[0].half_axes = {0.25, 0.25, 0.45};
+  scene.objects[0].shape = Shape::kBox;
+  scene.objects[0].position_on_plane = {3.0, 0.0};
+  scene.trajectory.waypoints = {{{0.3, -1.2, 1.5}, {3.0, 0.0, 0.4}},
+                                {{0.0, 0.0, 1.5}, {3.0, 0.0, 0.4}},
+                                {{0.3, 1.2, 1.5}, {3.0, 0.0, 0.4}}};
+  Sequence sequence = SyntheticSequence(scene, false);
+  const Landmark truth = sequence.objects[0].ground_truth->landmark_in_world;
+  const Plane plane = sequence.planes[0].plane_in_world;
+  std::vector<int> all;
+  for (size_t i = 0; i < sequence.detections.size(); ++i) all.push_back(static_cast<int>(i));
+  const ShapePrior prior = {{0.55, 0.55}, {0.2, 0.2}, kCuboidExponent, 0.0, LogNormal{0.9, 0.1}};
+  const AssociateOptions options = EstimatedAssociation();
+  const auto whole = FitTrack(sequence, all, prior, options, plane);
+  ASSERT_TRUE(whole);
+  EXPECT_FALSE(whole->feet_are_hidden);
+  EXPECT_LT((whole->landmark_in_world.Centre() - truth.Centre()).norm(), 0.1);
+
+  for (Detection& detection : sequence.detections) {
+    detection.box.y_max -= 0.5 * detection.box.Height();
+  }
+  const auto hidden = FitTrack(sequence, all, prior, options, plane);
+  ASSERT_TRUE(hidden);
+  EXPECT_TRUE(hidden->feet_are_hidden);
+  EXPECT_LT((hidden->landmark_in_world.Centre() - truth.Centre()).norm(), 0.15);
+  const auto as_seen =
+      FitTrack(sequence, all, prior, options, plane, {.feet_may_be_hidden = false});
+  ASSERT_TRUE(as_seen);
+  EXPECT_GT((as_seen->landmark_in_world.Centre() - truth.Centre()).norm(), 0.3);
+}
+
+// A fit from the landmark that it ends at is that of the whole profile.
+TEST(FitObjectTest, StartsReplaceTheProfile) {
+  const Sequence sequence = SyntheticSequence(LabelledScene(4, 1, 40, {"box"}), false);
+  const Plane plane = sequence.planes[0].plane_in_world;
+  const ShapePrior prior = *UnknowingTable().default_prior;
+  const AssociateOptions options = EstimatedAssociation();
+  const auto fit = FitTrack(sequence, {0, 3, 6}, prior, options, plane);
+  ASSERT_TRUE(fit);
+  const auto again =
+      FitTrack(sequence, {0, 3, 6}, prior, options, plane, {.starts = {fit->landmark_in_world}});
+  ASSERT_TRUE(again);
+  EXPECT_NEAR(again->cost, fit->cost, 1e-3);
+  EXPECT_NEAR(again->prior_cost, fit->prior_cost, 1e-3);
+}
+
 }  // namespace
 }  // namespace soslam

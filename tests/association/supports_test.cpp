@@ -45,7 +45,8 @@ TEST(SupportsTest, AreFoundFromBoxes) {
     const auto [given, seen] = OnFloorAndShelf(seed, 1.0);
     const Sequence unknown = WithUnknownSupports(seen);
     ASSERT_FALSE(unknown.HasSupports());
-    const Association association = Associate(unknown, UnknowingTable(), EstimatedAssociation(), 2);
+    const Association association =
+        Associate(unknown, UnknowingTable(), SharedPoints(), EstimatedAssociation(), 2);
     const Agreement agreement = CompareWithGiven(given, association, 3);
     sum += agreement.F1().value();
     const Sequence associated =
@@ -73,7 +74,8 @@ TEST(SupportsTest, WhatStandsOnNoPlaneIsNoObject) {
     Sequence floor_only = seen;
     floor_only.planes.resize(1);
     for (Object& object : floor_only.objects) object.plane_index = 0;
-    const Association association = Associate(floor_only, table, EstimatedAssociation(), 2);
+    const Association association =
+        Associate(floor_only, table, SharedPoints(), EstimatedAssociation(), 2);
     for (const Track& track : association.tracks) {
       if (track.fate != TrackFate::kNoSupport) continue;
       const auto first = static_cast<size_t>(track.detections.front());
@@ -99,7 +101,8 @@ TEST(LabelEvidenceTest, BoxesDecideAmongSimilarLabels) {
   table.priors["mug"] = {{3.0, 3.0}, {0.1, 0.1}, kCuboidExponent, 0.0, LogNormal{0.3, 0.1}};
   AssociateOptions options = EstimatedAssociation();
   options.similar_labels = "cup, mug";
-  const Association association = Associate(WithoutIds(given), table, options, 2);
+  options.similar_label_confusion = 0.3;  // half of them are mugs
+  const Association association = Associate(WithoutIds(given), table, SharedPoints(), options, 2);
   const Agreement agreement = CompareWithGiven(given, association, 3);
   ASSERT_GE(association.objects.size(), 4U);
   for (size_t i = 0; i < association.objects.size(); ++i) {

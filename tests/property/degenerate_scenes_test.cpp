@@ -274,7 +274,8 @@ TEST_P(DegenerateTest, BackEndWithBodiesOfAnyShape) {
 
 TEST_P(DegenerateTest, Association) {
   ExpectAnswerOrRefusal([](const Sequence& sequence, const Priors&) {
-    const auto association = Associate(sequence, UnknowingTable(), EstimatedAssociation(), 1);
+    const auto association =
+        Associate(sequence, UnknowingTable(), SharedPoints(), EstimatedAssociation(), 1);
     EXPECT_EQ(association.detections.size(), sequence.detections.size());
     for (const Track& track : association.tracks) {
       if (track.fit) ExpectDefined(track.fit->landmark_in_world);

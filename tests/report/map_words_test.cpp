@@ -168,10 +168,8 @@ TEST_F(SupportInWordsTest, IsTheFloorWhereSomethingTallIsOnIt) {
   EXPECT_EQ(Words(0, {.up_is_in_doubt = true}), "on the lowest plane");
 }
 
-Associations::TrackRow Track(TrackFate fate, std::optional<int> merged_into = {}) {
-  Associations::TrackRow track = {.fate = fate, .detections = 3, .frames_in_sight = 58};
-  if (merged_into) track.merge = Associations::MergeRow{.into_track = *merged_into};
-  return track;
+Associations::TrackRow Track(TrackFate fate) {
+  return {.fate = fate, .detections = 3, .frames_in_sight = 58};
 }
 
 // Associations of seven detections, and the sequence that has those that were not used.
@@ -179,15 +177,14 @@ class TracksLeftOutTest : public testing::Test {
  protected:
   TracksLeftOutTest() {
     associations_.tracks = {Track(TrackFate::kObject), Track(TrackFate::kNeverWhole),
-                            Track(TrackFate::kMerged, 1), Track(TrackFate::kMerged, 0),
                             Track(TrackFate::kMoves)};
     Add(0, 1, "chair");  // used
     Add(1, {}, "cup");   // of a track that was left out
-    Add(2, {}, "mug");   // of one that was merged into it
+    Add(1, {}, "mug");
     Add({}, {}, "cup");  // a duplicate
-    Add(2, {}, "mug");
-    Add(3, {}, "chair");  // a worse box of the object
-    Add(4, {}, "cat");
+    Add(1, {}, "mug");
+    Add(0, {}, "chair");  // a worse box of the object
+    Add(2, {}, "cat");
   }
   void Add(std::optional<int> track, std::optional<int> object, const std::string& label) {
     const int frame = static_cast<int>(associations_.detections.size());
@@ -204,7 +201,7 @@ class TracksLeftOutTest : public testing::Test {
   Associations associations_;
 };
 
-TEST_F(TracksLeftOutTest, HaveTheBoxesOfAllThatWasMergedIntoThem) {
+TEST_F(TracksLeftOutTest, HaveAllTheirBoxes) {
   const std::vector<NotPlaced> things = TracksLeftOut(associations_, sequence_);
   ASSERT_EQ(things.size(), 2u);
   EXPECT_EQ(things[0].label, "mug");  // two of three boxes
@@ -227,11 +224,6 @@ TEST_F(TracksLeftOutTest, AreRefusedWhereTheSequenceIsAnother) {
   ExpectError<InputError>(refused, {"associations.json", "sequence.json"});
   associations_.detections.push_back(associations_.detections.back());
   ExpectError<InputError>(refused, {"associations.json", "sequence.json"});
-}
-
-TEST_F(TracksLeftOutTest, EndWhereMergesGoInACircle) {
-  associations_.tracks[1].merge = Associations::MergeRow{.into_track = 2};
-  EXPECT_EQ(TracksLeftOut(associations_, sequence_).size(), 3u);
 }
 
 }  // namespace

@@ -56,8 +56,8 @@ TEST_F(RunAssociateTest, SaysWhatItDecided) {
   ASSERT_EQ(associations["objects"].size(), sequence_.objects.size());
   std::map<int, int> detections;
   for (const json& row : associations["detections"]) {
-    const bool is_link = row["decision"] == "linked" || row["decision"] == "revisited";
-    EXPECT_EQ(row["link"].is_object(), is_link) << row;
+    EXPECT_EQ(row["fate"], "explained") << row;
+    EXPECT_TRUE(row["match"].is_object()) << row;
     if (!row["object"].is_null()) ++detections[row["object"].get<int>()];
   }
   for (const json& object : associations["objects"]) {
@@ -127,6 +127,11 @@ TEST_F(RunAssociateTest, SameBytesForAnyNumberOfThreads) {
 TEST_F(RunAssociateTest, ThereIsNothingToDoForGivenObjects) {
   options_.association = AssociationSource::kGiven;
   ExpectError<SettingsError>([&] { Run(); }, {"association", "given", "estimated"});
+}
+
+TEST_F(RunAssociateTest, SharedPointsNeedMatches) {
+  options_.shared_points = true;
+  ExpectError<SettingsError>([&] { Run(); }, {"shared_points", "--matches", "soslam-match"});
 }
 
 TEST_F(RunAssociateTest, NoObjectIsNothingUsable) {

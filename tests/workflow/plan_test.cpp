@@ -124,7 +124,7 @@ TEST_F(PlanTest, StagesReadTheLatestOfWhatTheyNeed) {
         R"({"extends": "Pictures",
             "optimise": {"picture_yaw": false, "picture_ratios": true}})");
   Write("pipelines/variants/Matched.json",
-        R"({"stages": ["import", "match", "initialise", "evaluate"],
+        R"({"stages": ["import", "initialise", "evaluate"],
             "associate": {"association": "estimated", "shared_points": true}})");
   ExpectError<InputError>([&] { Make({"Pictures"}); },
                           {"heads/yolox_nano.h5", "does not exist", "'Pictures'"});

@@ -25,7 +25,6 @@ class TrackTest : public testing::Test {
     const int index = static_cast<int>(association_.tracks.size());
     Track track;
     track.detections = detections;
-    track.linked = static_cast<int>(detections.size());
     for (const int i : detections) {
       track.votes[model.LabelOf(sequence_.detections[i])] += 1.0;
       association_.detections[i].track = index;
@@ -55,55 +54,6 @@ class TrackTest : public testing::Test {
   std::vector<std::vector<int>> of_objects_;
   Association association_;
 };
-
-TEST_F(TrackTest, PartsOfOneObjectAreMergedIntoTheLargest) {
-  ASSERT_THAT(of_objects_[0], SizeIs(testing::Ge(8u)));
-  const int larger = AddTrack(EveryOf(0, 0, 2));
-  const int smaller = AddTrack(EveryOf(0, 1, 4));
-  const int rest = AddTrack(EveryOf(0, 3, 4));
-  MergeTracks(Model(), 1, &association_);
-  EXPECT_EQ(TrackAt(larger).detections, of_objects_[0]);
-  for (const int track : {smaller, rest}) {
-    EXPECT_EQ(TrackAt(track).fate, TrackFate::kMerged);
-    EXPECT_EQ(TrackAt(track).merge.explained, TrackAt(track).merge.tried);
-    EXPECT_EQ(TrackAt(track).merge.shared_frames, 0);
-  }
-}
-
-TEST_F(TrackTest, TwoObjectsAreNotMerged) {
-  const int one = AddTrack(of_objects_[0]);
-  const int other = AddTrack(of_objects_[1]);
-  MergeTracks(Model(), 1, &association_);
-  EXPECT_EQ(TrackAt(one).fate, TrackFate::kObject);
-  EXPECT_EQ(TrackAt(other).fate, TrackFate::kObject);
-}
-
-// The same body twice in the same frames is two kinds of detections of one thing.
-TEST_F(TrackTest, WhatIsDetectedTogetherIsMergedOnlyIfItIsAtOnePlace) {
-  const size_t count = sequence_.detections.size();
-  for (size_t i = 0; i < count; ++i) {
-    Detection detection = sequence_.detections[i];
-    if (detection.object_index == 0) sequence_.detections.push_back(detection);
-  }
-  association_.detections.resize(sequence_.detections.size());
-  std::vector<int> copies;
-  for (size_t i = count; i < sequence_.detections.size(); ++i)
-    copies.push_back(static_cast<int>(i));
-  const int original = AddTrack(of_objects_[0]);
-  const int copy = AddTrack(copies);
-  options_.same_place_overlap = 1.1;  // never
-  MergeTracks(Model(), 1, &association_);
-  EXPECT_EQ(TrackAt(original).fate, TrackFate::kObject);
-  EXPECT_EQ(TrackAt(copy).fate, TrackFate::kObject);
-
-  options_.same_place_overlap = 0.5;
-  MergeTracks(Model(), 1, &association_);
-  EXPECT_EQ(TrackAt(original).detections.size() + TrackAt(copy).detections.size(),
-            2 * of_objects_[0].size());
-  const auto superseded =
-      std::ranges::count(association_.detections, true, &DetectionDecision::superseded);
-  EXPECT_EQ(superseded, static_cast<long>(of_objects_[0].size()));
-}
 
 TEST_F(TrackTest, TracksWithFewDetectionsAreFalse) {
   const int track = AddTrack({of_objects_[0][0], of_objects_[0][1]});

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "association/association_model.h"
+#include "association/shared_points.h"
+
+namespace soslam {
+
+// Boxes taken to be of one object.
+struct Cluster {
+  Track track;                                   // with all boxes
+  std::vector<std::optional<BoxMatch>> matches;  // of each box by the track's body
+  std::vector<bool> is_used;                     // each box: explained, and the best in its frame
+  double cost = 0.0;                             // -2 log of the evidence
+};
+
+// For each box of a track: true if it is the one that the body explains best in its frame.
+std::vector<bool> BestInFrames(const AssociationModel& model, const Track& track,
+                               const std::vector<std::optional<BoxMatch>>& matches);
+
+struct Clusters {
+  std::vector<Cluster> all;  // also of single boxes
+  bool is_settled = true;    // false: the limit of rounds was reached before the cost settled
+};
+
+// Groups detections (indices in Sequence::detections) into objects. The cost of a cluster is -2 log
+// of the evidence that its boxes are of one object: Laplace's approximation of its body's evidence,
+// where one of the boxes counts as that of an unseen object, and shared points. Tracklets of boxes
+// in neighbouring frames that no other box rivals are joined wherever that lowers the sum of all
+// costs, the largest gain first. Then boxes that their body does not explain, and halves that are
+// held together least, leave their cluster where that lowers it, in turn with further joins, until
+// nothing does.
+Clusters ClusterDetections(const AssociationModel& model, const SharedPoints& points,
+                           const std::vector<int>& detections, int threads);
+
+}  // namespace soslam

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "association/shared_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "model/occlusion.h"
+
+namespace soslam {
+namespace {
+
+// Beta distribution of the share of points that are in both boxes, from rendered scenes with boxes
+// of visible parts (docs/association.md).
+struct ShareOfPoints {
+  double in_both;
+  double in_one;
+};
+constexpr ShareOfPoints kOfOneObject = {2.0, 0.7};
+constexpr ShareOfPoints kOfTwoObjects = {0.06, 3.0};
+
+double LogBeta(double a, double b) { return std::lgamma(a) + std::lgamma(b) - std::lgamma(a + b); }
+
+// Logarithm of the beta-binomial probability, but for the binomial coefficient.
+double LogProbability(const SharedPoints::Counts& counts, const ShareOfPoints& share) {
+  return LogBeta(counts.in_both + share.in_both, counts.in_any - counts.in_both + share.in_one) -
+         LogBeta(share.in_both, share.in_one);
+}
+
+bool IsInside(const Box& box, const Eigen::Vector2d& pixel) {
+  return pixel.x() >= box.x_min && pixel.x() <= box.x_max && pixel.y() >= box.y_min &&
+         pixel.y() <= box.y_max;
+}
+
+}  // namespace
+
+double LogRatioOfSharedPoints(const SharedPoints::Counts& counts) {
+  return LogProbability(counts, kOfOneObject) - LogProbability(counts, kOfTwoObjects);
+}
+
+SharedPoints::SharedPoints(const Sequence& sequence, const std::vector<PointTrack>& tracks)
+    : detections_(sequence.detections.size()) {
+  for (size_t i = 0; i < detections_.size(); ++i) {
+    detections_[i].frame_index = sequence.detections[i].frame_index;
+  }
+  struct Sight {
+    int frame_index;
+    std::vector<int> detections;  // whose boxes have the point
+  };
+  for (const PointTrack& track : tracks) {
+    std::vector<Sight> sights;
+    for (const PointObservation& observation : track.observations) {
+      const auto frame = FrameIndexOf(sequence, observation);
+      const auto pixel = UndistortedPixel(sequence, observation);
+      if (!frame || !pixel) continue;
+      Sight& sight = sights.emplace_back(static_cast<int>(*frame));
+      for (const Detection& detection : DetectionsIn(sequence, sight.frame_index)) {
+        if (!IsInside(detection.box, *pixel)) continue;
+        sight.detections.push_back(static_cast<int>(&detection - sequence.detections.data()));
+      }
+    }
+    for (const Sight& sight : sights) {
+      for (const Sight& other : sights) {
+        if (other.frame_index == sight.frame_index) continue;
+        for (const int detection : sight.detections) {
+          ++detections_[detection].in_frame[other.frame_index];
+          for (const int in_other : other.detections) ++detections_[detection].shared[in_other];
+        }
+      }
+    }
+  }
+}
+
+SharedPoints::Counts SharedPoints::CountsOf(int detection, int other) const {
+  const auto count_in = [](const std::map<int, int>& counts, int index) {
+    const auto found = counts.find(index);
+    return found == counts.end() ? 0 : found->second;
+  };
+  const PointsOfDetection &one = detections_[detection], &two = detections_[other];
+  const int in_both = count_in(one.shared, other);
+  return {in_both, count_in(one.in_frame, two.frame_index) +
+                       count_in(two.in_frame, one.frame_index) - in_both};
+}
+
+double SharedPoints::LogRatio(int detection, int other) const {
+  const Counts counts = detections_.empty() ? Counts() : CountsOf(detection, other);
+  if (counts.in_any == 0) return 0.0;
+  const double frames = std::sqrt(static_cast<double>(detections_[detection].in_frame.size()) *
+                                  static_cast<double>(detections_[other].in_frame.size()));
+  // Each pair is a comparison of both of its detections.
+  return LogRatioOfSharedPoints(counts) * std::min(1.0, 2.0 / frames);
+}
+
+}  // namespace soslam
