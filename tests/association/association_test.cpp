@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kObjects = 8;
 constexpr int kFrames = 40;
-constexpr int kScenes = 6;
+constexpr int kScenes = 4;
 
 // The detections of each object, as a set: what an association comes down to.
 std::set<std::set<int>> Partition(const Association& association) {
