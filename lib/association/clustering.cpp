@@ -5,7 +5,6 @@
 #include <iterator>
 #include <limits>
 #include <map>
-#include <ranges>
 #include <set>
 #include <utility>
 
@@ -129,10 +128,12 @@ double Clustering::CostOfBoxes(const Cluster& cluster) const {
       }
     }
     if (cluster.is_used[i]) continue;
-    const bool is_beside_used =
-        std::ranges::any_of(std::views::iota(size_t{0}, detections.size()), [&](size_t j) {
-          return cluster.is_used[j] && FrameOf(detections[j]) == FrameOf(detections[i]);
-        });
+    bool is_beside_used = false;
+    for (size_t j = 0; j < detections.size(); ++j) {
+      if (cluster.is_used[j] && FrameOf(detections[j]) == FrameOf(detections[i])) {
+        is_beside_used = true;
+      }
+    }
     if (match) {
       ++second_boxes;
     } else if (is_beside_used) {

@@ -53,7 +53,8 @@ SharedPoints::SharedPoints(const Sequence& sequence, const std::vector<PointTrac
       const auto frame = FrameIndexOf(sequence, observation);
       const auto pixel = UndistortedPixel(sequence, observation);
       if (!frame || !pixel) continue;
-      Sight& sight = sights.emplace_back(static_cast<int>(*frame));
+      sights.push_back({static_cast<int>(*frame), {}});
+      Sight& sight = sights.back();
       for (const Detection& detection : DetectionsIn(sequence, sight.frame_index)) {
         if (!IsInside(detection.box, *pixel)) continue;
         sight.detections.push_back(static_cast<int>(&detection - sequence.detections.data()));
