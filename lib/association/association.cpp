@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 #include "association/association_model.h"
 #include "association/clustering.h"
@@ -46,27 +47,34 @@ std::vector<int> WithoutDuplicates(const AssociationModel& model,
   return kept;
 }
 
-// The track of a cluster, which is fitted once more as any label that it may have, to the boxes
-// that its body explained; then all boxes are explained by this body.
+// The track of a cluster. If its body explains enough boxes for an object, it is fitted once more
+// to these, as any label that it may have; then all boxes are explained by this body.
 Track Finished(const AssociationModel& model, const Cluster& cluster,
                std::vector<DetectionDecision>* decisions) {
   Track track = cluster.track;
   const std::vector<int>& boxes = track.boxes = track.detections;
-  const auto use = [&](const std::vector<bool>& is_used) {
+  std::vector<std::optional<BoxMatch>> matches = cluster.matches;
+  std::vector<bool> is_used = cluster.is_used;
+  const auto use = [&] {
     track.detections.clear();
     for (size_t i = 0; i < boxes.size(); ++i) {
       if (is_used[i]) track.detections.push_back(boxes[i]);
     }
-    const bool is_explained = !track.detections.empty();
-    if (!is_explained) track.detections = {boxes.front()};
-    model.Fit(&track);
-    return is_explained;
   };
-  use(cluster.is_used);
-  track.detections = boxes;
-  const auto matches = model.Explain(track);
-  const std::vector<bool> is_used = BestInFrames(model, track, matches);
-  const bool is_explained = use(is_used);
+  use();
+  if (static_cast<int>(track.detections.size()) >= model.options().min_observations) {
+    model.Fit(&track);
+    track.detections = boxes;
+    matches = model.Explain(track);
+    const std::vector<bool> used_before =
+        std::exchange(is_used, BestInFrames(model, track, matches));
+    use();
+    if (is_used != used_before && !track.detections.empty()) model.Fit(&track);
+  }
+  if (track.detections.empty()) {
+    track.detections = boxes;
+    track.fit.reset();
+  }
   for (size_t i = 0; i < boxes.size(); ++i) {
     DetectionDecision& decision = (*decisions)[boxes[i]];
     decision.match = matches[i];
@@ -74,10 +82,6 @@ Track Finished(const AssociationModel& model, const Cluster& cluster,
                     : is_used[i]      ? BoxFate::kExplained
                     : matches[i]      ? BoxFate::kSecond
                                       : BoxFate::kUnexplained;
-  }
-  if (!is_explained && boxes.size() > 1) {
-    track.detections = boxes;
-    track.fit.reset();
   }
   return track;
 }

@@ -149,15 +149,17 @@ void AssociationModel::Fit(Track* track) const {
 
 void AssociationModel::FitAsDetected(Track* track) const {
   Hypotheses hypotheses;
-  const auto try_label = [&](const std::string& label) {
-    for (const Support& support : SupportsOf(*track)) Try(*track, label, support, {}, &hypotheses);
-  };
-  for (const auto& [label, votes] : track->votes) try_label(label);
-  const double misfit =
-      hypotheses.fit ? hypotheses.fit->cost_of_misfit : std::numeric_limits<double>::infinity();
-  if (options_.label_evidence_weight * misfit > -std::log(options_.similar_label_confusion)) {
+  const std::vector<Support> supports = SupportsOf(*track);
+  for (const auto& [label, votes] : track->votes) {
+    for (const Support& support : supports) Try(*track, label, support, {}, &hypotheses);
+  }
+  if (hypotheses.fit && options_.label_evidence_weight * hypotheses.fit->cost_of_misfit >
+                            -std::log(options_.similar_label_confusion)) {
+    const auto support = std::ranges::find(supports, hypotheses.plane_index, &Support::plane_index);
+    const std::vector<Landmark> start = {hypotheses.fit->landmark_in_world};
     for (const std::string& label : labels_.Candidates(track->votes)) {
-      if (!track->votes.contains(label) && table_.Contains(label)) try_label(label);
+      if (track->votes.contains(label) || !table_.Contains(label)) continue;
+      Try(*track, label, *support, start, &hypotheses);
     }
   }
   Settle(hypotheses, track);

@@ -44,8 +44,9 @@ class AssociationModel {
   // The same with the labels and supports of its parts alone, which have been fitted; from their
   // landmarks, if they are two or fewer.
   void FitLike(const std::vector<const Track*>& parts, Track* track) const;
-  // The same with the labels that it is detected with, with similar ones only where these misfit by
-  // more than that costs, and without asking whether it has a support.
+  // The same with the labels that it is detected with and, where these misfit by more than that
+  // costs, similar ones from the best landmark, on its support; without asking whether the track
+  // has a support.
   void FitAsDetected(Track* track) const;
 
   // Expected box of a track in a frame. None when the track has no landmark, its landmark is not

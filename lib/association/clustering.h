@@ -14,7 +14,8 @@ struct Cluster {
   Track track;                                   // with all boxes
   std::vector<std::optional<BoxMatch>> matches;  // of each box by the track's body
   std::vector<bool> is_used;                     // each box: explained, and the best in its frame
-  double cost = 0.0;                             // -2 log of the evidence
+  double log_ratio = 0.0;  // of one object against as many as boxes, by shared points
+  double cost = 0.0;       // -2 log of the evidence
 };
 
 // For each box of a track: true if it is the one that the body explains best in its frame.

@@ -39,7 +39,7 @@ double LogRatioOfSharedPoints(const SharedPoints::Counts& counts) {
 }
 
 SharedPoints::SharedPoints(const Sequence& sequence, const std::vector<PointTrack>& tracks)
-    : detections_(sequence.detections.size()) {
+    : detections_(sequence.detections.size()), linked_frames_(sequence.frames.size()) {
   for (size_t i = 0; i < detections_.size(); ++i) {
     detections_[i].frame_index = sequence.detections[i].frame_index;
   }
@@ -63,6 +63,7 @@ SharedPoints::SharedPoints(const Sequence& sequence, const std::vector<PointTrac
     for (const Sight& sight : sights) {
       for (const Sight& other : sights) {
         if (other.frame_index == sight.frame_index) continue;
+        linked_frames_[sight.frame_index].insert(other.frame_index);
         for (const int detection : sight.detections) {
           ++detections_[detection].in_frame[other.frame_index];
           for (const int in_other : other.detections) ++detections_[detection].shared[in_other];
@@ -90,6 +91,22 @@ double SharedPoints::LogRatio(int detection, int other) const {
                                   static_cast<double>(detections_[other].in_frame.size()));
   // Each pair is a comparison of both of its detections.
   return LogRatioOfSharedPoints(counts) * std::min(1.0, 2.0 / frames);
+}
+
+double SharedPoints::LogRatio(const std::vector<int>& detections,
+                              const std::vector<int>& others) const {
+  double sum = 0.0;
+  if (detections_.empty()) return sum;
+  const auto frame_of = [this](int detection) { return detections_[detection].frame_index; };
+  const auto sum_of_pairs = [&](int detection, int frame) {
+    for (const int other : std::ranges::equal_range(others, frame, {}, frame_of)) {
+      sum += LogRatio(detection, other);
+    }
+  };
+  for (const int detection : detections) {
+    for (const int frame : linked_frames_[frame_of(detection)]) sum_of_pairs(detection, frame);
+  }
+  return sum;
 }
 
 }  // namespace soslam

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -33,6 +34,8 @@ class SharedPoints {
   // detection is compared by the same points with those of many frames, so that all of its pairs
   // together count as one comparison.
   double LogRatio(int detection, int other) const;
+  // The sum over all pairs of one of each list, in different frames; both are ordered by frame.
+  double LogRatio(const std::vector<int>& detections, const std::vector<int>& others) const;
 
  private:
   struct PointsOfDetection {
@@ -41,6 +44,7 @@ class SharedPoints {
     std::map<int, int> in_frame;  // number of points that another frame shows, by its index
   };
   std::vector<PointsOfDetection> detections_;
+  std::vector<std::set<int>> linked_frames_;  // frames that show a point of a frame, by its index
 };
 
 // Logarithm of the likelihood ratio of these counts, of one object against two.
