@@ -21,6 +21,7 @@ constexpr const char* kExamples =
     "frame.png\n"
     "  soslam-inspect map.json --headline\n"
     "  soslam-inspect sequence.json --table detections\n"
+    "  soslam-inspect associations.json --object 3\n"
     "  soslam-inspect metrics.json --csv -\n"
     "  soslam-inspect diff one/map.json two/map.json --tolerance 1e-6";
 
@@ -81,7 +82,8 @@ void AddOptions(CLI::App* app, Arguments* arguments, CLI::Option* headline) {
     return option;
   };
   add("--frame", &arguments->request.frame_id, "integer", "id of the frame of the picture");
-  add("--object", &arguments->request.object_id, "integer", "id of its object, of symmetry");
+  add("--object", &arguments->request.object_id, "integer",
+      "id of an object: its rows alone; of a picture of symmetry its object");
   add("--layer", &arguments->layer, "string",
       "what of edges is in the picture\n[default all; one of all, grey, edges, distance, nearest]")
       ->check(CLI::IsMember(std::vector<std::string>(soslam::kEdgeLayerNames.begin(),

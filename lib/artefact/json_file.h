@@ -90,7 +90,7 @@ std::string Excerpt(const nlohmann::json& value);
 std::string DigestViolation(const std::string& sha256);
 
 // [major, minor] of all schemas. A reader refuses newer ones, and files that lack what is required.
-inline constexpr std::array<int, 2> kSchemaVersion = {1, 11};
+inline constexpr std::array<int, 2> kSchemaVersion = {1, 12};
 inline constexpr const char* kSchemaVersionField = "schema_version";
 extern const char* const kSoftware;  // name and version of this software
 

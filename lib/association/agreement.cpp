@@ -121,26 +121,29 @@ Sequence AssociatedSequence(const Sequence& sequence, const Association& associa
   return associated;
 }
 
+Associations::DetectionName NameOfDetection(const Sequence& sequence, int detection) {
+  const Detection& named = sequence.detections[detection];
+  return {sequence.FrameOf(named).id, sequence.ObjectOf(named).id, named.box};
+}
+
 Associations ReportOf(const Sequence& sequence, const Association& association,
                       const Agreement& agreement) {
-  const auto name_of = [&](const Detection& detection) {
-    return Associations::DetectionName{sequence.FrameOf(detection).id,
-                                       sequence.ObjectOf(detection).id};
-  };
   const auto if_any = [](int index, int first_id) {
     return index >= 0 ? std::optional(index + first_id) : std::nullopt;
   };
   Associations report;
   for (size_t i = 0; i < association.detections.size(); ++i) {
     const DetectionDecision& decision = association.detections[i];
-    Associations::DetectionRow row = {name_of(sequence.detections[i]), decision.fate};
+    Associations::DetectionRow row = {NameOfDetection(sequence, static_cast<int>(i)),
+                                      sequence.ObjectOf(sequence.detections[i]).label,
+                                      decision.fate};
     if (decision.match) {
       row.match = {decision.match->overlap, decision.match->distance, decision.match->cut_edge};
     }
     row.track = if_any(decision.track, 0);
     row.object = if_any(decision.object, 1);
     if (decision.duplicate_of >= 0) {
-      row.duplicate_of = name_of(sequence.detections[decision.duplicate_of]);
+      row.duplicate_of = NameOfDetection(sequence, decision.duplicate_of);
     }
     report.detections.push_back(row);
   }
@@ -159,6 +162,9 @@ Associations ReportOf(const Sequence& sequence, const Association& association,
                               track.votes, static_cast<int>(track.detections.size()),
                               given ? std::optional(sequence.objects[*given].id) : std::nullopt});
   }
+  report.held_least = association.held_least;
+  report.held_most = association.held_most;
+  report.kept_out = association.kept_out;
   report.agreement = {static_cast<int>(agreement.given_of_object.size()),
                       agreement.given_objects,
                       agreement.matched,

@@ -30,6 +30,9 @@ struct Agreement {
 Agreement CompareWithGiven(const Sequence& sequence, const Association& association,
                            int min_observations);
 
+// How associations.json names a detection (index in Sequence::detections).
+Associations::DetectionName NameOfDetection(const Sequence& sequence, int detection);
+
 // The decision and its reason for each detection, track and object. Objects have the ids that
 // AssociatedSequence gives them.
 Associations ReportOf(const Sequence& sequence, const Association& association,

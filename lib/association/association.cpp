@@ -7,6 +7,7 @@
 
 #include "association/association_model.h"
 #include "association/clustering.h"
+#include "association/decisive_evidence.h"
 #include "base/parallel.h"
 #include "model/occlusion.h"
 
@@ -119,6 +120,7 @@ Association Associate(const Sequence& sequence, const SemanticTable& table,
     association.objects.push_back(i);
   }
   association.up_of_segments = model.up_of_segments();
+  AddDecisiveEvidence(model, points, threads, &association);
   return association;
 }
 

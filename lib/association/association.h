@@ -57,6 +57,9 @@ struct Association {
   bool is_settled = true;    // see Clusters
   // One entry for each segment; empty when support planes are given.
   std::map<int, UpEstimate> up_of_segments;
+  // What decided about the objects, see AddDecisiveEvidence.
+  std::vector<Associations::PairRow> held_least, held_most;
+  std::vector<Associations::KeptOutRow> kept_out;
 };
 
 // The sequence without support planes.

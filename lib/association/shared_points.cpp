@@ -74,6 +74,7 @@ SharedPoints::SharedPoints(const Sequence& sequence, const std::vector<PointTrac
 }
 
 SharedPoints::Counts SharedPoints::CountsOf(int detection, int other) const {
+  if (detections_.empty()) return {};
   const auto count_in = [](const std::map<int, int>& counts, int index) {
     const auto found = counts.find(index);
     return found == counts.end() ? 0 : found->second;
@@ -85,7 +86,7 @@ SharedPoints::Counts SharedPoints::CountsOf(int detection, int other) const {
 }
 
 double SharedPoints::LogRatio(int detection, int other) const {
-  const Counts counts = detections_.empty() ? Counts() : CountsOf(detection, other);
+  const Counts counts = CountsOf(detection, other);
   if (counts.in_any == 0) return 0.0;
   const double frames = std::sqrt(static_cast<double>(detections_[detection].in_frame.size()) *
                                   static_cast<double>(detections_[other].in_frame.size()));

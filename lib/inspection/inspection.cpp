@@ -76,14 +76,20 @@ const std::map<std::string, std::string> kHdf5Kinds = {
                                kind, fmt::join(known, ", ")));
 }
 
+std::ptrdiff_t ColumnOf(const ValueTable& table, const char* name) {
+  return std::ranges::find(table.columns, name, &ValueColumn::name) - table.columns.begin();
+}
+
+// The column with the ids of objects; the number of columns where there is none.
+std::ptrdiff_t ColumnOfObject(const ValueTable& table) {
+  return std::min(ColumnOf(table, "object"), ColumnOf(table, "object_id"));
+}
+
 // Adds the labels of objects where the artefact has none.
 void AddLabels(const Sequence& sequence, ValueTable* table) {
-  const auto column = [&](const char* name) {
-    return std::ranges::find(table->columns, name, &ValueColumn::name) - table->columns.begin();
-  };
   const auto count = std::ssize(table->columns);
-  const auto object = std::min(column("object"), column("object_id"));
-  if (object == count || column("label") != count) return;
+  const auto object = ColumnOfObject(*table);
+  if (object == count || ColumnOf(*table, "label") != count) return;
   table->columns.insert(table->columns.begin() + object + 1, {"label", "of the object"});
   for (std::vector<Value>& row : table->rows) {
     const auto found = std::ranges::find_if(
@@ -196,6 +202,20 @@ std::string FormatInspection(const Inspection& inspection, bool is_coloured) {
                         CountsOf(table));
   }
   return text;
+}
+
+void KeepObject(int id, Inspection* inspection) {
+  for (ValueTable& table : inspection->tables) {
+    const std::ptrdiff_t object = ColumnOfObject(table);
+    std::erase_if(table.rows, [&](const std::vector<Value>& row) {
+      return object == std::ssize(row) || row[object] != id;
+    });
+  }
+  std::erase_if(inspection->tables, [](const ValueTable& table) { return table.rows.empty(); });
+  if (inspection->tables.empty()) {
+    throw SettingsError(fmt::format(
+        "--object {}: {} has no row of it; expected the id of an object", id, inspection->title));
+  }
 }
 
 const ValueTable& TableOf(const Inspection& inspection, const std::optional<std::string>& name) {

@@ -71,6 +71,9 @@ struct Inspection {
 Inspection Inspect(const std::filesystem::path& file, const std::optional<Sequence>& sequence,
                    const nlohmann::json& default_settings = nlohmann::json::object());
 
+// Leaves of all tables the rows of the object with this id. Throws SettingsError if there is none.
+void KeepObject(int id, Inspection* inspection);
+
 // Text for a terminal: title, facts, and the first rows of each table. `is_coloured`: with escape
 // sequences.
 std::string FormatInspection(const Inspection& inspection, bool is_coloured);

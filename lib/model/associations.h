@@ -49,6 +49,7 @@ struct Associations {
   struct DetectionName {
     int frame = 0;
     int given_object = 0;
+    Box box = {};
   };
   struct Match {
     double overlap = 0.0;
@@ -57,6 +58,7 @@ struct Associations {
   };
   struct DetectionRow {
     DetectionName name;
+    std::string label = {};
     BoxFate fate = BoxFate::kAlone;
     std::optional<Match> match = {};
     std::optional<int> track = {}, object = {};
@@ -78,6 +80,26 @@ struct Associations {
     int detections = 0;
     std::optional<int> given_object = {};
   };
+  // Logarithms of likelihood ratios of one object against two.
+  struct Evidence {
+    int points_in_both = 0, points_in_any = 0;
+    double points = 0.0, body = 0.0, labels = 0.0;
+  };
+  // Two boxes of an object.
+  struct PairRow {
+    int object = 0;
+    DetectionName one, other;
+    Evidence evidence;
+  };
+  // A track that is not of an object.
+  struct KeptOutRow {
+    int object = 0;
+    int track = 0;
+    int boxes = 0;
+    int frames_with_both = 0;
+    DetectionName nearest;
+    Evidence evidence;
+  };
   struct AgreementRow {
     int objects = 0;
     int given_objects = 0;
@@ -87,6 +109,8 @@ struct Associations {
   std::vector<DetectionRow> detections = {};
   std::vector<TrackRow> tracks = {};
   std::vector<ObjectRow> objects = {};
+  std::vector<PairRow> held_least = {}, held_most = {};
+  std::vector<KeptOutRow> kept_out = {};
   AgreementRow agreement;
 };
 
@@ -96,6 +120,7 @@ void Describe(Visitor& visit, Associations::DetectionName& name) {
   visit.Field("given_object", &name.given_object,
               "id of the object that the detection has in the sequence that was read, which names "
               "it with the frame; no decision looks at it");
+  visit.Field("box", &name.box, "x_min, y_min, x_max, y_max, pixels of the undistorted image");
 }
 
 template <typename Visitor>
@@ -114,6 +139,7 @@ void Describe(Visitor& visit, Associations::Match& match) {
 template <typename Visitor>
 void Describe(Visitor& visit, Associations::DetectionRow& row) {
   Describe(visit, row.name);
+  visit.Field("label", &row.label, "by the detector", kNotEmpty);
   visit.Field("fate", &row.fate,
               "alone: no other box is of its track; explained: by the track's body; second: so it "
               "is, but another box of the frame better; unexplained: of the track by points or "
@@ -163,6 +189,44 @@ void Describe(Visitor& visit, Associations::ObjectRow& row) {
 }
 
 template <typename Visitor>
+void Describe(Visitor& visit, Associations::Evidence& evidence) {
+  visit.Field("points_in_both", &evidence.points_in_both,
+              "points in both boxes, of points_in_any; both are sums over pairs of boxes",
+              kNotNegative);
+  visit.Field("points_in_any", &evidence.points_in_any,
+              "points in one of the boxes or both that both images show", kNotNegative);
+  visit.Field("points", &evidence.points,
+              "what these points say: logarithm of the likelihood ratio of one object against two, "
+              "which all pairs of a box share");
+  visit.Field(
+      "body", &evidence.body,
+      "the same of the boxes where the object's body predicts them, against boxes anywhere");
+  visit.Field("labels", &evidence.labels,
+              "the same of their labels for the labels of the object, against any label");
+}
+
+template <typename Visitor>
+void Describe(Visitor& visit, Associations::PairRow& row) {
+  visit.Field("object", &row.object, "id in the sequence that was written", kAtLeastOne);
+  visit.Field("one", &row.one, "a box of it");
+  visit.Field("other", &row.other, "another one, of a later frame");
+  visit.Field("evidence", &row.evidence, "of the pair; body and labels: of the two boxes, summed");
+}
+
+template <typename Visitor>
+void Describe(Visitor& visit, Associations::KeptOutRow& row) {
+  visit.Field("object", &row.object, "id in the sequence that was written", kAtLeastOne);
+  visit.Field("track", &row.track, "that is not of it", kNotNegative);
+  visit.Field("boxes", &row.boxes, "of the track", kAtLeastOne);
+  visit.Field("frames_with_both", &row.frames_with_both,
+              "in which both have a box, which speaks for two objects", kNotNegative);
+  visit.Field("nearest", &row.nearest, "box of the track that points tie most to the object");
+  visit.Field("evidence", &row.evidence,
+              "points: summed over all pairs of a box of the object and one of the track; body and "
+              "labels: mean over boxes of the track, at most 8");
+}
+
+template <typename Visitor>
 void Describe(Visitor& visit, Associations::AgreementRow& agreement) {
   visit.Field("objects", &agreement.objects, "found ones", kNotNegative);
   visit.Field("given_objects", &agreement.given_objects,
@@ -183,6 +247,14 @@ void Describe(Visitor& visit, Associations& associations) {
               "all detections of the sequence that was read, in its order");
   visit.Field("tracks", &associations.tracks, "in the order of their first detections");
   visit.Field("objects", &associations.objects, "of the sequence that was written, by id");
+  visit.Field("held_least", &associations.held_least,
+              "the pairs that hold each object together least, at most 3, by points, then by body "
+              "and labels; the weakest of all objects first");
+  visit.Field("held_most", &associations.held_most,
+              "those that hold it together most, the strongest first");
+  visit.Field("kept_out", &associations.kept_out,
+              "the tracks that came nearest to being of each object, at most 3, by the sum of the "
+              "evidence; the nearest of all objects first");
   visit.Field("agreement", &associations.agreement, "of the objects with the given ones");
   visit.Check([&] {
     const auto tracks = std::ssize(associations.tracks);
@@ -192,6 +264,9 @@ void Describe(Visitor& visit, Associations& associations) {
     }
     for (const Associations::DetectionRow& row : associations.detections) {
       if (row.track) named.emplace_back("a detection is of", *row.track);
+    }
+    for (const Associations::KeptOutRow& row : associations.kept_out) {
+      named.emplace_back(fmt::format("object {} is without", row.object), row.track);
     }
     for (const auto& [what, track] : named) {
       if (track < tracks) continue;

@@ -25,32 +25,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr size_t kMaxPlaced = 100, kMaxNotPlaced = 40;
-
-// What is drawn of a thing: its best box, with the outline of its body or the box.
-struct Picture {
-  int frame_index = 0;
-  cv::Rect part = {};  // of the frame's image, px
-  Polygon outline = {};
-  bool is_body = false;   // the outline is that of the landmark
-  std::string jpeg = {};  // base 64; empty where there is none
-};
-
-// The part of the image around a box, no flatter or slimmer than a picture should be.
-cv::Rect Around(const Box& box, const Camera& camera) {
-  constexpr double kMargin = 0.15, kMaxAspect = 1.6, kMinAspect = 0.6;
-  const double margin = kMargin * std::max(box.Width(), box.Height());
-  double width = box.Width() + 2.0 * margin, height = box.Height() + 2.0 * margin;
-  height = std::max(height, width / kMaxAspect);
-  width = std::max(width, height * kMinAspect);
-  const Eigen::Vector2d centre = box.Centre();
-  const auto inside = [](double pixel, int size) {
-    return static_cast<int>(std::clamp(std::round(pixel), 0.0, static_cast<double>(size)));
-  };
-  return {cv::Point(inside(centre.x() - 0.5 * width, camera.width),
-                    inside(centre.y() - 0.5 * height, camera.height)),
-          cv::Point(inside(centre.x() + 0.5 * width, camera.width),
-                    inside(centre.y() + 0.5 * height, camera.height))};
-}
+constexpr int kPicturePx = 160;  // at most, of width and height
 
 // The largest box that is whole, or else the largest, among the frames with an image.
 Picture PictureOf(const std::vector<SeenBox>& boxes, const ImageSource& images,
@@ -63,7 +38,7 @@ Picture PictureOf(const std::vector<SeenBox>& boxes, const ImageSource& images,
   }
   if (best == nullptr) return {};
   const Camera& camera = sequence.CameraOf(sequence.frames[best->frame_index]);
-  return {best->frame_index, Around(best->box, camera), CornersOf(best->box)};
+  return PictureOfBox(best->frame_index, best->box, camera);
 }
 
 // A thing in one of the section's lists.
@@ -75,29 +50,17 @@ struct Entry {
   std::string doubts = {};  // why it is uncertain; empty where it is not
 };
 
-std::string PictureSvg(const Entry& entry, const Sequence& sequence) {
-  const Picture& picture = entry.picture;
-  if (picture.jpeg.empty()) return "";
-  const cv::Rect& part = picture.part;
-  std::string points;
-  for (const Eigen::Vector2d& pixel : picture.outline) {
-    points += fmt::format("{:.1f},{:.1f} ", pixel.x() + 0.5 - part.x, pixel.y() + 0.5 - part.y);
-  }
-  // The inner element is what plans show as well.
-  return fmt::format(
-      "<svg class=\"picture\" viewBox=\"0 0 {0} {1}\" role=\"img\" aria-label=\"{2} in frame {3}\">"
-      "<svg id=\"{4}\" class=\"on-image\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\">"
-      "<image width=\"{0}\" height=\"{1}\" href=\"data:image/jpeg;base64,{5}\"/>"
-      "<polygon class=\"{6}\" points=\"{7}\"/></svg></svg>",
-      part.width, part.height, HtmlText(entry.name), sequence.frames[picture.frame_index].id,
-      entry.id, picture.jpeg, picture.is_body ? "estimate" : "detection", points);
+std::string SvgOf(const Entry& entry, const Sequence& sequence) {
+  if (entry.picture.jpeg.empty()) return "";
+  const int frame_id = sequence.frames[entry.picture.frame_index].id;
+  return PictureSvg(entry.picture, fmt::format("{} in frame {}", entry.name, frame_id), entry.id);
 }
 
 std::string EntriesHtml(const std::vector<Entry>& entries, const Sequence& sequence) {
   std::string html = "<ul class=\"things\">\n";
   for (const Entry& entry : entries) {
-    html += fmt::format("<li>{}<div><strong>{}</strong>", PictureSvg(entry, sequence),
-                        HtmlText(entry.name));
+    html +=
+        fmt::format("<li>{}<div><strong>{}</strong>", SvgOf(entry, sequence), HtmlText(entry.name));
     if (!entry.doubts.empty()) {
       html += "<br><span class=\"doubt\">" + HtmlText("uncertain: " + entry.doubts) + "</span>";
     }
@@ -107,13 +70,6 @@ std::string EntriesHtml(const std::vector<Entry>& entries, const Sequence& seque
     html += "</div></li>\n";
   }
   return html + "</ul>\n";
-}
-
-void AddPictures(const ImageSource& images, int threads, std::vector<Entry>* entries) {
-  ParallelFor(entries->size(), threads, [&](size_t i) {
-    Picture& picture = (*entries)[i].picture;
-    picture.jpeg = EncodeCrop(picture.frame_index, picture.part, images);
-  });
 }
 
 std::string AndMore(size_t more) {
@@ -142,8 +98,11 @@ class MapOfVariant {
   std::string Html(const std::string& title, size_t max_bytes, int threads) {
     std::vector<Entry> placed = PlacedEntries();
     NotPlacedEntries not_placed = EntriesNotPlaced();
-    AddPictures(images_, threads, &placed);
-    AddPictures(images_, threads, &not_placed.entries);
+    std::vector<Picture*> pictures;
+    for (std::vector<Entry>* entries : {&placed, &not_placed.entries}) {
+      for (Entry& entry : *entries) pictures.push_back(&entry.picture);
+    }
+    AddJpegs(pictures, kPicturePx, images_, threads);
     std::string html = Section(title, placed, not_placed, "");
     for (std::vector<Entry>* entries : {&not_placed.entries, &placed}) {
       if (html.size() <= max_bytes) break;

@@ -31,12 +31,11 @@ std::string FateInWords(const Associations::TrackRow& track) {
   return RarelyDetectedInWords(track.detections, track.frames_in_sight.value_or(0));
 }
 
-// Rejected detections have no record of the edges that are cut off.
-SeenBox BoxOf(const Sequence& sequence, const RejectedDetection& rejected) {
-  const Camera& camera = sequence.CameraOf(sequence.frames[rejected.frame_index]);
+// A box without a record of the edges that are cut off.
+SeenBox BoxInFrame(const Sequence& sequence, int frame_index, const Box& box) {
+  const Camera& camera = sequence.CameraOf(sequence.frames[frame_index]);
   constexpr double kMarginPx = 2.0;
-  return {rejected.frame_index, rejected.box,
-          DistanceToBorder(rejected.box, camera.width, camera.height) > kMarginPx};
+  return {frame_index, box, DistanceToBorder(box, camera.width, camera.height) > kMarginPx};
 }
 
 }  // namespace
@@ -50,29 +49,28 @@ std::vector<SeenBox> BoxesOf(const Sequence& sequence, const std::vector<int>& d
   return boxes;
 }
 
-std::vector<NotPlaced> TracksLeftOut(const Associations& associations, const Sequence& sequence) {
-  std::vector<const RejectedDetection*> rejected;
-  for (const RejectedDetection& detection : sequence.rejected) {
-    if (detection.stage == RejectingStage::kAssociate) rejected.push_back(&detection);
+SeenBox SeenBoxOf(const Associations::DetectionName& name, const Sequence& sequence) {
+  const auto frame = std::ranges::lower_bound(sequence.frames, name.frame, {}, &Frame::id);
+  if (frame == sequence.frames.end() || frame->id != name.frame) {
+    throw InputError(fmt::format(
+        "associations.json: has a detection in frame {}, which sequence.json has not; expected the "
+        "two of one run",
+        name.frame));
   }
-  if (rejected.empty()) return {};
+  return BoxInFrame(sequence, static_cast<int>(frame - sequence.frames.begin()), name.box);
+}
+
+std::vector<NotPlaced> TracksLeftOut(const Associations& associations, const Sequence& sequence) {
   // What is left out of each track, in the order of the list.
   std::map<const Associations::TrackRow*, NotPlaced> left_out;
   std::map<const Associations::TrackRow*, std::map<std::string, int>> labels;
-  auto next = rejected.begin();  // unused detections are in the same order in both files
-  const InputError other("associations.json: its unused detections are not those of sequence.json");
   for (const Associations::DetectionRow& detection : associations.detections) {
-    if (detection.object) continue;
-    if (next == rejected.end()) throw other;
-    const RejectedDetection& seen = **next++;
-    if (detection.name.frame != sequence.frames[seen.frame_index].id) throw other;
     if (!detection.track) continue;  // a second box of something
     const Associations::TrackRow& track = associations.tracks.at(*detection.track);
     if (track.fate == TrackFate::kObject) continue;
-    left_out[&track].boxes.push_back(BoxOf(sequence, seen));
-    ++labels[&track][seen.label];
+    left_out[&track].boxes.push_back(SeenBoxOf(detection.name, sequence));
+    ++labels[&track][detection.label];
   }
-  if (next != rejected.end()) throw other;
   std::vector<NotPlaced> things;
   for (auto& [track, thing] : left_out) {
     thing.label = MostFrequent(labels[track]);
@@ -132,7 +130,7 @@ std::vector<NotPlaced> LeftOutByPlanes(const Sequence& sequence) {
     NotPlaced& thing = left_out[rejected.label];
     thing.label = rejected.label;
     thing.reason = ReasonOf(rejected.reason).words;
-    thing.boxes.push_back(BoxOf(sequence, rejected));
+    thing.boxes.push_back(BoxInFrame(sequence, rejected.frame_index, rejected.box));
   }
   std::vector<NotPlaced> things;
   for (auto& [label, thing] : left_out) things.push_back(std::move(thing));

@@ -77,10 +77,14 @@ class PageMaker {
     // The section of the map has at most a quarter of a page.
     const std::string map_section = SectionOfBestMap(max_bytes / 4, threads);
     max_bytes -= std::min(max_bytes, map_section.size());
+    // The boxes of its objects have at most an eighth.
+    const std::string boxes_section = SectionOfBoxes(max_bytes / 8, threads);
+    max_bytes -= std::min(max_bytes, boxes_section.size());
     // Images shrink to an eighth of a page before anything else is left out.
     FitPage(max_bytes - (has_images ? max_bytes / 8 : 0), PageBytes, &page_);
     if (!first.selection.frames.empty()) AddImages(first, source, max_bytes, threads);
     page_.map_section = map_section;
+    page_.boxes_section = boxes_section;
     return std::move(page_);
   }
 
@@ -142,6 +146,18 @@ class PageMaker {
     } catch (const InputError& error) {
       page_.problems.push_back(
           Utf8(fmt::format("the map from above cannot be shown: {}", error.what())));
+      return "";
+    }
+  }
+
+  std::string SectionOfBoxes(size_t max_bytes, int threads) {
+    const size_t index = DetailedVariants(page_).front();
+    const Sequence& sequence = page_.sequences[page_.variants[index].sequence].sequence;
+    try {
+      return BoxesSection(folders_[index], sequence, images_(sequence), max_bytes, threads);
+    } catch (const InputError& error) {
+      page_.problems.push_back(
+          Utf8(fmt::format("the boxes of objects cannot be shown: {}", error.what())));
       return "";
     }
   }

@@ -42,6 +42,7 @@ struct DatasetPage {
   std::vector<std::string> problems;  // sentences on what cannot be shown
   // Section of the first map of DetailedVariants, see MapSection; empty without a map.
   std::string map_section;
+  std::string boxes_section;  // of the variant of most interest, see BoxesSection
   // For scripts: "data:" URLs by frame id, of the frames that are shown; curves and descriptors,
   // see PageCurves and PageDescriptors. FramesToShow of the first sequence selects these frames.
   nlohmann::json images = nlohmann::json::object();

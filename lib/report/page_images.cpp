@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <map>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/parallel.h"
+#include "report/page_html.h"
 #include "report/page_parts.h"
 
 namespace soslam {
@@ -79,16 +85,64 @@ EncodedImages EncodeImages(const std::vector<int>& frames, const ImageSource& so
   return encoded;
 }
 
-std::string EncodeCrop(int frame_index, const cv::Rect& part, const ImageSource& source) {
-  if (part.empty() || !source.has(frame_index)) return "";
-  try {
-    const cv::Mat image = source.read(frame_index);
-    const cv::Mat crop = image(part & cv::Rect(0, 0, image.cols, image.rows));
-    if (crop.empty()) return "";
-    return EncodeJpeg(Scaled(crop, std::max(crop.cols, crop.rows), kMaxCropPx));
-  } catch (const InputError&) {  // EncodeImages says which images cannot be read
-    return "";
+Picture PictureOfBox(int frame_index, const Box& box, const Camera& camera) {
+  constexpr double kMargin = 0.15, kMaxAspect = 1.6, kMinAspect = 0.6;
+  const double margin = kMargin * std::max(box.Width(), box.Height());
+  double width = box.Width() + 2.0 * margin, height = box.Height() + 2.0 * margin;
+  height = std::max(height, width / kMaxAspect);
+  width = std::max(width, height * kMinAspect);
+  const Eigen::Vector2d centre = box.Centre();
+  const auto inside = [](double pixel, int size) {
+    return static_cast<int>(std::clamp(std::round(pixel), 0.0, static_cast<double>(size)));
+  };
+  return {frame_index,
+          {cv::Point(inside(centre.x() - 0.5 * width, camera.width),
+                     inside(centre.y() - 0.5 * height, camera.height)),
+           cv::Point(inside(centre.x() + 0.5 * width, camera.width),
+                     inside(centre.y() + 0.5 * height, camera.height))},
+          CornersOf(box)};
+}
+
+void AddJpegs(const std::vector<Picture*>& pictures, int max_px, const ImageSource& source,
+              int threads) {
+  std::map<int, std::vector<Picture*>> by_frame;
+  for (Picture* picture : pictures) {
+    if (!picture->part.empty() && source.has(picture->frame_index)) {
+      by_frame[picture->frame_index].push_back(picture);
+    }
   }
+  const std::vector<std::pair<int, std::vector<Picture*>>> frames(by_frame.begin(), by_frame.end());
+  ParallelFor(frames.size(), threads, [&](size_t i) {
+    try {
+      const cv::Mat image = source.read(frames[i].first);
+      for (Picture* picture : frames[i].second) {
+        const cv::Mat crop = image(picture->part & cv::Rect(0, 0, image.cols, image.rows));
+        if (crop.empty()) continue;
+        picture->jpeg = EncodeJpeg(Scaled(crop, std::max(crop.cols, crop.rows), max_px));
+      }
+    } catch (const InputError&) {  // EncodeImages says which images cannot be read
+    }
+  });
+}
+
+std::string PictureSvg(const Picture& picture, const std::string& name, const std::string& id) {
+  const cv::Rect& part = picture.part;
+  std::string points;
+  for (const Eigen::Vector2d& pixel : picture.outline) {
+    points += fmt::format("{:.1f},{:.1f} ", pixel.x() + 0.5 - part.x, pixel.y() + 0.5 - part.y);
+  }
+  const std::string image =
+      picture.jpeg.empty()
+          ? ""
+          : fmt::format("<image width=\"{}\" height=\"{}\" href=\"data:image/jpeg;base64,{}\"/>",
+                        part.width, part.height, picture.jpeg);
+  // The inner element is what plans show as well.
+  return fmt::format(
+      "<svg class=\"picture\" viewBox=\"0 0 {0} {1}\" role=\"img\" aria-label=\"{2}\">"
+      "<svg {3}class=\"on-image\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\">{4}"
+      "<polygon class=\"{5}\" points=\"{6}\"/></svg></svg>",
+      part.width, part.height, HtmlText(name), id.empty() ? "" : fmt::format("id=\"{}\" ", id),
+      image, picture.is_body ? "estimate" : "detection", points);
 }
 
 }  // namespace soslam

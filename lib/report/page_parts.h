@@ -49,10 +49,26 @@ struct EncodedImages {
 EncodedImages EncodeImages(const std::vector<int>& frames, const ImageSource& source,
                            size_t max_bytes, int threads);
 
-// The JPEG file in base 64 of a part (px) of a frame's image, at most kMaxCropPx wide and high;
-// empty where the part is empty, or the frame has no image that can be read.
-inline constexpr int kMaxCropPx = 160;
-std::string EncodeCrop(int frame_index, const cv::Rect& part, const ImageSource& source);
+// A part of a frame's image with the outline of something.
+struct Picture {
+  int frame_index = 0;
+  cv::Rect part = {};     // of the image, px
+  Polygon outline = {};   // px of the image
+  bool is_body = false;   // the outline is that of a landmark, not a box
+  std::string jpeg = {};  // base 64; empty where there is none
+};
+
+// A box with what is around it, no flatter or slimmer than a picture should be.
+Picture PictureOfBox(int frame_index, const Box& box, const Camera& camera);
+
+// Cuts the pictures out of their images, each of which is read once, at most max_px wide and high.
+// Those of frames without an image that can be read, and empty ones, remain without.
+void AddJpegs(const std::vector<Picture*>& pictures, int max_px, const ImageSource& source,
+              int threads);
+
+// The picture, or its outline alone, as HTML. `name`: for people who do not see it; `id`: of the
+// element that others can show as well, none if empty.
+std::string PictureSvg(const Picture& picture, const std::string& name, const std::string& id);
 
 // What a map says of an object, in words.
 
@@ -103,9 +119,11 @@ struct NotPlaced {
   std::string reason;  // in words
 };
 
-// The tracks that association left out, by associations.json. `sequence` is the one that it wrote,
-// or one that later stages made of it; InputError if it is not. None where the sequence is of a
-// version before 1.7, which does not have their boxes.
+// A detection of associations.json in the sequence that its stage wrote, or that later stages made
+// of it. Throws InputError where that has no such frame.
+SeenBox SeenBoxOf(const Associations::DetectionName& name, const Sequence& sequence);
+
+// The tracks that association left out, by associations.json. `sequence` as for SeenBoxOf.
 std::vector<NotPlaced> TracksLeftOut(const Associations& associations, const Sequence& sequence);
 
 // What a variant's folder has no landmark for, with the most boxes first: tracks that association
@@ -253,5 +271,12 @@ nlohmann::json PageDescriptors(const std::vector<SymmetryRecord>& records);
 std::string MapSection(const std::string& title, const std::filesystem::path& folder,
                        const Sequence& sequence, const ImageSource& images, size_t max_bytes,
                        int threads);
+
+// The section of a dataset's page with all boxes of each object that association found in this
+// variant's folder, as HTML without scripts: crops, those that were not used marked, with the text
+// that names a box. Of objects with many boxes some are shown, fewer where `max_bytes` demand it.
+// Empty where ids were not estimated, or there is no room. Throws InputError.
+std::string BoxesSection(const std::filesystem::path& folder, const Sequence& sequence,
+                         const ImageSource& images, size_t max_bytes, int threads);
 
 }  // namespace soslam

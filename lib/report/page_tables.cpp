@@ -386,7 +386,7 @@ std::string DatasetTables(const DatasetPage& page) {
          page.map_section + "<div id=\"remarks\">\n" + Remarks(page) + "</div>\n" +
          "<noscript><p class=\"faint\">The map in three dimensions, frames, charts and figures "
          "need JavaScript; all else is here.</p></noscript>\n" +
-         NumbersSection(page) + QualitySection(page) + ObjectsSection(page) +
+         NumbersSection(page) + QualitySection(page) + ObjectsSection(page) + page.boxes_section +
          AblationSection(page) + StagesSection(page) + notes;
 }
 

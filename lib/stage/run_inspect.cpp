@@ -201,9 +201,11 @@ std::string RunInspect(const InspectRequest& request, bool is_coloured) {
   if (request.sequence) sequence = ReadSequence(*request.sequence, PlaneNeed::kNotNeeded);
   const PipelineStage* stage = FindStage(
       ReadDocument<FileHeader>(ReadArtefactHeader(request.file), request.file.string()).stage);
-  const Inspection inspection =
+  Inspection inspection =
       Inspect(request.file, sequence,
               stage == nullptr ? json::object() : stage->resolve(json::object(), stage->name));
+  // With a picture the object is that of the picture.
+  if (request.object_id && !request.image) KeepObject(*request.object_id, &inspection);
   if (!request.csv && !request.table) return FormatInspection(inspection, is_coloured);
   const ValueTable& table = TableOf(inspection, request.table);
   if (!request.csv) return FormatWholeTable(table, is_coloured);

@@ -329,7 +329,7 @@ struct InspectRequest {
   std::optional<std::filesystem::path> sequence;  // the sequence that the artefact was made from
   std::optional<std::filesystem::path> dataset;   // folder with the images
   std::optional<int> frame_id;                    // frame of the picture
-  std::optional<int> object_id;
+  std::optional<int> object_id;  // of the picture; without a picture, of all rows that are wanted
   EdgeLayer layer = EdgeLayer::kAll;
 };
 

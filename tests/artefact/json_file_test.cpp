@@ -85,8 +85,8 @@ TEST_F(JsonFileTest, HeadersThatAreNotOursAreRefused) {
   for (const auto& [header, words] : std::vector<std::pair<json, std::string>>{
            {HeaderOfVersion({2, 0}),
             "has schema version [2, 0] of kind 'landmarks'; this software "
-            "reads up to [1, 11]"},
-           {HeaderOfVersion({1, 12}), "[1, 11]"},
+            "reads up to [1, 12]"},
+           {HeaderOfVersion({1, 13}), "[1, 12]"},
            {HeaderOfVersion("1.0"), "schema_version is \"1.0\""},
            {HeaderOfVersion({1, -1}), "schema_version is [1,-1]"},
            {ArtefactHeader("map", {}), "kind is \"map\"; expected \"landmarks\""},
@@ -102,7 +102,7 @@ TEST_F(JsonFileTest, AnOlderFileThatLacksAFieldIsSaidToBeOlder) {
   const json document = {{"artefact", HeaderOfVersion({1, 8})}};
   ExpectError<InputError>([&] { ReadArtefact(Write("some.json", document.dump()), "landmarks"); },
                           {"some.json: ", "has no field \"observations\"; expected one",
-                           "schema version is [1,8]", "[1, 11]: run the stage"});
+                           "schema version is [1,8]", "[1, 12]: run the stage"});
 }
 
 TEST_F(JsonFileTest, FindingsOfWhatIsNoArtefactAreRefused) {

@@ -172,7 +172,7 @@ Associations::TrackRow Track(TrackFate fate) {
   return {.fate = fate, .detections = 3, .frames_in_sight = 58};
 }
 
-// Associations of seven detections, and the sequence that has those that were not used.
+// Associations of seven detections.
 class TracksLeftOutTest : public testing::Test {
  protected:
   TracksLeftOutTest() {
@@ -188,13 +188,11 @@ class TracksLeftOutTest : public testing::Test {
   }
   void Add(std::optional<int> track, std::optional<int> object, const std::string& label) {
     const int frame = static_cast<int>(associations_.detections.size());
-    associations_.detections.push_back(
-        {.name = {.frame = sequence_.frames[frame].id}, .track = track, .object = object});
-    if (object) return;
     const Box box = {10.0 * frame, 10.0, 10.0 * frame + 20.0, 40.0};
-    // Import has rejected others before.
-    sequence_.rejected.push_back({frame, "far", 0.1, box, {}, RejectingStage::kImport, "low"});
-    sequence_.rejected.push_back({frame, label, 0.9, box, {}, RejectingStage::kAssociate, "x"});
+    associations_.detections.push_back({.name = {sequence_.frames[frame].id, frame, box},
+                                        .label = label,
+                                        .track = track,
+                                        .object = object});
   }
 
   Sequence sequence_ = CuboidSequence(3, 8);
@@ -215,15 +213,9 @@ TEST_F(TracksLeftOutTest, HaveAllTheirBoxes) {
 }
 
 TEST_F(TracksLeftOutTest, AreRefusedWhereTheSequenceIsAnother) {
-  const auto refused = [&] { TracksLeftOut(associations_, sequence_); };
-  sequence_.rejected.pop_back();
-  ExpectError<InputError>(refused, {"associations.json", "sequence.json"});
-  associations_.detections.pop_back();
-  EXPECT_EQ(TracksLeftOut(associations_, sequence_).size(), 1u);
-  associations_.detections.pop_back();
-  ExpectError<InputError>(refused, {"associations.json", "sequence.json"});
-  associations_.detections.push_back(associations_.detections.back());
-  ExpectError<InputError>(refused, {"associations.json", "sequence.json"});
+  sequence_.frames.erase(sequence_.frames.begin() + 2);
+  ExpectError<InputError>([&] { TracksLeftOut(associations_, sequence_); },
+                          {"associations.json", "frame 2", "sequence.json"});
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <openssl/evp.h>
 
+#include <atomic>
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -251,15 +252,26 @@ cv::Size SizeOf(const std::string& base64) {
   return cv::imdecode(bytes, cv::IMREAD_COLOR).size();
 }
 
-TEST(EncodeCrop, IsSmallOrEmpty) {
+TEST(AddJpegs, ArePartsOfImagesThatAreReadOnce) {
   const cv::Rect large(0, 0, 320, 200), tall(600, 0, 100, 480), small(10, 10, 40, 30);
-  EXPECT_EQ(SizeOf(EncodeCrop(0, large, kFaulty)), cv::Size(160, 100));
-  EXPECT_EQ(EncodeCrop(1, large, kFaulty), "");
-  EXPECT_EQ(EncodeCrop(2, large, kFaulty), "");
+  std::vector<Picture> pictures = {{0, large}, {1, large}, {2, large},
+                                   {3, tall},  {3, small}, {3, cv::Rect()}};
+  std::vector<Picture*> all;
+  for (Picture& picture : pictures) all.push_back(&picture);
+  std::atomic<int> reads = 0;
+  AddJpegs(all, 160,
+           {kFaulty.has,
+            [&](int frame) {
+              ++reads;
+              return kFaulty.read(frame);
+            }},
+           2);
+  EXPECT_EQ(reads, 3);
+  EXPECT_EQ(SizeOf(pictures[0].jpeg), cv::Size(160, 100));
   // 40 of its 100 columns are in the image.
-  EXPECT_EQ(SizeOf(EncodeCrop(3, tall, kFaulty)), cv::Size(13, 160));
-  EXPECT_EQ(SizeOf(EncodeCrop(3, small, kFaulty)), cv::Size(40, 30));
-  EXPECT_EQ(EncodeCrop(3, {}, kFaulty), "");
+  EXPECT_EQ(SizeOf(pictures[3].jpeg), cv::Size(13, 160));
+  EXPECT_EQ(SizeOf(pictures[4].jpeg), cv::Size(40, 30));
+  for (const size_t without : {1, 2, 5}) EXPECT_EQ(pictures[without].jpeg, "");
 }
 
 // A page of three variants whose parts have 10 000 bytes each, in at most so many.

@@ -55,7 +55,10 @@ TEST_F(RunAssociateTest, SaysWhatItDecided) {
   ASSERT_EQ(associations["detections"].size(), sequence_.detections.size());
   ASSERT_EQ(associations["objects"].size(), sequence_.objects.size());
   std::map<int, int> detections;
-  for (const json& row : associations["detections"]) {
+  for (size_t i = 0; i < sequence_.detections.size(); ++i) {
+    const json& row = associations["detections"][i];
+    EXPECT_EQ(row["box"][0], sequence_.detections[i].box.x_min);
+    EXPECT_EQ(row["label"], sequence_.ObjectOf(sequence_.detections[i]).label);
     EXPECT_EQ(row["fate"], "explained") << row;
     EXPECT_TRUE(row["match"].is_object()) << row;
     if (!row["object"].is_null()) ++detections[row["object"].get<int>()];
@@ -66,13 +69,19 @@ TEST_F(RunAssociateTest, SaysWhatItDecided) {
     EXPECT_EQ(object["label_votes"].value(object["label"].get<std::string>(), 0.0),
               object["detections"].get<double>());
     EXPECT_EQ(associations["tracks"][object["track"].get<size_t>()]["fate"], "object");
+    for (const char* list : {"held_least", "held_most", "kept_out"}) {
+      EXPECT_EQ(std::ranges::count(associations[list], object["object"],
+                                   [](const json& row) { return row["object"]; }),
+                3)
+          << list;
+    }
   }
 }
 
 TEST_F(RunAssociateTest, TracksThatAreNotThereAreRefused) {
   Run();
   const json associations = Associations();
-  for (const std::string place : {"/detections/0/track", "/objects/0/track"}) {
+  for (const std::string place : {"/detections/0/track", "/objects/0/track", "/kept_out/0/track"}) {
     json damaged = associations;
     damaged[json::json_pointer(place)] = 999;
     WriteBytes(File("associations"), damaged.dump());

@@ -85,6 +85,30 @@ TEST_F(RunInspectTest, CsvIsReturnedOrWritten) {
   EXPECT_EQ(FileBytes(File("table.csv")), csv);
 }
 
+TEST_F(RunInspectTest, OneObjectHasItsRowsAlone) {
+  Associations associations;
+  associations.tracks.resize(2);
+  for (int i = 0; i < 2; ++i) {
+    associations.tracks[i] = {.track = i, .boxes = 3, .detections = 3};
+    associations.objects.push_back({i + 1, i, i == 0 ? "cup" : "sofa", {}, 3});
+    const Associations::DetectionName box = {i, i, {1.0, 2.0, 3.0, 4.0}};
+    associations.held_least.push_back({i + 1, box, box, {3, 77 + i}});
+    associations.kept_out.push_back({i + 1, 1 - i, 3, 2, box, {}});
+  }
+  WriteAssociations(File("associations.json"), associations, {});
+  InspectRequest request = RequestOf("associations.json");
+  request.object_id = 2;
+  const std::string text = RunInspect(request, false);
+  EXPECT_THAT(text, testing::AllOf(HasSubstr("sofa"), testing::Not(HasSubstr("cup"))));
+  EXPECT_THAT(text, HasSubstr("\nheld_least, 1 row"));
+  EXPECT_THAT(text, testing::Not(HasSubstr("\ntracks, ")));
+  request.table = "held_least";
+  EXPECT_THAT(RunInspect(request, false),
+              testing::AllOf(HasSubstr("78"), testing::Not(HasSubstr("77"))));
+  request.object_id = 3;
+  ExpectRefused(request, {"--object 3", "associations.json", "no row"});
+}
+
 TEST_F(RunInspectTest, AnotherSequenceThanTheArtefactsIsRefused) {
   InspectRequest request = RequestOf("initial.json"), picture = PictureOf("initial.json");
   request.sequence = picture.sequence = File("sequence.json");

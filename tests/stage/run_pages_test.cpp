@@ -172,6 +172,26 @@ TEST_F(RunPagesTest, PagesBeginWithTheMapAndItsPictures) {
   EXPECT_FALSE(PageDataIn(Page()).contains("map_section"));
 }
 
+TEST_F(RunPagesTest, AllBoxesOfWhatAssociationFoundAreShown) {
+  WriteOurs("OursS");
+  Associations associations;
+  associations.tracks = {{.boxes = 1, .detections = 1}};
+  associations.objects = {{sequence_.objects[0].id, 0, sequence_.objects[0].label, {}, 1}};
+  const Detection& seen = sequence_.detections.front();
+  associations.detections = {{.name = {sequence_.FrameOf(seen).id, 1, seen.box},
+                              .label = sequence_.objects[0].label,
+                              .track = 0,
+                              .object = sequence_.objects[0].id}};
+  WriteAssociations(Folder("OursS") / "associations.json", associations, {});
+  const std::string html = Markup();
+  const size_t begin = html.find("<section id=\"boxes\">");
+  ASSERT_NE(begin, html.npos);
+  EXPECT_EQ(CountOf("<image ", html.substr(begin)), 1u);
+  associations.detections[0].name.frame = 999;
+  WriteAssociations(Folder("OursS") / "associations.json", associations, {});
+  EXPECT_THAT(Run().errors, HasSubstr("the boxes of objects cannot be shown: associations.json"));
+}
+
 TEST_F(RunPagesTest, ObjectsWithoutALandmarkAreSeenButNotPlaced) {
   // The back end had nothing to begin with, and the stage before says why.
   WriteOurs("OursS");
