@@ -24,9 +24,9 @@ constexpr size_t kMaxSheets = 100;
 constexpr size_t kMaxCrops = 24;  // of an object
 constexpr int kCropPx = 96;       // at most, of width and height
 
-// A box of an object, also one that was not used.
+// A box of an object, or near it. `mark`: why it is not used; empty where it is.
 struct SheetBox {
-  BoxFate fate = BoxFate::kExplained;
+  std::string mark;
   Box box;
   Picture picture;
 };
@@ -37,9 +37,8 @@ struct Sheet {
   std::string evidence;  // what held it together, in words
   size_t boxes = 0, unused = 0;
   std::vector<SheetBox> shown = {};
+  std::optional<SheetBox> kept_out = {};  // of the track that came nearest to being of it
 };
-
-bool IsUsed(BoxFate fate) { return fate == BoxFate::kExplained || fate == BoxFate::kAlone; }
 
 // What names a box for other programs: {"image": "rgb/7.png", "box": [10, 20, 30, 40]}.
 std::string AnchorOf(const std::string& image, const Box& box) {
@@ -84,16 +83,20 @@ std::vector<Sheet> SheetsOf(const Associations& associations, const Sequence& se
   for (const Associations::DetectionRow& row : associations.detections) {
     if (row.track) track_of[{row.name.frame, row.name.given_object}] = *row.track;
   }
+  const auto box_of = [&](const Associations::DetectionName& name, const std::string& mark) {
+    const SeenBox seen = SeenBoxOf(name, sequence);
+    const Camera& camera = sequence.CameraOf(sequence.frames[seen.frame_index]);
+    SheetBox box = {mark, seen.box, PictureOfBox(seen.frame_index, seen.box, camera)};
+    if (!images.has(seen.frame_index)) box.picture.part = {0, 0, camera.width, camera.height};
+    return box;
+  };
   std::map<int, std::vector<SheetBox>> boxes_of;  // by track
   for (const Associations::DetectionRow& row : associations.detections) {
     const Associations::DetectionName& name = row.duplicate_of.value_or(row.name);
     const auto track = track_of.find({name.frame, name.given_object});
     if (track == track_of.end()) continue;
-    const SeenBox seen = SeenBoxOf(row.name, sequence);
-    const Camera& camera = sequence.CameraOf(sequence.frames[seen.frame_index]);
-    Picture picture = PictureOfBox(seen.frame_index, seen.box, camera);
-    if (!images.has(seen.frame_index)) picture.part = {0, 0, camera.width, camera.height};
-    boxes_of[track->second].push_back({row.fate, seen.box, std::move(picture)});
+    const bool is_used = row.fate == BoxFate::kExplained || row.fate == BoxFate::kAlone;
+    boxes_of[track->second].push_back(box_of(row.name, is_used ? "" : NameOf(row.fate)));
   }
   std::vector<Sheet> sheets;
   for (const Associations::ObjectRow& row : associations.objects) {
@@ -104,8 +107,13 @@ std::vector<Sheet> SheetsOf(const Associations& associations, const Sequence& se
         EvidenceInWords(associations, row.object)};
     sheet.shown = std::move(boxes_of[row.track]);
     sheet.boxes = sheet.shown.size();
-    sheet.unused = static_cast<size_t>(
-        std::ranges::count_if(sheet.shown, [](const SheetBox& box) { return !IsUsed(box.fate); }));
+    sheet.unused =
+        sheet.boxes - static_cast<size_t>(std::ranges::count(sheet.shown, "", &SheetBox::mark));
+    const auto nearest =
+        std::ranges::find(associations.kept_out, row.object, &Associations::KeptOutRow::object);
+    if (nearest != associations.kept_out.end()) {
+      sheet.kept_out = box_of(nearest->nearest, "kept out");
+    }
     sheets.push_back(std::move(sheet));
   }
   return sheets;
@@ -130,17 +138,21 @@ std::string SheetHtml(const Sheet& sheet, const Sequence& sequence) {
     html += fmt::format("; {} of them are shown", sheet.shown.size());
   }
   html += ". " + HtmlText(sheet.evidence) + "</p>\n<div class=\"sheet\">\n";
-  for (const auto& [fate, box, picture] : sheet.shown) {
+  const auto figure = [&](const SheetBox& shown) {
+    const auto& [mark, box, picture] = shown;
     const Frame& frame = sequence.frames[picture.frame_index];
-    const std::string name = frame.image.empty() ? fmt::format("frame {}", frame.id) : frame.image;
-    html += fmt::format(
+    const std::string name =
+        fmt::format("{}: {}", frame.id, fs::path(frame.image).filename().string());
+    return fmt::format(
         "<figure{}>{}<figcaption><details><summary>{}{}</summary><code>{}</code></details>"
         "</figcaption></figure>\n",
-        IsUsed(fate) ? "" : " class=\"unused\"",
-        PictureSvg(picture, sheet.name + " in " + name, ""),
-        IsUsed(fate) ? "" : fmt::format("<strong>{}</strong> ", NameOf(fate)), HtmlText(name),
+        mark.empty() ? "" : " class=\"unused\"",
+        PictureSvg(picture, sheet.name + " in frame " + name, ""),
+        mark.empty() ? "" : fmt::format("<strong>{}</strong> ", mark), HtmlText(name),
         HtmlText(AnchorOf(frame.image, box)));
-  }
+  };
+  for (const SheetBox& box : sheet.shown) html += figure(box);
+  if (sheet.kept_out) html += figure(*sheet.kept_out);
   return html + "</div>\n";
 }
 
@@ -155,6 +167,7 @@ std::string BoxesSection(const fs::path& folder, const Sequence& sequence,
   std::vector<Picture*> pictures;
   for (Sheet& sheet : sheets) {
     for (SheetBox& box : sheet.shown) pictures.push_back(&box.picture);
+    if (sheet.kept_out) pictures.push_back(&sheet.kept_out->picture);
   }
   AddJpegs(pictures, kCropPx, images, threads);
   for (size_t count = kMaxCrops; count > 0; count /= 2) {
@@ -163,7 +176,8 @@ std::string BoxesSection(const fs::path& folder, const Sequence& sequence,
         "<section id=\"boxes\">\n<h2>Boxes of each object</h2>\n<p class=\"faint\">All that "
         "association took to be of one object. Marked ones are not used: second: another box of "
         "the frame fits better; unexplained: far from where the object's body would be; duplicate: "
-        "another box covers it. The name of an image opens the text that names the box.</p>\n";
+        "another box covers it. The last one is of the track that came nearest and was kept out. "
+        "Numbers and names of frames open the text that names the box.</p>\n";
     for (const Sheet& sheet : sheets) html += SheetHtml(sheet, sequence);
     if (sheets.size() < associations.objects.size()) {
       html += fmt::format("<p class=\"faint\">And {} more objects.</p>\n",

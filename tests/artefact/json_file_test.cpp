@@ -61,7 +61,7 @@ TEST_F(JsonFileTest, HeaderNamesWhatShapedTheArtefact) {
   WriteArtefact(file, "landmarks", {{{"yaw", 3}}, {b, a}, {}, "refine"}, kEmptyLandmarks);
   const json header = ReadArtefact(file, "landmarks").at("artefact");
   EXPECT_EQ(header.at("kind"), "landmarks");
-  EXPECT_EQ(header.at("schema_version"), json({1, 11}));
+  EXPECT_EQ(header.at("schema_version"), json({1, 12}));
   EXPECT_THAT(header.at("software").get<std::string>(), testing::StartsWith("soslam "));
   EXPECT_EQ(header.at("stage"), "refine");
   EXPECT_EQ(header.at("settings").at("yaw"), 3);
