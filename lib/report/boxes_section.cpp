@@ -141,15 +141,17 @@ std::string SheetHtml(const Sheet& sheet, const Sequence& sequence) {
   const auto figure = [&](const SheetBox& shown) {
     const auto& [mark, box, picture] = shown;
     const Frame& frame = sequence.frames[picture.frame_index];
+    const bool has_name = !frame.image.empty();
     const std::string name =
-        fmt::format("{}: {}", frame.id, fs::path(frame.image).filename().string());
+        has_name ? fmt::format("{}: {}", frame.id, fs::path(frame.image).filename().string())
+                 : fmt::format("{}", frame.id);
     return fmt::format(
         "<figure{}>{}<figcaption><details><summary>{}{}</summary><code>{}</code></details>"
         "</figcaption></figure>\n",
         mark.empty() ? "" : " class=\"unused\"",
         PictureSvg(picture, sheet.name + " in frame " + name, ""),
         mark.empty() ? "" : fmt::format("<strong>{}</strong> ", mark), HtmlText(name),
-        HtmlText(AnchorOf(frame.image, box)));
+        has_name ? HtmlText(AnchorOf(frame.image, box)) : "It has no image.");
   };
   for (const SheetBox& box : sheet.shown) html += figure(box);
   if (sheet.kept_out) html += figure(*sheet.kept_out);

@@ -87,7 +87,7 @@ TEST_F(BoxesSectionTest, WithoutImagesBoxesAreInEmptyFrames) {
   const Camera& camera = sequence_.camera;
   EXPECT_THAT(html, HasSubstr("viewBox=\"0 0 " + std::to_string(camera.width) + " " +
                               std::to_string(camera.height) + "\""));
-  EXPECT_THAT(html, HasSubstr("<summary>2: </summary>"));
+  EXPECT_THAT(html, HasSubstr("<summary>2</summary><code>It has no image.</code>"));
 }
 
 TEST_F(BoxesSectionTest, ShowsFewerWhereThereIsLessRoom) {
