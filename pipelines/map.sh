@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # shellcheck shell=bash
-# map.sh: what `soslam map` does, by which it is read: its settings are those of IMAGES, NETWORK, DETECTIONS, CAMERA and
-# MODEL, paths which may be empty and have any characters; SCALE and CAMERA_HEIGHT, numbers, which may be empty. The
+# map.sh: what `soslam map` does, by which it is read: its settings are those of IMAGES, NETWORK, DETECTIONS, CAMERA,
+# MODEL and EDITS, paths which may be empty and have any characters; SCALE and CAMERA_HEIGHT, numbers, which may be empty. The
 # steps, and the files that tell that they are done, are in map.mk.
 
 [[ -n $IMAGES ]] || refuse "images are not given; expected a folder of photos, or a video"
@@ -18,7 +18,7 @@ fi
 [[ -n $NETWORK || -n $DETECTIONS ]] ||
   refuse "expected a network, as yolox_nano.onnx (\`make network\` fetches it), or detections, a CSV file"
 [[ -z $NETWORK || -z $DETECTIONS ]] || refuse "found a network and detections; expected one of them"
-for file in "$NETWORK" "$DETECTIONS" "$CAMERA"; do
+for file in "$NETWORK" "$DETECTIONS" "$CAMERA" "$EDITS"; do
   [[ -z $file || -f $file ]] || refuse "'$file': no such file" 3
 done
 [[ -z $MODEL || -d $MODEL ]] || refuse "model is '$MODEL'; there is no such folder" 3

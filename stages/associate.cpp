@@ -12,6 +12,12 @@ int main(int argc, char** argv) {
                   {"table", "semantic table with the size ratio of each label"},
                   {"matches",
                    "matches.h5 of soslam-match; needed when the setting shared_points is true",
+                   false},
+                  {"edits",
+                   "edits.json: corrections by hand, {\"edits\": [...]}, each with \"edit\" (join, "
+                   "split, delete, delete_boxes, rename, size), \"boxes\": [{\"image\": \"a.png\", "
+                   "\"box\": [x_min, y_min, x_max, y_max]}, ...], and label or depth_m, width_m, "
+                   "height_m; see docs/association.md",
                    false}},
        .outputs = {{"output", "sequence to write, with the objects found"},
                    {"associations", "associations.json to write: what was decided, and why"}},

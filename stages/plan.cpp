@@ -9,7 +9,11 @@ int main(int argc, char** argv) {
        .purpose =
            "Works out which stages the variants of a dataset need and writes them as a makefile.",
        .inputs = {{"dataset", "dataset folder"},
-                  {"pipelines", "folder with base.json, variants/ and datasets/"}},
+                  {"pipelines", "folder with base.json, variants/ and datasets/"},
+                  {"edits",
+                   "edits.json with corrections of the association by hand, which is kept in the "
+                   "results for later runs; see soslam-associate --help",
+                   false}},
        .outputs = {{"results",
                     "results folder; writes <results>/<dataset>/plan.mk and what it needs"}},
        .example = "soslam-plan --dataset data/room_a --pipelines pipelines --results results",

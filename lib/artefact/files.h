@@ -10,6 +10,7 @@
 
 #include "artefact/json_file.h"
 #include "model/associations.h"
+#include "model/edits.h"
 #include "model/estimates.h"
 #include "model/map_points.h"
 #include "model/metrics.h"
@@ -59,6 +60,8 @@ std::vector<PointTrack> ReadMatches(const std::filesystem::path& path);
 void WriteAssociations(const std::filesystem::path& path, const Associations& associations,
                        const ArtefactInfo& info);
 Artefact<Associations> ReadAssociations(const std::filesystem::path& path);
+// An edits.json, written by people. Throws InputError.
+Edits ReadEdits(const std::filesystem::path& path);
 void WritePlanes(const std::filesystem::path& path, const PlanesReport& report,
                  const ArtefactInfo& info);
 void WriteWorld(const std::filesystem::path& path, const WorldReport& report,

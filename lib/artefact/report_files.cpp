@@ -15,6 +15,12 @@ Artefact<Associations> ReadAssociations(const std::filesystem::path& path) {
   return ReadDescribed<Associations>(path, kAssociationsKind);
 }
 
+Edits ReadEdits(const std::filesystem::path& path) {
+  Edits edits = ReadDocument<Edits>(ParseJsonFile(path), path.string());
+  edits.file = path.string();
+  return edits;
+}
+
 void WritePlanes(const std::filesystem::path& path, const PlanesReport& report,
                  const ArtefactInfo& info) {
   WriteArtefact(path, "planes", info, DescribedToJson(report));

@@ -16,6 +16,7 @@ constexpr double kNegligibleProbability = 0.01;
 
 const char* ReasonNotUsed(const Association& association, const DetectionDecision& decision) {
   if (decision.fate == BoxFate::kDuplicate) return "duplicate_of_another_box";
+  if (decision.fate == BoxFate::kDeleted) return NameOf(decision.fate);
   const TrackFate fate = association.tracks[decision.track].fate;
   if (fate != TrackFate::kObject) return NameOf(fate);
   return decision.fate == BoxFate::kSecond ? "duplicate_of_another_box" : "not_explained";
@@ -86,6 +87,7 @@ Sequence AssociatedSequence(const Sequence& sequence, const Association& associa
     std::erase_if(object.labels, [](const LabelProbability& label) {
       return label.probability < kNegligibleProbability;
     });
+    if (track.by_hand) object.known_size = track.by_hand->size;
     if (const auto given = agreement.given_of_object[i]) {
       const Object& given_object = sequence.objects[*given];
       if (given_object.is_static) object.ground_truth = given_object.ground_truth;

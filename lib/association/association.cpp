@@ -2,12 +2,14 @@
 #include "association/association.h"
 
 #include <algorithm>
+#include <limits>
 #include <tuple>
 #include <utility>
 
 #include "association/association_model.h"
 #include "association/clustering.h"
 #include "association/decisive_evidence.h"
+#include "association/edits.h"
 #include "base/parallel.h"
 #include "model/occlusion.h"
 
@@ -63,12 +65,22 @@ Track Finished(const AssociationModel& model, const Cluster& cluster,
     }
   };
   use();
-  if (static_cast<int>(track.detections.size()) >= model.options().min_observations) {
+  std::vector<std::optional<BoxMatch>> candidates = matches;
+  if (track.by_hand ||
+      static_cast<int>(track.detections.size()) >= model.options().min_observations) {
     model.Fit(&track);
     track.detections = boxes;
-    matches = model.Explain(track);
+    candidates = matches = model.Explain(track);
+    for (size_t i = 0; track.by_hand && i < boxes.size(); ++i) {
+      constexpr double kWorst = std::numeric_limits<double>::infinity();
+      if (!cluster.is_used[i]) {
+        candidates[i].reset();
+      } else if (!matches[i]) {
+        candidates[i] = BoxMatch{.cost = kWorst};
+      }
+    }
     const std::vector<bool> used_before =
-        std::exchange(is_used, BestInFrames(model, track, matches));
+        std::exchange(is_used, BestInFrames(model, track, candidates));
     use();
     if (is_used != used_before && !track.detections.empty()) model.Fit(&track);
   }
@@ -79,10 +91,11 @@ Track Finished(const AssociationModel& model, const Cluster& cluster,
   for (size_t i = 0; i < boxes.size(); ++i) {
     DetectionDecision& decision = (*decisions)[boxes[i]];
     decision.match = matches[i];
-    decision.fate = boxes.size() == 1 ? BoxFate::kAlone
-                    : is_used[i]      ? BoxFate::kExplained
-                    : matches[i]      ? BoxFate::kSecond
-                                      : BoxFate::kUnexplained;
+    decision.fate = boxes.size() == 1             ? BoxFate::kAlone
+                    : is_used[i] && !matches[i]   ? BoxFate::kByHand
+                    : is_used[i]                  ? BoxFate::kExplained
+                    : matches[i] || candidates[i] ? BoxFate::kSecond
+                                                  : BoxFate::kUnexplained;
   }
   return track;
 }
@@ -96,13 +109,20 @@ Sequence WithoutPlanes(Sequence sequence) {
 }
 
 Association Associate(const Sequence& sequence, const SemanticTable& table,
-                      const SharedPoints& points, const AssociateOptions& options, int threads) {
+                      const SharedPoints& points, const AssociateOptions& options, int threads,
+                      const Edits& edits) {
   const AssociationModel model(sequence, table, options);
   Association association;
   association.detections.resize(sequence.detections.size());
-  const Clusters clusters =
-      ClusterDetections(model, points, WithoutDuplicates(model, &association.detections), threads);
+  std::vector<int> kept = WithoutDuplicates(model, &association.detections);
+  const FoundEdits found = FindBoxes(edits, sequence, association.detections);
+  std::erase_if(kept, [&](int detection) { return found.deleted.contains(detection); });
+  for (const auto& [detection, edit] : found.deleted) {
+    association.detections[detection].fate = BoxFate::kDeleted;
+  }
+  Clusters clusters = ClusterDetections(model, points, kept, threads);
   association.is_settled = clusters.is_settled;
+  clusters.all = WithEdits(model, found, std::move(clusters.all));
   association.tracks.resize(clusters.all.size());
   ParallelFor(clusters.all.size(), threads, [&](size_t i) {
     association.tracks[i] = Finished(model, clusters.all[i], &association.detections);

@@ -14,6 +14,7 @@
 #include "association/shared_points.h"
 #include "association/up_estimate.h"
 #include "model/associations.h"
+#include "model/edits.h"
 #include "model/semantic_table.h"
 #include "model/sequence.h"
 
@@ -27,6 +28,13 @@ struct DetectionDecision {
   std::optional<BoxMatch> match;
   int duplicate_of = -1;  // index in Sequence::detections
   int object = -1;        // index in Association::objects; -1: not used
+};
+
+// What edits say of a track.
+struct ByHand {
+  bool is_deleted = false;
+  std::optional<std::string> label = {};
+  KnownSize size = {};
 };
 
 // Detections of one thing.
@@ -45,6 +53,9 @@ struct Track {
   TrackFate fate = TrackFate::kObject;
   // Number of frames that should show the object; none when it was not needed to decide the fate.
   std::optional<int> frames_in_sight;
+  // None: no edit names it. Otherwise its boxes stay with it, whether its body explains them or
+  // not, and it is an object, however rarely it is seen, unless it is deleted.
+  std::optional<ByHand> by_hand;
 };
 
 // The most probable label that the track has votes for, or else that it may have.
@@ -69,8 +80,10 @@ Sequence WithoutPlanes(Sequence sequence);
 // points and, if given, support planes. The given objects and their ids are not used, except for
 // the label and plane of each detection. All boxes are grouped at once (ClusterDetections), each
 // group's body explains them once more as any label that it may have, and false ones are dropped.
-// Throws SettingsError for malformed interchangeable_labels.
+// Edits change the groups (WithEdits). Throws SettingsError for malformed interchangeable_labels,
+// InputError for edits that fit no box or contradict each other.
 Association Associate(const Sequence& sequence, const SemanticTable& table,
-                      const SharedPoints& points, const AssociateOptions& options, int threads);
+                      const SharedPoints& points, const AssociateOptions& options, int threads,
+                      const Edits& edits = {});
 
 }  // namespace soslam

@@ -104,7 +104,7 @@ double AssociationModel::CostOfLabel(const Track& track, const std::string& labe
 
 void AssociationModel::Try(const Track& track, const std::string& label, const Support& support,
                            const std::vector<Landmark>& starts, Hypotheses* hypotheses) const {
-  const ShapePrior prior = PriorOf(label);
+  const ShapePrior prior = PriorOf(track, label);
   const double cost_of_plane =
       sequence_.planes.empty() || sequence_.HasSupports()
           ? 0.0
@@ -126,7 +126,7 @@ void AssociationModel::Try(const Track& track, const std::string& label, const S
 
 void AssociationModel::TryFreeHeight(const Track& track, const std::string& label,
                                      Hypotheses* hypotheses) const {
-  const ShapePrior prior = PriorOf(label);
+  const ShapePrior prior = PriorOf(track, label);
   if (sequence_.planes.empty() || prior.mount != Mount::kStanding) return;
   const UpEstimate up{UpOfPlanes(sequence_), Eigen::Matrix3d::Zero()};
   const auto free =
@@ -139,8 +139,12 @@ void AssociationModel::TryFreeHeight(const Track& track, const std::string& labe
 
 void AssociationModel::Fit(Track* track) const {
   Hypotheses hypotheses;
-  for (const std::string& label : labels_.Candidates(track->votes)) {
-    if (!track->votes.contains(label) && !table_.Contains(label)) continue;
+  std::vector<std::string> labels = labels_.Candidates(track->votes);
+  std::erase_if(labels, [&](const std::string& label) {
+    return !track->votes.contains(label) && !table_.Contains(label);
+  });
+  if (track->by_hand && track->by_hand->label) labels = {*track->by_hand->label};
+  for (const std::string& label : labels) {
     for (const Support& support : SupportsOf(*track)) Try(*track, label, support, {}, &hypotheses);
     TryFreeHeight(*track, label, &hypotheses);
   }
@@ -198,8 +202,9 @@ void AssociationModel::Settle(const Hypotheses& hypotheses, Track* track) const 
   track->labels = ProbabilitiesOfLabels(cost_of_label);
 }
 
-ShapePrior AssociationModel::PriorOf(const std::string& label) const {
-  const ShapePrior prior = PriorOfLabel(table_, label, options_);
+ShapePrior AssociationModel::PriorOf(const Track& track, const std::string& label) const {
+  ShapePrior prior = PriorOfLabel(table_, label, options_);
+  if (track.by_hand) prior = WithKnownSize(prior, track.by_hand->size);
   return sequence_.planes.empty() ? prior : TurnedToSupport(prior);
 }
 

@@ -91,7 +91,7 @@ class AssociationModel {
            const std::vector<Landmark>& starts, Hypotheses* hypotheses) const;
   void TryFreeHeight(const Track& track, const std::string& label, Hypotheses* hypotheses) const;
   double CostOfLabel(const Track& track, const std::string& label, const FittedObject& fit) const;
-  ShapePrior PriorOf(const std::string& label) const;
+  ShapePrior PriorOf(const Track& track, const std::string& label) const;
   void Settle(const Hypotheses& hypotheses, Track* track) const;
 
   const Sequence& sequence_;

@@ -71,6 +71,8 @@ void DropFalseTracks(const AssociationModel& model, int threads, Association* as
     const bool has_detections = three_edges >= options.min_observations;
     if (track.fit && has_detections) track.frames_in_sight = FramesInSight(model, track, border_px);
     const auto fate = [&] {
+      if (track.by_hand && track.by_hand->is_deleted) return TrackFate::kDeleted;
+      if (track.by_hand) return track.fit ? TrackFate::kObject : TrackFate::kNoLandmark;
       if (!has_detections) return TrackFate::kTooFewDetections;
       if (!is_whole) return TrackFate::kNeverWhole;
       if (!track.fit) return TrackFate::kNoLandmark;

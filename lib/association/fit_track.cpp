@@ -45,9 +45,9 @@ FittedObject FittedAt(const ObjectEvidence& evidence, const Landmark& landmark,
   // Sum of the logarithms of the prior's standard deviations: its normalisation.
   const ShapePrior& prior = *evidence.prior;
   const double conditional = 1.0 - prior.log_correlation * prior.log_correlation;
-  const double log_normalisation = prior.log_sigma.array().log().sum() +
-                                   0.5 * std::log(conditional) +
-                                   (prior.height_m ? std::log(prior.height_m->log_sigma) : 0.0);
+  const double log_normalisation =
+      prior.log_sigma.array().log().sum() + 0.5 * std::log(conditional) +
+      (evidence.HasSize() ? std::log(prior.Length()->length_m.log_sigma) : 0.0);
   double prior_cost = log_normalisation + 0.5 * solver.vectorD().array().log().sum();
   FittedObject fitted{landmark, covariance, model.cost + prior_cost};
   fitted.cost_of_misfit = model.cost;

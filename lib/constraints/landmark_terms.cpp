@@ -27,11 +27,12 @@ void RatioTerm::Evaluate(const Landmark& landmark, Residuals residuals, Jacobian
   jacobian->rightCols<3>() = rows_.d_log_half_axes;
 }
 
-void HeightTerm::Evaluate(const Landmark& landmark, Residuals residuals, Jacobian* jacobian) const {
-  residuals[0] = HeightResidual(height_m_, landmark.half_axes[axis_]);
+void LengthTerm::Evaluate(const Landmark& landmark, Residuals residuals, Jacobian* jacobian) const {
+  const auto& [length_m, axis] = length_;
+  residuals[0] = LengthResidual(length_m, landmark.half_axes[axis]);
   if (jacobian == nullptr) return;
   jacobian->setZero();
-  (*jacobian)(0, 6 + axis_) = 1.0 / height_m_.log_sigma;
+  (*jacobian)(0, 6 + axis) = 1.0 / length_m.log_sigma;
 }
 
 void RobustViewTerm::Evaluate(const Landmark& landmark_in_reference, Residuals residuals,

@@ -43,23 +43,21 @@ class RatioTerm final : public LandmarkTerm {
   RatioRows rows_;
 };
 
-// Residual of the logarithm of the height that is twice a half axis.
-inline double HeightResidual(const LogNormal& height_m, double half_axis) {
-  return std::log(2.0 * half_axis / height_m.median) / height_m.log_sigma;
+// Residual of the logarithm of a length that is twice a half axis.
+inline double LengthResidual(const LogNormal& length_m, double half_axis) {
+  return std::log(2.0 * half_axis / length_m.median) / length_m.log_sigma;
 }
 
-// Residual of the height under the prior's height_m: along the object's own z, 2 c of an object
-// that stands.
-class HeightTerm final : public LandmarkTerm {
+// Residual of the length along an axis of the object frame: 2 c, the height of an object that
+// stands, or one that is known of it.
+class LengthTerm final : public LandmarkTerm {
  public:
-  explicit HeightTerm(const LogNormal& height_m, RestingFace rests_on = RestingFace::kBottom)
-      : height_m_(height_m), axis_(OwnHeightAxis(rests_on)) {}
+  explicit LengthTerm(const LengthAlongAxis& length) : length_(length) {}
   int NumResiduals() const override { return 1; }
   void Evaluate(const Landmark& landmark, Residuals residuals, Jacobian* jacobian) const override;
 
  private:
-  LogNormal height_m_;
-  Eigen::Index axis_;
+  LengthAlongAxis length_;
 };
 
 // Term in one camera for a landmark in another frame; each residual has a Huber loss (none if delta

@@ -26,10 +26,10 @@ inline constexpr const auto& NamesOf(RestingFace) { return kRestingFaceNames; }
 // Rotation from the object frame to the object's own axes. Its entries are 0, 1 and -1.
 Eigen::Matrix3d OwnFromObject(RestingFace face);
 
-// Axis of the object frame along which the object's own z axis is.
-constexpr Eigen::Index OwnHeightAxis(RestingFace face) {
-  if (face == RestingFace::kBottom) return 2;
-  return face == RestingFace::kBack ? 0 : 1;
+// Axis (0, 1, 2) of the object frame along which one of the object's own axes is.
+constexpr Eigen::Index AxisOfOwn(Eigen::Index own_axis, RestingFace face) {
+  if (face == RestingFace::kBack) return 2 - own_axis;
+  return face == RestingFace::kSide && own_axis > 0 ? 3 - own_axis : own_axis;
 }
 
 // Half axes along the object frame's x, y and z of half axes along the object's own axes.

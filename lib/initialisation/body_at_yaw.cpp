@@ -115,13 +115,12 @@ bool BodyAtYaw::Step(int round, Body* body) const {
     row.segment<3>(2) = ratio_->d_log_half_axes.row(i).transpose().cwiseQuotient(of_prior);
     system.Add(row, 0.0, 1.0);
   }
-  if (evidence_.HasSize()) {  // HeightTerm to first order about the previous height
-    const LogNormal& height_m = *evidence_.prior->height_m;
-    const Eigen::Index axis = OwnHeightAxis(evidence_.RestsOn());
+  if (evidence_.HasSize()) {  // LengthTerm to first order about the previous length
+    const auto [length_m, axis] = *evidence_.prior->Length();
     const double before = body->half_axes[axis];
     LinearSystem::Row row = LinearSystem::Row::Zero();
-    row(2 + axis) = 1.0 / (height_m.log_sigma * before);
-    system.Add(row, HeightResidual(height_m, before) - row(2 + axis) * before, 1.0);
+    row(2 + axis) = 1.0 / (length_m.log_sigma * before);
+    system.Add(row, LengthResidual(length_m, before) - row(2 + axis) * before, 1.0);
   }
   LinearSystem::FromFree from_free = LinearSystem::Matrix::Identity();
   if (ratio_ && round < kRoundsWithFixedRatio) {

@@ -258,7 +258,7 @@ std::vector<std::unique_ptr<const LandmarkTerm>> PriorTerms(const ObjectEvidence
   std::vector<std::unique_ptr<const LandmarkTerm>> terms;
   if (evidence.HasRatio()) terms.push_back(std::make_unique<RatioTerm>(*evidence.prior));
   if (evidence.HasSize()) {
-    terms.push_back(std::make_unique<HeightTerm>(*evidence.prior->height_m, evidence.RestsOn()));
+    terms.push_back(std::make_unique<LengthTerm>(*evidence.prior->Length()));
   }
   if (evidence.scene_axis && evidence.axes_weight > 0.0) {
     terms.push_back(

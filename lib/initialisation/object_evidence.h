@@ -43,7 +43,8 @@ struct ObjectEvidence {
   bool height_is_free = false;      // only the normal of the plane is known
   std::optional<ShapePrior> prior;  // if none, a cuboid of free ratio
   bool ratio_is_free = false;       // the prior's ratio is not used as a cost
-  bool size_is_known = false;       // the prior's height_m, if any, is used as a cost
+  // The prior's height_m, if any, is used as a cost; the known length of an object always is.
+  bool size_is_known = false;
   std::optional<Eigen::Vector3d> scene_axis = std::nullopt;
   double axes_weight = 0.0;  // see AxisTerm
   std::optional<YawPrior> yaw_prior = std::nullopt;
@@ -61,7 +62,9 @@ struct ObjectEvidence {
   bool MayLean() const { return prior && prior->attitude == Attitude::kFree && !height_is_free; }
   bool HasRatio() const { return prior && !ratio_is_free; }
   bool Stands() const { return !prior || prior->Stands(); }
-  bool HasSize() const { return size_is_known && prior && prior->height_m; }
+  bool HasSize() const {
+    return prior && prior->height_m && (size_is_known || prior->known_length);
+  }
   RestingFace RestsOn() const { return prior ? prior->rests_on : RestingFace::kBottom; }
   ShapeExponents Exponents() const {
     return prior ? prior->shape_exponents : ShapeExponents(kCuboidExponent);

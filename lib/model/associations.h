@@ -24,9 +24,11 @@ enum class BoxFate {
   kSecond,       // so it does, but it explains another box of the frame better
   kUnexplained,  // its body does not explain the box, which points or labels hold
   kDuplicate,    // of none: a box with a higher score covers the same place
+  kByHand,       // its body does not explain the box, which edits hold
+  kDeleted,      // of none: an edit deletes it
 };
-inline constexpr std::array kBoxFateNames = {"alone", "explained", "second", "unexplained",
-                                             "duplicate"};
+inline constexpr std::array kBoxFateNames = {"alone",     "explained", "second", "unexplained",
+                                             "duplicate", "by_hand",   "deleted"};
 inline constexpr const auto& NamesOf(BoxFate) { return kBoxFateNames; }
 
 // What became of a track.
@@ -39,10 +41,11 @@ enum class TrackFate {
   kMoves,             // its label is one of things that move
   kLowScores,         // false: none of its detections has min_best_score
   kNeverWhole,        // false: none of its detections shows all edges
+  kDeleted,           // an edit deletes it
 };
 inline constexpr std::array kTrackFateNames = {
     "object", "too_few_detections", "rarely_detected", "no_landmark", "no_support",
-    "moves",  "low_scores",         "never_whole"};
+    "moves",  "low_scores",         "never_whole",     "deleted"};
 inline constexpr const auto& NamesOf(TrackFate) { return kTrackFateNames; }
 
 struct Associations {
@@ -144,11 +147,12 @@ void Describe(Visitor& visit, Associations::DetectionRow& row) {
               "alone: no other box is of its track; explained: by the track's body; second: so it "
               "is, but another box of the frame better; unexplained: of the track by points or "
               "labels, against its body; duplicate: a box with a higher score covers the same "
-              "place");
+              "place; by_hand: of the track by edits, against its body; deleted: by an edit");
   visit.Field("match", &row.match,
               "fit of the track's body to the box; null if it does not "
               "explain it");
-  visit.Field("track", &row.track, "that it is of; null for duplicates", kNotNegative);
+  visit.Field("track", &row.track, "that it is of; null for duplicates and deleted boxes",
+              kNotNegative);
   visit.Field("object", &row.object,
               "id of the object that it is of; null where it is not used: its own fate or that of "
               "its track says why",
@@ -165,7 +169,7 @@ void Describe(Visitor& visit, Associations::TrackRow& row) {
               "no_landmark: its boxes determine no body; no_support: they fit better at a free "
               "height than on any support plane; moves: its label is one of moving_labels; "
               "low_scores: none of its detections has min_best_score; never_whole: none of its "
-              "detections shows all edges");
+              "detections shows all edges; deleted: by an edit");
   visit.Field("boxes", &row.boxes, "all that are of it", kAtLeastOne);
   visit.Field("detections", &row.detections, "those that are used, one per frame", kAtLeastOne);
   visit.Field("feet_are_hidden", &row.feet_are_hidden,
@@ -180,7 +184,8 @@ template <typename Visitor>
 void Describe(Visitor& visit, Associations::ObjectRow& row) {
   visit.Field("object", &row.object, "id in the sequence that was written", kAtLeastOne);
   visit.Field("track", &row.track, "the track that it is", kNotNegative);
-  visit.Field("label", &row.label, "the label with the most votes", kNotEmpty);
+  visit.Field("label", &row.label, "the most probable one of those with votes, or that of an edit",
+              kNotEmpty);
   visit.Field("label_votes", &row.label_votes, "sum of the scores of its detections, by label");
   visit.Field("detections", &row.detections, "number", kAtLeastOne);
   visit.Field("given_object", &row.given_object,

@@ -181,6 +181,10 @@ void Describe(Visitor& visit, MapEstimate& map) {
               "support planes of the sequence, in its order: estimated ones as they came out, "
               "given ones as they were");
   visit.Field("solver", &map.solver, "how the optimisation went");
+  std::optional<AppliedEdits> edits;
+  if (sequence != nullptr) edits = sequence->edits;
+  visit.OrAbsent("edits", &edits,
+                 "corrections of the association by hand; for readers of this file alone");
   visit.Check([&] { return RowsViolation(trajectory, planes, sequence); });
   visit.AfterReading([&] {
     map.world_from_camera.clear();

@@ -137,6 +137,10 @@ void Describe(Visitor& visit, Object& object) {
               "false: it moves, or is not known to stand still, and has no place in a map");
   visit.OrAbsent("labels", &object.labels,
                  "categories that it may be of, most probable first, where that is uncertain");
+  std::optional<KnownSize> size;
+  if (object.known_size.Any()) size = object.known_size;
+  visit.OrAbsent("known_size", &size, "lengths that a person measured, as edits.json has them");
+  visit.AfterReading([&] { object.known_size = size.value_or(KnownSize()); });
 }
 
 template <typename Visitor>
@@ -329,6 +333,8 @@ void Describe(Visitor& visit, Sequence& sequence) {
               "metres, or another one of any unit");
   visit.OrAbsent("images_without_pose", &sequence.images_without_pose,
                  "images to which the reconstruction gave no pose, which are not used");
+  visit.OrAbsent("edits", &sequence.edits,
+                 "corrections of the association by hand that were applied");
 }
 
 }  // namespace soslam

@@ -46,6 +46,7 @@ const Reason kReasons[] = {
     {"never_whole", "shown whole by no image"},
     {"no_support", "off all support planes: it may hang on a wall"},
     {"moves", "of a kind that moves"},
+    {"deleted", "deleted by hand"},
     {"not_explained", "that the body of their object does not explain"},
     {"no_landmark", "without a body that fits its boxes"},
     {"no_solution", "without a body that fits its boxes"},

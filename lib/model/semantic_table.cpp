@@ -31,6 +31,22 @@ std::optional<ShapePrior> ObjectPrior(const Object& object, const SemanticTable&
   return shape;
 }
 
+// Prior of the mixture of an object's labels.
+std::optional<ShapePrior> OfLabels(const SemanticTable& table, const Object& object) {
+  if (object.labels.empty()) return table.Find(object.label);
+  std::vector<WeightedPrior> priors;
+  double sum = 0.0;
+  for (const auto& [label, probability] : object.labels) {
+    const auto prior = table.Find(label);
+    if (!prior || (!priors.empty() && prior->mount != priors.front().prior.mount)) continue;
+    priors.push_back({probability, *prior});
+    sum += probability;
+  }
+  if (priors.empty()) return table.Find(object.label);
+  for (WeightedPrior& prior : priors) prior.weight /= sum;
+  return MomentsOfMixture(priors);
+}
+
 }  // namespace
 
 bool SemanticTable::Contains(const std::string& label) const {
@@ -43,18 +59,8 @@ std::optional<ShapePrior> SemanticTable::Find(const std::string& label) const {
 }
 
 std::optional<ShapePrior> SemanticTable::Find(const Object& object) const {
-  if (object.labels.empty()) return Find(object.label);
-  std::vector<WeightedPrior> priors;
-  double sum = 0.0;
-  for (const auto& [label, probability] : object.labels) {
-    const auto prior = Find(label);
-    if (!prior || (!priors.empty() && prior->mount != priors.front().prior.mount)) continue;
-    priors.push_back({probability, *prior});
-    sum += probability;
-  }
-  if (priors.empty()) return Find(object.label);
-  for (WeightedPrior& prior : priors) prior.weight /= sum;
-  return MomentsOfMixture(priors);
+  const auto of_labels = OfLabels(*this, object);
+  return of_labels ? std::optional(WithKnownSize(*of_labels, object.known_size)) : std::nullopt;
 }
 
 std::map<std::string, size_t> RowsByName(const SemanticRows& rows) {

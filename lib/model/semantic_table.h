@@ -24,8 +24,8 @@ struct SemanticTable {
   bool Contains(const std::string& label) const;
   // None if the table has neither the label nor a default.
   std::optional<ShapePrior> Find(const std::string& label) const;
-  // Prior of an object whose label may be uncertain: of the mixture of its labels. Labels of
-  // another mount than the most probable one's are left out.
+  // Prior of an object whose label may be uncertain: of the mixture of its labels, with what is
+  // known of its size. Labels of another mount than the most probable one's are left out.
   std::optional<ShapePrior> Find(const Object& object) const;
 };
 

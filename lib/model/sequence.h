@@ -19,7 +19,9 @@
 #include "geometry/plane.h"
 #include "geometry/rigid3.h"
 #include "model/appearance.h"
+#include "model/edits.h"
 #include "model/finding.h"
+#include "model/shape_prior.h"
 
 namespace soslam {
 
@@ -146,6 +148,7 @@ struct Object {
   bool is_static = true;
   // Alternatives where the label is uncertain, most probable first; empty: it is certain.
   std::vector<LabelProbability> labels = {};
+  KnownSize known_size = {};  // what a person measured
 };
 
 // A 2D box of one object in one frame. `plane_in_camera` is the object's support plane in that
@@ -211,6 +214,7 @@ struct Sequence {
   std::vector<std::string> images_without_pose = {};
   // Findings on the data and on the stages so far.
   std::vector<Finding> findings = {};
+  std::optional<AppliedEdits> edits = std::nullopt;  // none: nobody corrected the association
 
   const Frame& FrameOf(const Detection& detection) const { return frames[detection.frame_index]; }
   const Object& ObjectOf(const Detection& detection) const {

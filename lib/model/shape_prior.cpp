@@ -43,6 +43,13 @@ std::optional<LogNormal> HeightOfMixture(const std::vector<WeightedPrior>& prior
 
 }  // namespace
 
+std::optional<LengthAlongAxis> ShapePrior::Length() const {
+  std::optional<LengthAlongAxis> length = known_length;
+  if (!length && height_m) length = {*height_m, 2};
+  if (length) length->axis = AxisOfOwn(length->axis, rests_on);
+  return length;
+}
+
 ShapePrior OnFace(const ShapePrior& standing, RestingFace face) {
   ShapePrior turned = standing;
   turned.rests_on = face;
@@ -74,6 +81,9 @@ ShapePrior TurnedToSupport(const ShapePrior& prior) {
     turned.height_m = {prior.height_m->median * prior.ratio.x(),
                        std::hypot(prior.height_m->log_sigma, prior.log_sigma.x())};
   }
+  if (prior.known_length) {
+    turned.known_length->axis = AxisOfOwn(prior.known_length->axis, RestingFace::kBack);
+  }
   return turned;
 }
 
@@ -88,6 +98,31 @@ ShapePrior TimesRatioLikelihood(const ShapePrior& prior, const Eigen::Vector2d& 
                (of_prior * prior.ratio.array().log().matrix() + of_likelihood.cwiseProduct(mean)),
            covariance, &product);
   return product;
+}
+
+ShapePrior WithKnownSize(const ShapePrior& prior, const KnownSize& size) {
+  constexpr double kLogSigma = 0.02;
+  ShapePrior known = prior;
+  // Information on the logarithms of the two ratios and of the height, which is not known.
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  information.topLeftCorner<2, 2>() = RatioCovariance(prior).inverse();
+  Eigen::Vector3d sum = information.leftCols<2>() * prior.ratio.array().log().matrix();
+  const std::array lengths_m = {size.depth_m, size.width_m, size.height_m};
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const std::optional<double>& length_m = lengths_m[static_cast<size_t>(axis)];
+    if (!length_m) continue;
+    Eigen::Vector3d d_log_length = Eigen::Vector3d::UnitZ();
+    if (axis < 2) d_log_length[axis] = 1.0;
+    information += d_log_length * d_log_length.transpose() / (kLogSigma * kLogSigma);
+    sum += d_log_length * std::log(*length_m) / (kLogSigma * kLogSigma);
+    known.known_length = {{*length_m, kLogSigma}, axis};
+  }
+  if (!known.known_length) return prior;
+  const Eigen::Matrix3d covariance = information.inverse();
+  const Eigen::Vector3d mean = covariance * sum;
+  SetRatio(mean.head<2>(), covariance.topLeftCorner<2, 2>(), &known);
+  known.height_m = LogNormal{std::exp(mean.z()), std::sqrt(covariance(2, 2))};
+  return known;
 }
 
 ShapePrior MomentsOfMixture(const std::vector<WeightedPrior>& priors) {

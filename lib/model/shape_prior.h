@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/description.h"
 #include "geometry/landmark.h"
 
 namespace soslam {
@@ -15,6 +16,25 @@ struct LogNormal {
   double median;
   double log_sigma;  // standard deviation of the logarithm
 };
+
+// A length along an axis (0, 1, 2: x, y, z) of an object.
+struct LengthAlongAxis {
+  LogNormal length_m;
+  Eigen::Index axis;
+};
+
+// Lengths of one thing that somebody has measured.
+struct KnownSize {
+  std::optional<double> depth_m = {}, width_m = {}, height_m = {};
+
+  bool Any() const { return depth_m || width_m || height_m; }
+};
+template <typename Visitor>
+void Describe(Visitor& visit, KnownSize& size) {
+  visit.OrAbsent("depth_m", &size.depth_m, "from front to back of the upright thing", kPositive);
+  visit.OrAbsent("width_m", &size.width_m, "from side to side", kPositive);
+  visit.OrAbsent("height_m", &size.height_m, "from bottom to top", kPositive);
+}
 
 // Side of an upright object where its support plane is. The object frame has z pointing away from
 // the plane.
@@ -52,9 +72,14 @@ struct ShapePrior {
   Attitude attitude = Attitude::kStanding;
   RestingFace rests_on = RestingFace::kBottom;  // the face that a, b and c are for
   bool has_front = false;  // its x axis is a front that people agree on, as that of a chair
+  // Known of the object itself and not of its label, along one of its own axes.
+  std::optional<LengthAlongAxis> known_length = {};
 
   // True if the object can only stand on its bottom.
   bool Stands() const { return mount == Mount::kStanding && attitude == Attitude::kStanding; }
+  // The length that tells how large the object is, along an axis of the object frame: the known one
+  // or the height; none if the size is unknown.
+  std::optional<LengthAlongAxis> Length() const;
 };
 
 // The prior in the object frame, whose z points away from the support plane, from a prior of
@@ -74,6 +99,10 @@ std::vector<std::optional<ShapePrior>> OnPossibleFaces(const std::optional<Shape
 // variances, independent of each other.
 ShapePrior TimesRatioLikelihood(const ShapePrior& prior, const Eigen::Vector2d& mean,
                                 const Eigen::Vector2d& variance);
+
+// The prior of an object of which some lengths are known, to 2 %: ratios of known lengths and
+// height_m follow from them. The same prior if none is.
+ShapePrior WithKnownSize(const ShapePrior& prior, const KnownSize& size);
 
 // Log-normal prior with the moments of a mixture of priors of one mount; the height is that of the
 // priors that have one; attitude and has_front are those of the first. Weights have the sum 1.

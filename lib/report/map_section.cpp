@@ -127,6 +127,7 @@ class MapOfVariant {
         fmt::format("<h2>{}</h2>\n<p>{} in {}.", HtmlText(title), Counted(placed_.size(), "object"),
                     Counted(sequence_.frames.size(), "image"));
     if (!scale_.sentence.empty()) html += " " + HtmlText(scale_.sentence);
+    if (sequence_.edits) html += " " + HtmlText(InWords(*sequence_.edits)) + ".";
     html += "</p>\n";
     if (!scale_.warning.empty()) {
       html += fmt::format("<p class=\"warning\">{}</p>\n", HtmlText(scale_.warning));

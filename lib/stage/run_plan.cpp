@@ -8,10 +8,12 @@
 #include <set>
 
 #include "artefact/atomic_file.h"
+#include "artefact/files.h"
 #include "base/error.h"
 #include "base/paths.h"
 #include "base/text.h"
 #include "dataset/photo_folder.h"
+#include "dataset/text_file.h"
 #include "stage/stages.h"
 #include "workflow/pipeline_settings.h"
 #include "workflow/plan.h"
@@ -152,7 +154,9 @@ void RunPlan(const PlanOptions& options, const StageFiles& files, int /*threads*
   const std::string name =
       options.name.empty() ? fs::canonical(dataset).filename().string() : options.name;
   RefuseIfNotAFolderName(name, "dataset");
-  for (const auto& [argument, path] : files) RefuseIfUnfitForMake(path.string(), "--" + argument);
+  for (const auto& [argument, path] : files) {
+    if (argument != "edits") RefuseIfUnfitForMake(path.string(), "--" + argument);
+  }
   const PlanFolders folders = {dataset, files.at("pipelines"), files.at("results") / name};
 
   const FoundFiles found = FindFiles(dataset);
@@ -164,7 +168,21 @@ void RunPlan(const PlanOptions& options, const StageFiles& files, int /*threads*
   }
   for (const std::string& variant : variants) RefuseIfNotAFolderName(variant, "variant");
 
-  const Plan plan = MakePlan(folders.pipelines, name, variants);
+  const fs::path edits = folders.results / kEditsFile;
+  const auto given_edits = files.find("edits");
+  const bool gives_edits = given_edits != files.end();
+  const Plan plan = MakePlan(folders.pipelines, name, variants, gives_edits || Exists(edits));
+  if (gives_edits) {
+    ReadEdits(given_edits->second);
+    if (std::ranges::none_of(plan.instances, &StageInstance::reads_edits)) {
+      throw SettingsError(fmt::format(
+          "{}: corrects which boxes are of one object, which ids of the dataset give here; "
+          "expected "
+          "a variant with estimated association, as those of pipelines/raw_boxes, or no edits",
+          given_edits->second.string()));
+    }
+    WriteFile(edits, ReadWholeFile(given_edits->second));
+  }
   ReportFindings("plan", plan.findings);
   for (const StageInstance& instance : plan.instances) {
     if (!instance.semantic_table.empty()) {

@@ -49,7 +49,8 @@ class Status {
                {"results", files.at("results")}},
               1);
     }
-    plan_ = MakePlan(folders_.pipelines, name_, Variants(options));
+    plan_ = MakePlan(folders_.pipelines, name_, Variants(options),
+                     Exists(folders_.results / kEditsFile));
     states_ = StatesOf(plan_, folders_, under_way);
   }
 
@@ -229,7 +230,8 @@ int RunDoctor(const DoctorOptions& options, const StageFiles& files, int /*threa
   }
   const fs::path results = files.at("results") / options.name;
   const fs::path pipelines = ReadPlanFolders(results / "plan.mk").pipelines;
-  const Plan plan = MakePlan(pipelines, options.name, PlannedVariants(pipelines, results));
+  const Plan plan = MakePlan(pipelines, options.name, PlannedVariants(pipelines, results),
+                             Exists(results / kEditsFile));
   const std::vector<Diagnosis> diagnoses = DiagnosesOf(plan, results);
   for (const Diagnosis& diagnosis : diagnoses) {
     const Finding& finding = diagnosis.finding;

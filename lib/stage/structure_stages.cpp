@@ -12,6 +12,7 @@
 #include "association/association.h"
 #include "association/options.h"
 #include "base/error.h"
+#include "base/hash.h"
 #include "base/text.h"
 #include "cli/command_line.h"
 #include "evaluation/result_checks.h"
@@ -58,7 +59,8 @@ void RunAssociate(const AssociateOptions& options, const StageFiles& files, int 
   const SharedPoints points = options.shared_points
                                   ? SharedPoints(sequence, ReadMatches(files.at("matches")))
                                   : SharedPoints();
-  const Association association = Associate(sequence, table, points, options, threads);
+  const Edits edits = files.contains("edits") ? ReadEdits(files.at("edits")) : Edits();
+  const Association association = Associate(sequence, table, points, options, threads, edits);
   if (association.objects.empty()) {
     throw NothingUsableError(fmt::format("{}: no object in {} detections; tracks: {}",
                                          files.at("sequence").string(), sequence.detections.size(),
@@ -69,6 +71,7 @@ void RunAssociate(const AssociateOptions& options, const StageFiles& files, int 
                        .inputs = {files.at("sequence"), files.at("table")},
                        .stage = "associate"};
   if (options.shared_points) info.inputs.push_back(files.at("matches"));
+  if (files.contains("edits")) info.inputs.push_back(files.at("edits"));
   for (const auto& [segment, up] : association.up_of_segments) {
     info.findings = CheckUp(up.holding, up.holdings, up.holding_tilt_variance);
     if (!info.findings.empty()) break;  // the first segment whose up direction is ambiguous
@@ -79,12 +82,17 @@ void RunAssociate(const AssociateOptions& options, const StageFiles& files, int 
                              "none that does", "boxes that fit several objects about as well",
                              "look at the boxes of the objects: soslam-inspect, or the page"});
   }
-  const Sequence associated = AssociatedSequence(sequence, association, agreement);
+  Sequence associated = AssociatedSequence(sequence, association, agreement);
+  if (!edits.edits.empty()) {
+    associated.edits = AppliedEdits{{}, Sha256OfFile(edits.file)};
+    for (const Edit& edit : edits.edits) ++associated.edits->kinds[NameOf(edit.kind)];
+  }
   ReportFindings("associate", info.findings);
   WriteAssociations(files.at("associations"), ReportOf(sequence, association, agreement), info);
   WriteSequence(files.at("output"), associated, info);
   fmt::print("{} objects with {} of {} detections; tracks: {}\n", association.objects.size(),
              associated.detections.size(), sequence.detections.size(), DescribeTracks(association));
+  if (associated.edits) fmt::print("{}\n", InWords(*associated.edits));
   if (const auto f1 = agreement.F1()) {
     fmt::print("{} of {} given objects found; F1 {:.3f}\n", agreement.matched,
                agreement.given_objects, *f1);

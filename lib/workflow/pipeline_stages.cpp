@@ -33,14 +33,16 @@ json Resolve(const json& values, const std::string& where) {
 template <typename Options>
 PipelineStage Stage(const char* name, std::vector<StageInput> inputs,
                     std::map<std::string, std::string> other_inputs,
-                    std::vector<StageOutput> outputs, const char* asked_by = nullptr) {
+                    std::vector<StageOutput> outputs, const char* asked_by = nullptr,
+                    bool takes_edits = false) {
   return {name,
           &Resolve<Options>,
           &OptionRows<Options>,
           std::move(inputs),
           std::move(other_inputs),
           std::move(outputs),
-          asked_by};
+          asked_by,
+          takes_edits};
 }
 
 std::vector<PipelineStage> MakeStages() {
@@ -68,8 +70,8 @@ std::vector<PipelineStage> MakeStages() {
       // Neither matches nor points nor edge maps depend on the world or its unit.
       Stage<MatchOptions>("match", {imported}, {dataset}, {{"output", "matches.h5"}}),
       Stage<AssociateOptions>("associate", {sequence, matches}, {table},
-                              {sequence_file, {"associations", "associations.json"}},
-                              "association"),
+                              {sequence_file, {"associations", "associations.json"}}, "association",
+                              /*takes_edits=*/true),
       Stage<PlanesOptions>("planes", {sequence}, {dataset, table},
                            {sequence_file, {"report", "planes.json"}}, "planes"),
       Stage<EdgesOptions>("edges", {imported}, {dataset}, {{"output", "edges.h5"}}),

@@ -43,6 +43,7 @@ struct PipelineStage {
   std::vector<StageOutput> outputs;
   // Its setting that asks for it unless it is "given"; null for a stage that 'stages' lists.
   const char* asked_by = nullptr;
+  bool takes_edits = false;  // see kEditsFile
 };
 
 // In order of execution.

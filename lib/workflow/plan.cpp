@@ -26,7 +26,7 @@ constexpr size_t kKeyDigits = 10;
 using InstanceIds = std::map<std::string, std::string>;
 
 StageInstance InstanceOf(const std::string& stage, const VariantSettings& settings,
-                         const InstanceIds& before) {
+                         const InstanceIds& before, bool has_edits) {
   StageInstance instance;
   instance.stage = stage;
   instance.settings = settings.options.at(stage);
@@ -44,6 +44,8 @@ StageInstance InstanceOf(const std::string& stage, const VariantSettings& settin
   json inputs = json::object();
   for (const auto& [argument, source] : instance.inputs) inputs[argument] = source.instance;
   if (!instance.semantic_table.empty()) inputs["table"] = instance.semantic_table;
+  instance.reads_edits = has_edits && described.takes_edits;
+  if (instance.reads_edits) inputs["edits"] = kEditsFile;
   const json identity = {{"stage", stage}, {"settings", instance.settings}, {"inputs", inputs}};
   instance.key = Sha256OfText(identity.dump()).substr(0, kKeyDigits);
   return instance;
@@ -105,6 +107,7 @@ std::vector<std::filesystem::path> PrerequisitesOf(const StageInstance& instance
   if (!instance.semantic_table.empty()) {
     files.push_back(folders.pipelines / instance.semantic_table);
   }
+  if (instance.reads_edits) files.push_back(folders.results / kEditsFile);
   return files;
 }
 
@@ -113,7 +116,7 @@ std::string InstancePath(const std::string& instance, const std::string& file) {
 }
 
 Plan MakePlan(const std::filesystem::path& pipelines, const std::string& dataset,
-              const std::vector<std::string>& variants) {
+              const std::vector<std::string>& variants, bool has_edits) {
   Plan plan;
   plan.findings = CheckNamesOfSettings(pipelines, dataset);
   std::vector<Finding> for_others;
@@ -127,7 +130,7 @@ Plan MakePlan(const std::filesystem::path& pipelines, const std::string& dataset
     InstanceIds ids;
     for (const std::string& stage : PipelineStages()) {
       if (!settings.options.contains(stage)) continue;
-      StageInstance instance = InstanceOf(stage, settings, ids);
+      StageInstance instance = InstanceOf(stage, settings, ids, has_edits);
       ids[stage] = instance.Id();
       chain.instances.push_back(instance.Id());
       auto known = std::ranges::find(plan.instances, instance.Id(), &StageInstance::Id);

@@ -27,6 +27,7 @@ struct StageInstance {
   nlohmann::json settings;                       // every option, resolved
   std::map<std::string, ArtefactSource> inputs;  // keyed by argument of the stage: "landmarks"
   std::string semantic_table;         // relative to the pipelines folder; empty: not read
+  bool reads_edits = false;           // kEditsFile of the results
   std::vector<std::string> variants;  // variants that use it
 
   std::string Id() const { return stage + "-" + key; }
@@ -66,10 +67,14 @@ std::string InstancePath(const std::string& instance, const std::string& file);
 inline constexpr const char* kDatasetListing = "shared/dataset.txt";
 inline constexpr const char* kImagesListing = "shared/images.txt";
 
+// Corrections of the association by hand, in the results of the dataset. Where it is, association
+// reads it; its content is no part of a key, so that changed edits replace the result.
+inline constexpr const char* kEditsFile = "edits.json";
+
 // The stage runs needed by these variants of a dataset. Throws SettingsError as ReadVariant;
 // InputError if the semantic table that the settings name does not exist.
 Plan MakePlan(const std::filesystem::path& pipelines, const std::string& dataset,
-              const std::vector<std::string>& variants);
+              const std::vector<std::string>& variants, bool has_edits = false);
 
 // Stage instances of a plan that form one job on a cluster.
 struct WorkUnit {

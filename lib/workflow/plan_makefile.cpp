@@ -147,6 +147,7 @@ std::string InstanceRules(const StageInstance& instance) {
     command +=
         fmt::format(" --{} {}", argument, fmt::format(fmt::runtime(path), instance.semantic_table));
   }
+  if (instance.reads_edits) command += fmt::format(" --edits $(results)/{}", kEditsFile);
   std::set<std::string> stamps;
   for (const auto& [argument, source] : instance.inputs) {
     stamps.insert(Shared(source.instance, "done"));

@@ -153,7 +153,9 @@ TEST(RestingFace, FramesAreRotationsWithTheirAxisUp) {
     EXPECT_EQ(own_from_object * own_from_object.transpose(), Eigen::Matrix3d::Identity());
     EXPECT_EQ(own_from_object.determinant(), 1.0);
     EXPECT_EQ(own_from_object.col(2), up[static_cast<size_t>(face)]);
-    EXPECT_EQ(std::abs(own_from_object(2, OwnHeightAxis(face))), 1.0);
+    for (const int own_axis : {0, 1, 2}) {
+      EXPECT_EQ(std::abs(own_from_object(own_axis, AxisOfOwn(own_axis, face))), 1.0);
+    }
   }
 }
 

@@ -44,6 +44,14 @@ TEST(ObjectPriors, TableGivesTheLabelsEntryOrTheDefault) {
               ElementsAre(Is(kCup), Is(kCup), Is(kDefault)));
 }
 
+TEST(ObjectPriors, KnowTheSizeOfTheirObject) {
+  Sequence sequence = CupCupWhisk();
+  sequence.objects[1].known_size.height_m = 0.7;
+  const auto priors = ObjectPriors(sequence, kCupsAndDefault, RatioPrior::kTable);
+  EXPECT_FALSE(priors[0]->known_length);
+  EXPECT_EQ(priors[1]->Length()->length_m.median, 0.7);
+}
+
 // An object has a front if things of its most probable label have one.
 TEST(SemanticTableTest, TheFrontOfAnUncertainLabelIsThatOfTheMostProbable) {
   ShapePrior chair = kCup;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <cmath>
 #include <vector>
 
 #include "support/random.h"
@@ -37,6 +38,61 @@ TEST(TimesRatioLikelihood, IsTheProductOfBothDensities) {
       EXPECT_NEAR(constants.back(), constants.front(), 1e-6);
     }
   }
+}
+
+// Where all lengths are known the prior's ratios do not matter; the errors of lengths that two
+// ratios share correlate them.
+TEST(WithKnownSize, AllLengthsAreTheRatios) {
+  ShapePrior prior{{1.0, 1.0}, {0.5, 0.5}, 1.1};
+  prior.height_m = LogNormal{2.0, 0.3};
+  const ShapePrior known = WithKnownSize(prior, {0.3, 0.6, 1.2});
+  EXPECT_NEAR(known.ratio.x(), 0.25, 0.25 * 0.01);
+  EXPECT_NEAR(known.ratio.y(), 0.5, 0.5 * 0.01);
+  EXPECT_NEAR(known.log_sigma.x(), 0.02 * std::sqrt(2.0), 1e-3);
+  EXPECT_NEAR(known.log_correlation, 0.5, 0.01);
+  EXPECT_NEAR(known.height_m->median, 1.2, 1e-3);
+  EXPECT_EQ(known.Length()->length_m.median, 1.2);
+  EXPECT_EQ(known.Length()->axis, 2);
+}
+
+// A width says nothing of ratios; the height that follows from it has the spread of the ratio.
+TEST(WithKnownSize, OneLengthLeavesTheRatios) {
+  ShapePrior prior{{0.8, 0.5}, {0.3, 0.2}, 1.1, 0.4};
+  prior.height_m = LogNormal{2.0, 0.3};
+  const ShapePrior known = WithKnownSize(prior, {{}, 0.6, {}});
+  EXPECT_TRUE(known.ratio.isApprox(prior.ratio, 1e-9));
+  EXPECT_TRUE(known.log_sigma.isApprox(prior.log_sigma, 1e-9));
+  EXPECT_NEAR(known.log_correlation, 0.4, 1e-9);
+  EXPECT_NEAR(known.height_m->median, 0.6 / 0.5, 1e-9);
+  EXPECT_NEAR(known.height_m->log_sigma, std::hypot(0.2, 0.02), 1e-9);
+  EXPECT_EQ(known.Length()->axis, 1);
+}
+
+// Depth and width fix their quotient, and with the prior's spreads move both ratios.
+TEST(WithKnownSize, TwoLengthsFixTheirQuotient) {
+  const ShapePrior prior{{1.0, 1.0}, {0.4, 0.4}, 1.1};
+  const ShapePrior known = WithKnownSize(prior, {0.8, 0.4, {}});
+  EXPECT_NEAR(known.ratio.x() / known.ratio.y(), 2.0, 0.01);
+  EXPECT_NEAR(known.ratio.x() * known.ratio.y(), 1.0, 1e-9);
+  EXPECT_GT(known.log_correlation, 0.95);
+}
+
+TEST(WithKnownSize, NoneIsTheSamePrior) {
+  const ShapePrior prior{{0.8, 0.5}, {0.3, 0.2}};
+  EXPECT_EQ(WithKnownSize(prior, {}).ratio, prior.ratio);
+  EXPECT_FALSE(WithKnownSize(prior, {}).Length());
+}
+
+// The depth of a picture on a wall is along z of its object frame, that of a thing on its back too,
+// and the height of a thing on its side along y.
+TEST(WithKnownSize, LengthsTurnWithTheObject) {
+  ShapePrior prior{{0.8, 0.5}, {0.3, 0.2}};
+  const ShapePrior deep = WithKnownSize(prior, {0.1, {}, {}});
+  EXPECT_EQ(OnFace(deep, RestingFace::kBack).Length()->axis, 2);
+  EXPECT_EQ(OnFace(WithKnownSize(prior, {{}, {}, 0.3}), RestingFace::kSide).Length()->axis, 1);
+  prior.mount = Mount::kOnWall;
+  EXPECT_EQ(TurnedToSupport(WithKnownSize(prior, {0.1, {}, {}})).Length()->axis, 2);
+  EXPECT_EQ(TurnedToSupport(WithKnownSize(prior, {{}, {}, 0.3})).Length()->axis, 0);
 }
 
 }  // namespace

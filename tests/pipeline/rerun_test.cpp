@@ -147,6 +147,60 @@ TEST(FrontDoorTest, DryRunAndStatusFollowTheRun) {
   EXPECT_THAT(make({"explain", "VARIANT=InitP", "STAGE=evaluate"}), HasSubstr("is done"));
 }
 
+// Corrections by hand are kept by later runs, and change what association and later stages make.
+TEST(FrontDoorTest, EditsStayUntilOthersAreGiven) {
+  const SmallPipeline pipeline;
+  nlohmann::json settings = SmallPipeline::TrueRatios();
+  settings["associate"] = {{"association", "estimated"}};
+  pipeline.WriteSettings(settings);
+  const fs::path edits = pipeline.Folder() / "my edits.json";
+  const auto run = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> words = pipeline.WordsOfCommand("run-built", {"--variant", "InitP"});
+    words.insert(words.end(), options.begin(), options.end());
+    return RunCommand(words);
+  };
+  const auto sequence = [&] {
+    return nlohmann::json::parse(FileBytes(pipeline.Results() / "InitP/sequence.json"));
+  };
+  const auto write = [&](const nlohmann::json& anchor) {
+    const nlohmann::json edit = {{"edit", "delete"}, {"boxes", {anchor}}};
+    WriteBytes(edits, nlohmann::json{{"edits", {edit}}}.dump());
+  };
+  EXPECT_THAT(StagesIn(ExpectSuccess(run({}))),
+              ElementsAre("associate", "evaluate", "import", "initialise"));
+  const nlohmann::json before = sequence();
+  nlohmann::json anchor = {{"image", before["frames"][0]["image"]},
+                           {"box", before["detections"][0]["box"]}};
+  write(anchor);
+  EXPECT_THAT(StagesIn(ExpectSuccess(run({"--edits", edits.string()}))),
+              ElementsAre("associate", "evaluate", "initialise"));
+  EXPECT_EQ(sequence()["objects"].size(), before["objects"].size() - 1);
+  EXPECT_EQ(sequence()["edits"]["kinds"], (nlohmann::json{{"delete", 1}}));
+  const nlohmann::json edited = sequence();
+  EXPECT_THAT(StagesIn(ExpectSuccess(run({}))), IsEmpty());
+  EXPECT_EQ(sequence(), edited);
+
+  // A box that the detector no longer gives.
+  anchor["box"] = {1, 1, 9, 9};
+  write(anchor);
+  const CommandResult stale = run({"--edits", edits.string()});
+  EXPECT_NE(stale.exit_code, 0);
+  EXPECT_THAT(stale.errors, HasSubstr("/edits/0/boxes/0/box is [1.0, 1.0, 9.0, 9.0]"));
+  EXPECT_THAT(stale.errors, HasSubstr("Error 3"));
+  EXPECT_EQ(sequence(), edited);
+
+  WriteBytes(edits, R"({"edits": []})");
+  EXPECT_THAT(StagesIn(ExpectSuccess(run({"--edits", edits.string()}))),
+              ElementsAre("associate", "evaluate", "initialise"));
+  EXPECT_EQ(sequence()["objects"], before["objects"]);
+
+  // Ids of the dataset leave nothing to correct.
+  pipeline.WriteSettings(SmallPipeline::TrueRatios());
+  const CommandResult refused = run({"--edits", edits.string()});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.errors, HasSubstr("my edits.json: corrects which boxes"));
+}
+
 TEST(FrontDoorTest, DryRunsNeedNeitherProgramsNorData) {
   const SmallPipeline pipeline;
   EXPECT_THAT(ExpectSuccess(RunCommand(pipeline.WordsOfProject(

@@ -12,6 +12,7 @@
 #include "artefact/run_file.h"
 #include "base/error.h"
 #include "model/describe_estimates.h"
+#include "model/edits.h"
 #include "priors/furniture_catalogue.h"
 #include "report/tables.h"
 #include "support/random_estimates.h"
@@ -41,6 +42,7 @@ std::map<std::string, std::string> GeneratedSchemas() {
       SchemaWriter::Of<Published>());
   add("furniture_labels", "which models of a furniture catalogue count as which label",
       SchemaWriter::Of<CatalogueLabels>());
+  add("edits", "corrections of data association by hand", SchemaWriter::Of<Edits>());
   add("scene", "what soslam-synthesise makes a dataset from; metres, angles in degrees",
       SchemaWriter::Of<Scene>());
   return schemas;

@@ -8,6 +8,7 @@
 #include "artefact/json_file.h"
 #include "association/options.h"
 #include "base/error.h"
+#include "base/hash.h"
 #include "report/page_parts.h"
 #include "stage/stages.h"
 #include "support/association_scenes.h"
@@ -37,6 +38,7 @@ class RunAssociateTest : public FolderTest {
     for (const char* name : {"sequence", "table", "output", "associations"}) {
       files[name] = File(name);
     }
+    if (std::filesystem::exists(File("edits"))) files["edits"] = File("edits");
     RunAssociate(options_, files, threads);
   }
   json Associations() const { return ReadArtefact(File("associations"), "associations"); }
@@ -76,6 +78,51 @@ TEST_F(RunAssociateTest, SaysWhatItDecided) {
           << list;
     }
   }
+}
+
+TEST_F(RunAssociateTest, EditsAreAppliedAndTold) {
+  for (Frame& frame : sequence_.frames) frame.image = fmt::format("{}.png", frame.id);
+  WriteSequence(File("sequence"), sequence_, {});
+  const Detection& seen = sequence_.detections.front();
+  json anchor = {{"image", sequence_.FrameOf(seen).image},
+                 {"box", {seen.box.x_min, seen.box.y_min, seen.box.x_max, seen.box.y_max}}};
+  const json edits = {{{"edit", "rename"}, {"boxes", {anchor}}, {"label", "chest"}},
+                      {{"edit", "size"}, {"boxes", {anchor}}, {"height_m", 0.75}}};
+  WriteBytes(File("edits"), json{{"edits", edits}}.dump());
+  EXPECT_THAT(Printed([&] { Run(); }),
+              testing::HasSubstr("2 corrections by hand: 1 rename, 1 size"));
+  const Sequence associated = ReadSequence(File("output"));
+  ASSERT_TRUE(associated.edits);
+  EXPECT_EQ(associated.edits->sha256, Sha256OfFile(File("edits")));
+  EXPECT_EQ(associated.objects.front().label, "chest");
+  EXPECT_EQ(associated.objects.front().known_size.height_m, 0.75);
+  const json inputs = ReadArtefact(File("output"), "sequence")["artefact"]["inputs"];
+  EXPECT_EQ(inputs.back()["file"], "edits.json");
+  const std::string one_thread = FileBytes(File("output"));
+  Run(3);
+  EXPECT_EQ(FileBytes(File("output")), one_thread);
+
+  // A box that is no longer there.
+  anchor["box"][0] = seen.box.x_min - 300.0;
+  WriteBytes(File("edits"), json{{"edits", {{{"edit", "delete"}, {"boxes", {anchor}}}}}}.dump());
+  ExpectError<InputError>([&] { Run(); }, {"edits.json: /edits/0/boxes/0/box is ["});
+  EXPECT_EQ(FileBytes(File("output")), one_thread);
+}
+
+TEST_F(RunAssociateTest, EditsThatSayTooLittleOrTooMuchAreRefused) {
+  const std::string box = R"("boxes": [{"image": "a", "box": [1, 2, 3, 4]}])";
+  ExpectBadTexts({{R"({"edit": "join", )" + box + "}", {"/edits/0: join has one box"}},
+                  {R"({"edit": "rename", )" + box + "}", {"rename has no label"}},
+                  {R"({"edit": "split", "label": "x", )" + box + "}", {"split has a label"}},
+                  {R"({"edit": "size", )" + box + "}", {"size has no length"}},
+                  {R"({"edit": "size", "width_m": 0, )" + box + "}", {"/edits/0/width_m is 0"}},
+                  {R"({"edit": "delete", "height_m": 1, )" + box + "}", {"delete has a length"}},
+                  {R"({"edit": "merge", )" + box + "}", {"/edits/0/edit is \"merge\"", "join"}},
+                  {R"({"edit": "delete", "boxes": []})", {"/edits/0/boxes"}}},
+                 "edits.json", [&](const std::string& text) {
+                   WriteBytes(File("edits"), R"({"edits": [)" + text + "]}");
+                   ReadEdits(File("edits"));
+                 });
 }
 
 TEST_F(RunAssociateTest, TracksThatAreNotThereAreRefused) {

@@ -14,7 +14,7 @@
 namespace soslam {
 
 // One change to a valid JSON file, and what the error has to say about it.
-struct Edit {
+struct FieldEdit {
   const char* place;
   const char* value;  // JSON; nullptr: the place is removed
   const char* message;
@@ -22,7 +22,7 @@ struct Edit {
 
 // Expects that the file is refused by its name after each of these changes alone.
 template <typename Read>
-void ExpectEditsRefused(const std::filesystem::path& file, const std::vector<Edit>& edits,
+void ExpectEditsRefused(const std::filesystem::path& file, const std::vector<FieldEdit>& edits,
                         const Read& read) {
   const nlohmann::json whole = nlohmann::json::parse(FileBytes(file));
   for (const auto& [place, value, message] : edits) {

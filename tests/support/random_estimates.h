@@ -34,6 +34,7 @@ inline Sequence RandomSequence() {
     Object object{7 * i - 3, "label", i % 2, {}};
     if (i % 2 == 0) object.ground_truth = {RandomLandmark(), i == 0, i == 2, i == 2};
     object.is_static = i % 2 == 1;
+    if (i == 1) object.known_size.width_m = RandomUniform(0.1, 2.0);
     sequence.objects.push_back(object);
   }
   for (int frame = 0; frame < 5; ++frame) {
@@ -51,6 +52,7 @@ inline Sequence RandomSequence() {
     }
   }
   sequence.rejected_detections = {{"duplicate", 2}, {"near_border", 17}};
+  sequence.edits = AppliedEdits{{{"rename", 2}}, std::string(64, 'a')};
   return sequence;
 }
 
