@@ -50,7 +50,7 @@ TEST(WithKnownSize, AllLengthsAreTheRatios) {
   EXPECT_NEAR(known.ratio.y(), 0.5, 0.5 * 0.01);
   EXPECT_NEAR(known.log_sigma.x(), 0.02 * std::sqrt(2.0), 1e-3);
   EXPECT_NEAR(known.log_correlation, 0.5, 0.01);
-  EXPECT_NEAR(known.height_m->median, 1.2, 1e-3);
+  EXPECT_NEAR(known.height_m->median, 1.2, 1.2 * 0.01);
   EXPECT_EQ(known.Length()->length_m.median, 1.2);
   EXPECT_EQ(known.Length()->axis, 2);
 }

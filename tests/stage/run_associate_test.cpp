@@ -89,7 +89,7 @@ TEST_F(RunAssociateTest, EditsAreAppliedAndTold) {
   const json edits = {{{"edit", "rename"}, {"boxes", {anchor}}, {"label", "chest"}},
                       {{"edit", "size"}, {"boxes", {anchor}}, {"height_m", 0.75}}};
   WriteBytes(File("edits"), json{{"edits", edits}}.dump());
-  EXPECT_THAT(Printed([&] { Run(); }),
+  EXPECT_THAT(PrintedBy([&] { Run(); }).output,
               testing::HasSubstr("2 corrections by hand: 1 rename, 1 size"));
   const Sequence associated = ReadSequence(File("output"));
   ASSERT_TRUE(associated.edits);
