@@ -46,11 +46,11 @@ TEST(WithKnownSize, AllLengthsAreTheRatios) {
   ShapePrior prior{{1.0, 1.0}, {0.5, 0.5}, 1.1};
   prior.height_m = LogNormal{2.0, 0.3};
   const ShapePrior known = WithKnownSize(prior, {0.3, 0.6, 1.2});
-  EXPECT_NEAR(known.ratio.x(), 0.25, 0.25 * 0.01);
-  EXPECT_NEAR(known.ratio.y(), 0.5, 0.5 * 0.01);
-  EXPECT_NEAR(known.log_sigma.x(), 0.02 * std::sqrt(2.0), 1e-3);
+  EXPECT_NEAR(known.ratio.x(), 0.25, 0.25 * 0.001);
+  EXPECT_NEAR(known.ratio.y(), 0.5, 0.5 * 0.001);
+  EXPECT_NEAR(known.log_sigma.x(), 0.005 * std::sqrt(2.0), 1e-4);
   EXPECT_NEAR(known.log_correlation, 0.5, 0.01);
-  EXPECT_NEAR(known.height_m->median, 1.2, 1.2 * 0.01);
+  EXPECT_NEAR(known.height_m->median, 1.2, 1.2 * 0.001);
   EXPECT_EQ(known.Length()->length_m.median, 1.2);
   EXPECT_EQ(known.Length()->axis, 2);
 }
@@ -64,7 +64,7 @@ TEST(WithKnownSize, OneLengthLeavesTheRatios) {
   EXPECT_TRUE(known.log_sigma.isApprox(prior.log_sigma, 1e-9));
   EXPECT_NEAR(known.log_correlation, 0.4, 1e-9);
   EXPECT_NEAR(known.height_m->median, 0.6 / 0.5, 1e-9);
-  EXPECT_NEAR(known.height_m->log_sigma, std::hypot(0.2, 0.02), 1e-9);
+  EXPECT_NEAR(known.height_m->log_sigma, std::hypot(0.2, 0.005), 1e-9);
   EXPECT_EQ(known.Length()->axis, 1);
 }
 
