@@ -101,7 +101,7 @@ ShapePrior TimesRatioLikelihood(const ShapePrior& prior, const Eigen::Vector2d& 
 }
 
 ShapePrior WithKnownSize(const ShapePrior& prior, const KnownSize& size) {
-  constexpr double kLogSigma = 0.02;
+  constexpr double kLogSigma = 0.005;
   ShapePrior known = prior;
   // Information on the logarithms of the two ratios and of the height, which is not known.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
