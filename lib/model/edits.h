@@ -66,7 +66,7 @@ void Describe(Visitor& visit, Edit& edit) {
               "join: the objects of these boxes are one; split: these boxes, and no others, are an "
               "object; delete: the objects of these boxes are none; delete_boxes: these boxes show "
               "nothing; rename: the objects of these boxes have this label; size: they have these "
-              "lengths, to 2 %");
+              "lengths, to 0.5 %");
   visit.Field("boxes", &edit.boxes, "at least one, of join two", Limits{.least_items = 1});
   visit.OrAbsent("label", &edit.label, "of rename: the label, as the semantic table has it",
                  kNotEmpty);

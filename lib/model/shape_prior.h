@@ -100,7 +100,7 @@ std::vector<std::optional<ShapePrior>> OnPossibleFaces(const std::optional<Shape
 ShapePrior TimesRatioLikelihood(const ShapePrior& prior, const Eigen::Vector2d& mean,
                                 const Eigen::Vector2d& variance);
 
-// The prior of an object of which some lengths are known, to 2 %: ratios of known lengths and
+// The prior of an object of which some lengths are known, to 0.5 %: ratios of known lengths and
 // height_m follow from them. The same prior if none is.
 ShapePrior WithKnownSize(const ShapePrior& prior, const KnownSize& size);
 
