@@ -212,9 +212,10 @@ std::vector<Cluster> WithEdits(const AssociationModel& model, const FoundEdits& 
   };
   // A split, and a box that it parts from its boxes and that is joined to them.
   const auto undone_split = [&]() -> std::optional<int> {
-    for (const auto& [box, group] : group_of) {
+    for (const auto& box_and_group : group_of) {
+      const int box = box_and_group.first;
       for (int e = 0; e < edit_count; ++e) {
-        if (edits[e].kind != EditKind::kSplit || group == cluster_count + e) continue;
+        if (edits[e].kind != EditKind::kSplit || group_of.at(box) == cluster_count + e) continue;
         const auto is_undone = [&](int split) {
           return cluster_of.at(split) == cluster_of.at(box) && object_of(split) == object_of(box);
         };
