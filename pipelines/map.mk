@@ -6,8 +6,8 @@ folder := $(MAP_ROOT)/data/$(MAP_NAME)
 steps := $(MAP_ROOT)/steps
 QUIET ?=
 
-# Boxes first: they take seconds, and a network that cannot run is found out before COLMAP works for minutes (unless
-# make runs both at once).
+# Boxes first: COLMAP finds no features in those of things that move, and a network that cannot run is found out before
+# COLMAP works for minutes.
 .PHONY: dataset
 dataset: $(steps)/detected $(steps)/reconstructed
 
@@ -36,7 +36,7 @@ $(steps)/dataset: $(steps)/frames $(steps)/camera.txt
 	$(call step,dataset,rm -rf $(folder) && mv $(folder).new $(folder))
 
 # COLMAP's own files stay beside the dataset: it goes on from them. A finished model is turned as the boxes are.
-$(steps)/reconstructed: $(steps)/dataset $(steps)/model.txt $(if $(MAP_DETECT_OPTIONS),$(steps)/detected)
+$(steps)/reconstructed: $(steps)/dataset $(steps)/model.txt $(steps)/detected
 	$(call step,reconstruct,$(BIN)/soslam-reconstruct --dataset $(folder) --output $(MAP_ROOT)/reconstruction \
 	  $${MAP_MODEL:+--model "$$MAP_MODEL"} $${MAP_CAMERA:+--calibration given} --threads $(MAP_THREADS) \
 	  $$(head -n 1 $(folder)/detections.csv 2> /dev/null | grep --quiet "$$MAP_STORED" && \

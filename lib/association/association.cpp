@@ -10,6 +10,7 @@
 #include "association/clustering.h"
 #include "association/decisive_evidence.h"
 #include "association/edits.h"
+#include "association/moved_things.h"
 #include "base/parallel.h"
 #include "model/occlusion.h"
 
@@ -139,6 +140,7 @@ Association Associate(const Sequence& sequence, const SemanticTable& table,
     for (const int used : track.detections) association.detections[used].object = object;
     association.objects.push_back(i);
   }
+  association.moved_things = FindMovedThings(model, association);
   association.up_of_segments = model.up_of_segments();
   AddDecisiveEvidence(model, points, threads, &association);
   return association;

@@ -61,11 +61,21 @@ struct Track {
 // The most probable label that the track has votes for, or else that it may have.
 const std::string& LabelOf(const Track& track);
 
+// Two objects, by their indices in Association::objects, that are probably one thing.
+struct MovedThing {
+  int object;
+  int later_object;
+  int frames_left = 0;     // that show the first place without it, since it was at the second one
+  int frames_not_yet = 0;  // that show the second place without it, while it was at the first one
+  double probability = 0.0;
+};
+
 struct Association {
   std::vector<DetectionDecision> detections;  // one per Sequence::detections
   std::vector<Track> tracks;
   std::vector<int> objects;  // indices in `tracks`, ordered by first detection
-  bool is_settled = true;    // see Clusters
+  std::vector<MovedThing> moved_things;
+  bool is_settled = true;  // see Clusters
   // One entry for each segment; empty when support planes are given.
   std::map<int, UpEstimate> up_of_segments;
   // What decided about the objects, see AddDecisiveEvidence.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "association/association_model.h"
+#include "association/moved_things.h"
 #include "base/parallel.h"
 #include "model/occlusion.h"
 
@@ -15,29 +16,23 @@ constexpr int kNoObject = -1;
 // A box counts as occluded when a nearer one covers this share of it.
 constexpr double kHiddenShare = 0.5;
 
-// Number of frames in which the track was detected or should have been: its outline box is inside
-// the image, at least as far from the border as all detections are, at least as high as the
-// smallest of the track's boxes, and not occluded by a nearer detection.
-int FramesInSight(const AssociationModel& model, const Track& track, double border_px) {
+}  // namespace
+
+std::vector<Miss> MissesOf(const AssociationModel& model, const Track& track) {
   const Sequence& sequence = model.sequence();
-  double smallest_height = std::numeric_limits<double>::infinity();
   std::vector<bool> is_detected(sequence.frames.size(), false);
   for (const int index : track.detections) {
-    const Detection& detection = model.DetectionAt(index);
-    smallest_height = std::min(smallest_height, detection.box.Height());
-    is_detected[detection.frame_index] = true;
+    is_detected[model.DetectionAt(index).frame_index] = true;
   }
-  auto frames = static_cast<int>(track.detections.size());
+  std::vector<Miss> misses;
   for (int frame = 0; frame < static_cast<int>(sequence.frames.size()); ++frame) {
     if (is_detected[frame]) continue;
     const auto prediction = model.Predict(track, frame);
     if (!prediction) continue;
     const Box& box = prediction->outline;
     const Camera& camera = sequence.CameraOf(sequence.frames[frame]);
-    if (box.Height() < smallest_height ||
-        DistanceToBorder(box, camera.width, camera.height) < border_px) {
-      continue;
-    }
+    const double border_px = DistanceToBorder(box, camera.width, camera.height);
+    if (border_px < 0.0) continue;
     Detection expected;
     expected.frame_index = frame;
     expected.object_index = kNoObject;
@@ -46,12 +41,10 @@ int FramesInSight(const AssociationModel& model, const Track& track, double bord
     const std::vector<Box> nearer = NearerBoxes(sequence, expected);
     const bool is_hidden = std::ranges::any_of(
         nearer, [&](const Box& by) { return CommonArea(box, by) / box.Area() >= kHiddenShare; });
-    if (!is_hidden) ++frames;
+    if (!is_hidden) misses.push_back({frame, box, border_px});
   }
-  return frames;
+  return misses;
 }
-
-}  // namespace
 
 void DropFalseTracks(const AssociationModel& model, int threads, Association* association) {
   const double border_px = SmallestDistanceToBorder(model.sequence());
@@ -60,16 +53,24 @@ void DropFalseTracks(const AssociationModel& model, int threads, Association* as
     int three_edges = 0;  // detections that show at least three of its edges
     bool is_whole = false;
     double best_score = 0.0;
+    double smallest_height = std::numeric_limits<double>::infinity();
     for (const int index : track.detections) {
       const Detection& detection = model.DetectionAt(index);
       const auto hidden_edges = std::ranges::count(detection.is_one_sided, true);
       if (hidden_edges <= 1) ++three_edges;
       if (hidden_edges == 0) is_whole = true;
       best_score = std::max(best_score, detection.score);
+      smallest_height = std::min(smallest_height, detection.box.Height());
     }
     const AssociateOptions& options = model.options();
     const bool has_detections = three_edges >= options.min_observations;
-    if (track.fit && has_detections) track.frames_in_sight = FramesInSight(model, track, border_px);
+    if (track.fit && has_detections) {
+      track.frames_in_sight = static_cast<int>(
+          track.detections.size() +
+          std::ranges::count_if(MissesOf(model, track), [&](const Miss& miss) {
+            return miss.border_px >= border_px && miss.outline.Height() >= smallest_height;
+          }));
+    }
     const auto fate = [&] {
       if (track.by_hand && track.by_hand->is_deleted) return TrackFate::kDeleted;
       if (track.by_hand) return track.fit ? TrackFate::kObject : TrackFate::kNoLandmark;

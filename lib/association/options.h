@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/options.h"
-#include "model/label_groups.h"
+#include "model/sequence.h"
 #include "planes/options.h"
 
 namespace soslam {
@@ -46,7 +46,7 @@ struct AssociateOptions {
       "book, box, laptop, notebook, cell phone; "
       "car, van, truck, bus";
   double similar_label_confusion = 0.02;
-  std::string moving_labels = kMovingLabels;
+  std::string moving_labels = kMovingLabels;  // of the sequence; not a setting of this stage
   double label_evidence_weight = 0.5;
   double no_support_probability = 0.1;
   double odometry_rotation_sigma_deg = 0.1;
@@ -76,8 +76,6 @@ struct AssociateOptions {
                "detected with and those similar to them");
     visit.Real("similar_label_confusion", &similar_label_confusion, {0.0, 0.5},
                "the share of detections with a label that is similar to that of their object");
-    visit.Text("moving_labels", &moving_labels,
-               "labels of things that move, separated by commas; they get no place in the map");
     visit.Real(
         "label_evidence_weight", &label_evidence_weight, {0.0, 1.0},
         "weight of boxes and sizes beside the votes of labels: errors of a label's shape are "

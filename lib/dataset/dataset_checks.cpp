@@ -14,6 +14,7 @@
 
 #include "base/text.h"
 #include "dataset/gate.h"
+#include "model/moving_things.h"
 #include "model/reasons.h"
 
 namespace soslam {
@@ -57,7 +58,7 @@ std::vector<Finding> CheckDataset(const ImportView& view) {
     add({&CheckObjectAxes});
   }
   add({&CheckTruth, &CheckScores, &CheckClassNumbers, &CheckBlankLines, &CheckLabels,
-       &CheckRejections});
+       &CheckRejections, [](const ImportView& view) { return CheckMovingThings(view.sequence); }});
   return WorstFirst(std::move(findings));
 }
 

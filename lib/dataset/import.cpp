@@ -259,6 +259,7 @@ Sequence ImportDataset(const std::filesystem::path& folder, const ImportOptions&
   sequence.name = std::filesystem::canonical(folder).filename().string();
   sequence.odometry_source = options.odometry_source;
   sequence.image_orientation = options.image_orientation;
+  sequence.moving_labels = options.moving_labels;
   std::ranges::sort(sequence.true_objects, {}, &TrueObject::id);
   for (TrueObject& object : sequence.true_objects) {
     object.is_ignored = !IsListed(object.label, options.labels);

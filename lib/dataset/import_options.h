@@ -6,6 +6,7 @@
 
 #include "base/options.h"
 #include "geometry/image_size.h"
+#include "model/sequence.h"
 
 namespace soslam {
 
@@ -170,6 +171,7 @@ struct ImportOptions {
   double max_time_difference_s = 0.02;
   double min_score = 0.0;
   double hidden_edge_fraction = 0.7;
+  std::string moving_labels = kMovingLabels;
   bool scene_axes = true;
   FolderOptions folder;
   KittiOptions kitti;
@@ -225,6 +227,10 @@ struct ImportOptions {
     visit.Real("hidden_edge_fraction", &hidden_edge_fraction, {0, 1},
                "the share of a box's lower edge that must lie inside boxes of nearer objects for "
                "it to be one-sided: the object may extend beyond it");
+    visit.Text("moving_labels", &moving_labels,
+               "labels of things that move, separated by commas: they get no place in a map made "
+               "of boxes without ids, and points in any of their boxes are no evidence; empty: "
+               "none");
     visit.Flag("scene_axes", &scene_axes,
                "the directions along which the straight edges of the images lie on the support "
                "planes are estimated, for later stages to prefer them for objects");

@@ -3,6 +3,7 @@
 
 #include "base/options.h"
 #include "geometry/image_size.h"
+#include "model/sequence.h"
 
 namespace soslam {
 
@@ -22,6 +23,7 @@ struct ReconstructOptions {
   int exhaustive_max_images = 100;
   double max_time_difference_s = 0.02;
   ImageOrientation image_orientation = ImageOrientation::kUpright;
+  std::string moving_labels = kMovingLabels;
 
   void Describe(OptionVisitor& visit) {
     visit.Group("What is known");
@@ -46,6 +48,9 @@ struct ReconstructOptions {
                  "viewers show them, or as the file stores them, for stages with the same setting. "
                  "A finished model of the others is turned. COLMAP reads images as they are stored "
                  "and runs on no others");
+    visit.Text("moving_labels", &moving_labels,
+               "labels of things that move, separated by commas: COLMAP finds no features in their "
+               "boxes, if the dataset has a detections.csv; empty: none");
   }
 };
 

@@ -150,7 +150,7 @@ std::vector<MeasuredObject> MeasureObjects(const Sequence& sequence,
                                            const SemanticTable& table,
                                            const HorizontalPlanes& planes, const UpEstimate& up,
                                            const GroundOptions& options, int threads) {
-  const std::set<std::string> moving = NormalisedLabels("moving_labels", options.moving_labels);
+  const std::set<std::string> moving = NormalisedLabels("moving_labels", sequence.moving_labels);
   std::vector<MeasuredObject> objects;
   for (const std::vector<int>& group : groups) {
     if (static_cast<int>(group.size()) < options.min_boxes) continue;

@@ -23,7 +23,6 @@ struct GroundOptions {
   double camera_height_log_sigma = 0.1;
   double wrong_height_probability = 0.05;
   double same_label_correlation = 0.3;
-  std::string moving_labels = kMovingLabels;
   int min_boxes = 3;
   UprightOptions upright = kUprightTracks;
   CameraTilt tilt;
@@ -51,8 +50,6 @@ struct GroundOptions {
     visit.Real("same_label_correlation", &same_label_correlation, {0.0, 1.0},
                "correlation of the heights of objects of one label beyond that of the table: "
                "chairs in one room are often of one model; 1: together they count as one object");
-    visit.Text("moving_labels", &moving_labels,
-               "labels of things that move, separated by commas; they are not used");
     visit.Group("Objects");
     visit.Integer("min_boxes", &min_boxes, {2, 100000}, "objects with fewer boxes are not used");
     upright.DescribeSigmaAboutBody(

@@ -56,7 +56,9 @@ struct ImageFeatures {
   Descriptors descriptors;
 };
 
-ImageFeatures FindFeatures(const cv::Mat& grey, const MatchOptions& options);
+// Features at pixels where the mask, CV_8UC1, is not 0; without one at all pixels.
+ImageFeatures FindFeatures(const cv::Mat& grey, const MatchOptions& options,
+                           const cv::Mat& mask = cv::Mat());
 
 // Features of an image without lens distortion, and the camera that took it.
 struct FeatureView {

@@ -24,12 +24,13 @@ std::vector<cv::Point2f> Moved(const std::vector<cv::Point2f>& points,
 
 }  // namespace
 
-void FeatureTracker::Add(const cv::Mat& grey, const Eigen::Matrix3d& pixel_from_last_pixel) {
+void FeatureTracker::Add(const cv::Mat& grey, const Eigen::Matrix3d& pixel_from_last_pixel,
+                         const cv::Mat& mask) {
   std::vector<cv::Mat> pyramid;
   cv::buildOpticalFlowPyramid(grey, pyramid, {options_.window_px, options_.window_px},
                               options_.pyramid_levels);
-  if (!last_points_.empty()) Follow(pyramid, pixel_from_last_pixel);
-  Detect(grey);
+  if (!last_points_.empty()) Follow(pyramid, pixel_from_last_pixel, mask);
+  Detect(grey, mask);
   last_pyramid_ = std::move(pyramid);
   ++images_;
 }
@@ -40,7 +41,7 @@ void FeatureTracker::Cut() {
 }
 
 void FeatureTracker::Follow(const std::vector<cv::Mat>& pyramid,
-                            const Eigen::Matrix3d& pixel_from_last_pixel) {
+                            const Eigen::Matrix3d& pixel_from_last_pixel, const cv::Mat& mask) {
   const cv::TermCriteria settled(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 30, 0.01);
   const cv::Size window(options_.window_px, options_.window_px);
   std::vector<cv::Point2f> forward = Moved(last_points_, pixel_from_last_pixel);
@@ -57,7 +58,10 @@ void FeatureTracker::Follow(const std::vector<cv::Mat>& pyramid,
   for (size_t i = 0; i < forward.size(); ++i) {
     const bool is_followed = is_forward[i] != 0 && is_back[i] != 0 &&
                              cv::norm(back[i] - last_points_[i]) <= options_.return_error_px;
-    if (!is_followed || !image.contains(forward[i])) continue;
+    if (!is_followed || !image.contains(forward[i]) ||
+        (!mask.empty() && mask.at<uchar>(cv::Point(forward[i])) == 0)) {
+      continue;
+    }
     points.push_back(forward[i]);
     tracks.push_back(last_tracks_[i]);
     tracks_[tracks.back()].places.push_back({images_, {forward[i].x, forward[i].y}});
@@ -66,10 +70,10 @@ void FeatureTracker::Follow(const std::vector<cv::Mat>& pyramid,
   last_tracks_ = std::move(tracks);
 }
 
-void FeatureTracker::Detect(const cv::Mat& grey) {
+void FeatureTracker::Detect(const cv::Mat& grey, const cv::Mat& mask) {
   const int missing = options_.max_features - static_cast<int>(last_points_.size());
   if (missing <= 0) return;
-  cv::Mat is_free(grey.size(), CV_8UC1, cv::Scalar(255));
+  cv::Mat is_free = mask.empty() ? cv::Mat(grey.size(), CV_8UC1, cv::Scalar(255)) : mask.clone();
   for (const cv::Point2f& point : last_points_) {
     cv::circle(is_free, point, static_cast<int>(options_.feature_distance_px), cv::Scalar(0), -1);
   }

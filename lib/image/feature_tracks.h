@@ -49,17 +49,20 @@ class FeatureTracker {
   explicit FeatureTracker(const FeatureTrackOptions& options) : options_(options) {}
 
   // The next image, CV_8UC1 and of the size of the one before. Features are looked for about where
-  // the homography `pixel_from_last_pixel` moves them, such as that of the camera's rotation.
+  // the homography `pixel_from_last_pixel` moves them, such as that of the camera's rotation; there
+  // are none where the mask, CV_8UC1, is 0.
   void Add(const cv::Mat& grey,
-           const Eigen::Matrix3d& pixel_from_last_pixel = Eigen::Matrix3d::Identity());
+           const Eigen::Matrix3d& pixel_from_last_pixel = Eigen::Matrix3d::Identity(),
+           const cv::Mat& mask = cv::Mat());
   // The next image has nothing in common with those before, and may have another size.
   void Cut();
   // All tracks over at least two images, in order of their first image.
   std::vector<FeatureTrack> Tracks() const;
 
  private:
-  void Follow(const std::vector<cv::Mat>& pyramid, const Eigen::Matrix3d& pixel_from_last_pixel);
-  void Detect(const cv::Mat& grey);
+  void Follow(const std::vector<cv::Mat>& pyramid, const Eigen::Matrix3d& pixel_from_last_pixel,
+              const cv::Mat& mask);
+  void Detect(const cv::Mat& grey, const cv::Mat& mask);
 
   FeatureTrackOptions options_;
   int images_ = 0;

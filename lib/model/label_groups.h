@@ -10,10 +10,6 @@
 
 namespace soslam {
 
-// Labels of things that move, as the default of options named moving_labels.
-inline constexpr const char* kMovingLabels =
-    "person, pedestrian, cyclist, dog, cat, bird, horse, sheep, cow";
-
 // Groups of labels from the text of an option, 'a, b; c, d'. Throws SettingsError, naming the
 // option, for an empty label.
 std::vector<std::vector<std::string>> ParseLabelGroups(const char* option, const std::string& text);

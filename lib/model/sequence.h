@@ -25,6 +25,11 @@
 
 namespace soslam {
 
+// Labels of things that move by themselves, as the default of options named moving_labels. Vehicles
+// are not among them: most are parked.
+inline constexpr const char* kMovingLabels =
+    "person, pedestrian, cyclist, dog, cat, bird, horse, sheep, cow";
+
 // Exact values of an object, for evaluation and as a prior where a setting asks for it. For a
 // moving object, the landmark at its first observation.
 struct GroundTruth {
@@ -210,6 +215,8 @@ struct Sequence {
   std::vector<TruthInFrame> truth_in_frames = {};  // sorted by frame, then by object
   std::vector<IgnoredThings> ignored = {};
   OdometryWorld odometry_world = OdometryWorld::kOfTruth;
+  // Labels of things that move (ImportOptions).
+  std::string moving_labels = kMovingLabels;
   // Images to which the reconstruction of the poses gave none, by name.
   std::vector<std::string> images_without_pose = {};
   // Findings on the data and on the stages so far.

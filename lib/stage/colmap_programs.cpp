@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <functional>
+#include <opencv2/imgcodecs.hpp>
 #include <regex>
 #include <sstream>
 
@@ -18,6 +19,8 @@
 #include "base/process.h"
 #include "base/progress.h"
 #include "dataset/colmap_model.h"
+#include "image/box_mask.h"
+#include "image/image_format.h"
 
 namespace soslam {
 namespace {
@@ -28,6 +31,7 @@ namespace fs = std::filesystem;
 constexpr const char* kDatabase = "database.db";
 constexpr const char* kImageList = "images.txt";
 constexpr const char* kLog = "log.txt";
+constexpr const char* kMasks = "masks";
 constexpr const char* kModels = "sparse";
 
 constexpr int kBlockSize = 10;  // images per block of exhaustive matching
@@ -64,6 +68,11 @@ std::string StampOf(const ColmapJob& job, const std::string& version) {
   }
   for (size_t i = 0; i < job.images.size(); ++i) {
     text += fmt::format("{} {}\n", Sha256OfFile(job.dataset / job.images[i]), job.images[i]);
+    if (!job.masked.empty()) {
+      for (const Box& box : job.masked[i]) {
+        text += fmt::format("  without {} {} {} {}\n", box.x_min, box.y_min, box.x_max, box.y_max);
+      }
+    }
     if (job.poses.empty() || !job.poses[i]) continue;
     text += fmt::format("  {} {}\n", fmt::join(job.poses[i]->translation, " "),
                         fmt::join(job.poses[i]->rotation.coeffs(), " "));
@@ -104,6 +113,17 @@ void WriteGivenModel(const ColmapJob& job, const fs::path& folder) {
                             job.camera->camera.height, parameters));
   WriteTextFile(folder / "images.txt", images);
   WriteTextFile(folder / "points3D.txt", "");
+}
+
+// Masks as COLMAP reads them, <name of the image>.png, of the images with masked boxes.
+void WriteMasks(const ColmapJob& job, const fs::path& folder) {
+  for (size_t i = 0; i < job.masked.size(); ++i) {
+    if (job.masked[i].empty()) continue;
+    const ImageSize size = ReadImageHeader(job.dataset / job.images[i]).value().stored;
+    const fs::path mask = folder / (job.images[i] + ".png");
+    fs::create_directories(mask.parent_path());
+    cv::imwrite(mask.string(), OutsideOf(job.masked[i], {size.width, size.height}));
+  }
 }
 
 // The installed version.
@@ -204,6 +224,10 @@ class Programs {
         {"--ImageReader.camera_model", camera_model}};
     if (job_.camera) {
       options.emplace_back("--ImageReader.camera_params", ToColmap(*job_.camera).parameters);
+    }
+    if (!job_.masked.empty()) {
+      WriteMasks(job_, workspace_ / kMasks);
+      options.emplace_back("--ImageReader.mask_path", (workspace_ / kMasks).string());
     }
     Follower follower("images: features", CountOfImages());
     int counted = 0, with_features = 0;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dataset/calibration_file.h"
+#include "geometry/box.h"
 #include "geometry/rigid3.h"
 
 namespace soslam {
@@ -19,6 +20,8 @@ struct ColmapJob {
   bool camera_is_fixed = false;
   // world_from_camera of each image, which needs a fixed camera; empty: they are estimated.
   std::vector<std::optional<Rigid3d>> poses = {};
+  // Boxes of each image in which no features are sought, pixels of the image file; empty: none.
+  std::vector<std::vector<Box>> masked = {};
   bool exhaustive = true;  // match each image with each other; otherwise with its successors
   int threads = 1;
 };

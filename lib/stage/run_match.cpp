@@ -9,7 +9,9 @@
 #include "cli/command_line.h"
 #include "evaluation/statistics.h"
 #include "geometry/distortion.h"
+#include "image/box_mask.h"
 #include "image/feature_matches.h"
+#include "model/moving_things.h"
 #include "stage/read_evidence.h"
 #include "stage/stages.h"
 
@@ -45,11 +47,14 @@ void RunMatch(const MatchOptions& options, const StageFiles& files, int threads)
     segments.push_back(image.frame->segment);
   }
   const FrameImageReader reader(sequence);
+  const std::vector<std::vector<Box>> moving = BoxesOfMovingThings(sequence);
   std::vector<FeatureView> views(images.size());
   ParallelFor("images", images.size(), threads, [&](size_t i) {
     const Frame& frame = *images[i].frame;
+    const cv::Mat grey = reader.Read(images[i], cv::IMREAD_GRAYSCALE);
+    const cv::Mat mask = OutsideOf(moving[&frame - sequence.frames.data()], grey.size());
     views[i] = {sequence.CameraOf(frame), frame.world_from_camera,
-                FindFeatures(reader.Read(images[i], cv::IMREAD_GRAYSCALE), options)};
+                FindFeatures(grey, options, mask)};
   });
   const std::vector<std::pair<int, int>> pairs = ImagePairs(segments);
   std::vector<std::vector<FeatureMatch>> matches(pairs.size());

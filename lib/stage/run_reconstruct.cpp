@@ -16,12 +16,15 @@
 #include "cli/command_line.h"
 #include "dataset/dataset_json.h"
 #include "dataset/image_path.h"
+#include "dataset/labelled_box.h"
 #include "dataset/reconstruct_options.h"
 #include "dataset/reconstruction.h"
+#include "dataset/soslam_folder.h"
 #include "dataset/text_file.h"
 #include "geometry/image_size.h"
 #include "image/image_format.h"
 #include "image/read_image.h"
+#include "model/moving_things.h"
 #include "stage/colmap_programs.h"
 #include "stage/stages.h"
 #include "stage/track_points.h"
@@ -131,6 +134,26 @@ void CheckImages(const fs::path& dataset, const Given& given, ImageOrientation r
   }
 }
 
+// The boxes of things that move, of each image; empty: there are none, or no detections.csv.
+std::vector<std::vector<Box>> MovingBoxes(const fs::path& dataset, const Given& given,
+                                          const std::string& moving_labels) {
+  const fs::path file = dataset / "detections.csv";
+  if (!Exists(file)) return {};
+  Sequence boxes;  // without poses and objects
+  boxes.moving_labels = moving_labels;
+  for (const ListedImage& image : given.images) {
+    const ImageSize size = ReadImageHeader(dataset / image.image).value().stored;
+    boxes.frames.emplace_back().camera = Camera{.width = size.width, .height = size.height};
+  }
+  for (const DetectionRow& row : RowsWithoutObject(ReadDetectionsCsv(file), given.images)) {
+    boxes.rejected.push_back({row.frame_id, row.label, row.score, row.box});
+  }
+  const std::vector<Finding> findings = CheckMovingThings(boxes);
+  if (findings.empty()) return {};
+  fmt::print("{}: {}\n", file.string(), findings.front().found);
+  return BoxesOfMovingThings(boxes);
+}
+
 std::vector<fs::path> MakeModels(const ReconstructOptions& options, const Given& given,
                                  const fs::path& dataset, const fs::path& output, int threads,
                                  std::string* version) {
@@ -139,6 +162,7 @@ std::vector<fs::path> MakeModels(const ReconstructOptions& options, const Given&
                 .camera = given.camera,
                 .camera_is_fixed = given.camera_is_fixed,
                 .poses = given.poses,
+                .masked = MovingBoxes(dataset, given, options.moving_labels),
                 .threads = threads};
   for (const ListedImage& image : given.images) job.images.push_back(image.image);
   job.exhaustive = options.matching == ImageMatching::kAuto

@@ -10,6 +10,7 @@
 #include "artefact/files.h"
 #include "association/agreement.h"
 #include "association/association.h"
+#include "association/moved_things.h"
 #include "association/options.h"
 #include "base/error.h"
 #include "base/hash.h"
@@ -23,6 +24,7 @@
 #include "mapping/back_end.h"
 #include "mapping/initial_landmarks.h"
 #include "mapping/options.h"
+#include "model/moving_things.h"
 #include "model/reasons.h"
 #include "planes/options.h"
 #include "planes/planes_and_holding.h"
@@ -45,12 +47,14 @@ std::string DescribeTracks(const Association& association) {
 
 }  // namespace
 
-void RunAssociate(const AssociateOptions& options, const StageFiles& files, int threads) {
-  if (options.association == AssociationSource::kGiven) {
+void RunAssociate(const AssociateOptions& settings, const StageFiles& files, int threads) {
+  if (settings.association == AssociationSource::kGiven) {
     throw SettingsError(
         "setting 'association' is 'given', which leaves nothing to do; expected 'estimated'");
   }
   Sequence sequence = ReadSequence(files.at("sequence"), PlaneNeed::kNotNeeded);
+  AssociateOptions options = settings;
+  options.moving_labels = sequence.moving_labels;
   const SemanticTable table = ReadSemanticTable(files.at("table"));
   if (!options.use_planes) sequence = WithoutPlanes(std::move(sequence));
   if (options.shared_points && !files.contains("matches")) {
@@ -87,6 +91,7 @@ void RunAssociate(const AssociateOptions& options, const StageFiles& files, int 
     associated.edits = AppliedEdits{{}, Sha256OfFile(edits.file)};
     for (const Edit& edit : edits.edits) ++associated.edits->kinds[NameOf(edit.kind)];
   }
+  std::ranges::move(CheckMovedThings(sequence, association), std::back_inserter(info.findings));
   ReportFindings("associate", info.findings);
   WriteAssociations(files.at("associations"), ReportOf(sequence, association, agreement), info);
   WriteSequence(files.at("output"), associated, info);
@@ -294,7 +299,7 @@ void RunGround(const GroundOptions& options, const StageFiles& files, int thread
   std::vector<SegmentView> views =
       ViewsOfSegments(sequence, options.verticals, files, threads, &info.inputs);
   const GroundEstimate estimate =
-      EstimateGround(sequence, ReadPoints(files.at("points")), views,
+      EstimateGround(sequence, WithoutMovingThings(sequence, ReadPoints(files.at("points"))), views,
                      ReadSemanticTable(files.at("table")), options, threads);
   info.findings = CheckGround(estimate, options);
   if (estimate.IsUpByBoxes()) {

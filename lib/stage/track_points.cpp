@@ -13,6 +13,8 @@
 #include "geometry/angles.h"
 #include "geometry/distortion.h"
 #include "geometry/triangulation.h"
+#include "image/box_mask.h"
+#include "model/moving_things.h"
 
 namespace soslam {
 namespace {
@@ -20,6 +22,7 @@ namespace {
 std::vector<FeatureTrack> TracksOf(const Sequence& sequence, const std::vector<FrameImage>& images,
                                    const FeatureTrackOptions& options, int threads) {
   const FrameImageReader reader(sequence);
+  const std::vector<std::vector<Box>> moving = BoxesOfMovingThings(sequence);
   FeatureTracker tracker(options);
   Progress progress("images", static_cast<int>(images.size()));
   const size_t batch = 4 * static_cast<size_t>(threads);  // limits the images in memory
@@ -40,7 +43,8 @@ std::vector<FeatureTrack> TracksOf(const Sequence& sequence, const std::vector<F
       const Eigen::Quaterniond frame_from_last =
           frame.world_from_camera.rotation.conjugate() * last.world_from_camera.rotation;
       tracker.Add(grey[i], camera.Intrinsics() * frame_from_last.toRotationMatrix() *
-                               before.Intrinsics().inverse());
+                               before.Intrinsics().inverse(),
+                  OutsideOf(moving[&frame - sequence.frames.data()], grey[i].size()));
       progress.Step();
     }
   }

@@ -72,6 +72,14 @@ std::optional<Rigid3d> LookingPose(const Waypoint& waypoint, const Eigen::Vector
 
 }  // namespace
 
+Scene SceneAt(Scene scene, int frame_index) {
+  std::erase_if(scene.objects, [&](const SceneObject& object) {
+    return frame_index < object.from_frame ||
+           (object.until_frame && frame_index >= *object.until_frame);
+  });
+  return scene;
+}
+
 Rigid3d WorldFromPlane(const Plane& plane_in_world) {
   return {UprightRotation(plane_in_world.normal, 0.0),
           -plane_in_world.offset * plane_in_world.normal};

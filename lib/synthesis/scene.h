@@ -49,6 +49,10 @@ struct SceneObject {
   int texture_seed = 0;
   RestingFace rests_on = RestingFace::kBottom;
   Eigen::Vector2d tilt = Eigen::Vector2d::Zero();  // rotation vector about x and y of its frame
+  // Frames in which it is there, the last one not included. A thing that is moved is an object at
+  // each of its places.
+  int from_frame = 0;
+  std::optional<int> until_frame = std::nullopt;
 };
 
 // Position of the camera, and the point in the middle of its image.
@@ -157,6 +161,10 @@ void Describe(Visitor& visit, SceneObject& object) {
       "how it leans: rotation vector about x and y of the frame that yaw turns, whose z "
       "is the plane's normal; its lowest point is on the plane");
   visit.AfterReading([&] { object.tilt = tilt_deg * kRadPerDeg; });
+  visit.OrDefault("from_frame", &object.from_frame, 0, "before this frame it is not there",
+                  kNotNegative);
+  visit.OrAbsent("until_frame", &object.until_frame, "from this frame on it is not there",
+                 kNotNegative);
   visit.OrDefault("texture_seed", &object.texture_seed, object.id, "the id if absent",
                   kNotNegative);
 }
@@ -215,6 +223,9 @@ void Describe(Visitor& visit, Scene& scene) {
                   "visible for a box of the visible part",
                   kShare);
 }
+
+// The scene with those of its objects that are there in a frame.
+Scene SceneAt(Scene scene, int frame_index);
 
 // Transformation from a plane's own frame to the world, see ScenePlane.
 Rigid3d WorldFromPlane(const Plane& plane_in_world);

@@ -194,16 +194,18 @@ Simulation Simulate(const Scene& scene, bool noise) {
       noise ? NoisyOdometry(scene, simulation.true_world_from_camera)
             : simulation.true_world_from_camera;
 
-  const std::vector<Landmark> bodies_in_world = AllBodies(scene);
   for (int frame = 0; frame < scene.trajectory.frames; ++frame) {
     const Rigid3d& world_from_camera = simulation.true_world_from_camera[frame];
-    for (SimulatedBox row : BoxesInSight(scene, frame, world_from_camera, bodies_in_world)) {
+    const Scene there = SceneAt(scene, frame);
+    for (SimulatedBox row : BoxesInSight(there, frame, world_from_camera, AllBodies(there))) {
+      const SceneObject& object = there.objects[row.object_index];
+      row.object_index = static_cast<int>(
+          std::ranges::find(scene.objects, object.id, &SceneObject::id) - scene.objects.begin());
       simulation.exact_boxes.push_back(row);
       if (!noise) {
         simulation.detections.push_back(row);
         continue;
       }
-      const SceneObject& object = scene.objects[row.object_index];
       const auto noisy = NoisyBox(scene, frame, object, row.box);
       if (!noisy) continue;
       row.box = *noisy;

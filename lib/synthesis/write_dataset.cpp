@@ -171,7 +171,7 @@ void AddImageNoise(const Scene& scene, int frame_index, cv::Mat* image) {
 
 void WriteImage(const Scene& scene, bool noise, int frame_index, const Rigid3d& world_from_camera,
                 const DatasetFolder& output) {
-  cv::Mat image = RenderFrame(scene, world_from_camera);
+  cv::Mat image = RenderFrame(SceneAt(scene, frame_index), world_from_camera);
   if (noise) AddImageNoise(scene, frame_index, &image);
   std::vector<uchar> bytes;
   cv::imencode(".png", image, bytes);

@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
+#include "image/box_mask.h"
 #include "support/drawn_photos.h"
 
 namespace soslam {
@@ -260,6 +261,34 @@ TEST(FindFeaturesTest, DescriptorsAreUnitVectorsAndPixelsInOrder) {
     const float norm = features.descriptors.col(i).cast<float>().norm();
     EXPECT_NEAR(norm / ImageFeatures::kDescriptorScale, 1.0, 0.02);
   }
+}
+
+TEST(FindFeaturesTest, NothingInMaskedBoxes) {
+  const cv::Mat grey = GreyOf(DrawnView(0));
+  const Box box = {40.0, -10.0, 200.0, 150.0};
+  const ImageFeatures all = FindFeatures(grey, {});
+  const ImageFeatures outside = FindFeatures(grey, {}, OutsideOf({box}, grey.size()));
+  const auto well_inside = [&](const ImageFeatures& features) {
+    int count = 0;
+    for (const auto& pixel : features.pixels.colwise()) {
+      count += pixel.x() > 41.0 && pixel.x() < 199.0 && pixel.y() < 149.0;
+    }
+    return count;
+  };
+  EXPECT_GT(well_inside(all), 50);
+  EXPECT_EQ(well_inside(outside), 0);
+  EXPECT_GT(outside.pixels.cols(), 50);
+}
+
+TEST(OutsideOfTest, MasksThePixelsWhoseCentresAreInBoxes) {
+  const auto masked = [](const Box& box) {
+    return 12 * 10 - cv::countNonZero(OutsideOf({box}, {12, 10}));
+  };
+  EXPECT_EQ(masked({2.0, 3.0, 4.0, 4.0}), 3 * 2);
+  EXPECT_EQ(masked({1.9, 2.9, 4.1, 4.1}), 3 * 2);
+  EXPECT_EQ(masked({2.1, 3.0, 2.9, 4.0}), 0);
+  EXPECT_EQ(masked({-50.0, -50.0, 500.0, 500.0}), 12 * 10);
+  EXPECT_EQ(masked({12.0, 0.0, 20.0, 5.0}), 0);
 }
 
 TEST(FindFeaturesTest, NothingInAnEmptyOrTinyImage) {

@@ -86,6 +86,27 @@ TEST(FeatureTrackerTest, APredictedMotionIsFollowed) {
   EXPECT_LT(right_tracks(Eigen::Matrix3d::Identity()), 10);
 }
 
+// The picture moves through a masked part of the image.
+TEST(FeatureTrackerTest, NothingInAMask) {
+  const std::vector<int> shifts = {0, 10, 20, 30};
+  const cv::Mat first = SoftView(0);
+  cv::Mat mask(first.size(), CV_8UC1, cv::Scalar(255));
+  const int left = first.cols / 3, right = 2 * first.cols / 3;
+  mask.colRange(left, right) = 0;
+  FeatureTracker tracker({});
+  for (const int shift : shifts) tracker.Add(SoftView(shift), Eigen::Matrix3d::Identity(), mask);
+  int before = 0, behind = 0;
+  for (const FeatureTrack& track : tracker.Tracks()) {
+    for (const FeatureTrack::Place& place : track.places) {
+      EXPECT_TRUE(place.pixel.x() < left || place.pixel.x() >= right) << place.pixel.x();
+    }
+    (track.places.front().pixel.x() < left ? before : behind) += 1;
+    EXPECT_LT(MotionError(track, shifts), 20.0);
+  }
+  EXPECT_GT(before, 20);
+  EXPECT_GT(behind, 20);
+}
+
 TEST(FeatureTrackerTest, NothingOfAnEmptyImage) {
   FeatureTracker tracker({});
   for (int i = 0; i < 3; ++i) tracker.Add(cv::Mat(48, 64, CV_8UC1, cv::Scalar(90)));

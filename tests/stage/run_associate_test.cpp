@@ -138,7 +138,8 @@ TEST_F(RunAssociateTest, TracksThatAreNotThereAreRefused) {
 }
 
 TEST_F(RunAssociateTest, PagesFindTheBoxesOfWhatItLeftOut) {
-  options_.moving_labels = "other";
+  sequence_.moving_labels = "other";
+  WriteSequence(File("sequence"), sequence_, {});
   Run();
   const std::vector<NotPlaced> things =
       TracksLeftOut(ReadAssociations(File("associations")).body, ReadSequence(File("output")));

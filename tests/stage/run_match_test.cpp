@@ -75,6 +75,26 @@ TEST_F(RunMatchTest, PixelsAreThoseOfTheImageAsStored) {
   EXPECT_GT(static_cast<double>(same), 0.7 * static_cast<double>(all));
 }
 
+// A person stands before the picture, whose box is not used.
+TEST_F(RunMatchTest, NoPointInABoxOfAPerson) {
+  const Box person = {100.0, 20.0, 180.0, 200.0};
+  const auto in_box = [&] {
+    size_t count = 0;
+    for (const PointTrack& point : Run()) {
+      count += std::ranges::count_if(point.observations, [&](const PointObservation& seen) {
+        return person.Contains(seen.pixel);
+      });
+    }
+    return count;
+  };
+  for (int i = 0; i < kImages; ++i) {
+    sequence_.rejected.push_back({i, "person", 0.5, person, {}, RejectingStage::kImport, "near_border"});
+  }
+  EXPECT_EQ(in_box(), 0u);
+  sequence_.moving_labels = "dog";
+  EXPECT_GT(in_box(), 100u);
+}
+
 TEST_F(RunMatchTest, SameBytesForAnyNumberOfThreads) {
   ExpectSameBytesForThreads([&](int threads) { Run(threads); }, {files_.at("output")});
 }

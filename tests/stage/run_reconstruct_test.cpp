@@ -136,6 +136,31 @@ TEST_F(RunReconstructTest, ColmapIsCalledForTheProcessorAndOneCamera) {
   EXPECT_THAT(newer, HasSubstr("--FeatureMatching.use_gpu 0"));
 }
 
+TEST_F(RunReconstructTest, ColmapFindsNoFeaturesInBoxesOfThingsThatMove) {
+  Write("data/detections.csv",
+        "frame,label,score,x1,y1,x2,y2\n"
+        "0,person,0.9,10,5,20,40\n"
+        "1,person,0.1,10,5,20,40\n"
+        "1,chair,0.9,10,5,20,40\n"
+        "2,cat,0.9,0,0,50,47\n");
+  Run();
+  EXPECT_THAT(printed_.output, HasSubstr("a box of cat in 1 image, a box of person in 1 image"));
+  EXPECT_THAT(printed_.output, HasSubstr("cover more than half of 1 image"));
+  const fs::path masks = Output("colmap/masks");
+  EXPECT_THAT(Calls(), HasSubstr("--ImageReader.mask_path " + masks.string()));
+  const cv::Mat mask = cv::imread((masks / "rgb/0.png.png").string(), cv::IMREAD_GRAYSCALE);
+  ASSERT_EQ(mask.size(), cv::Size(64, 48));
+  EXPECT_EQ(cv::countNonZero(mask(cv::Rect(10, 5, 11, 36))), 0);
+  EXPECT_EQ(cv::countNonZero(mask), 64 * 48 - 11 * 36);
+  EXPECT_FALSE(fs::exists(masks / "rgb/1.png.png"));
+  // Other boxes are another job; without any the images are as they were.
+  Run();
+  EXPECT_EQ(Calls(), "");
+  options_.moving_labels = "dog";
+  Run();
+  EXPECT_THAT(Calls(), Not(HasSubstr("mask_path")));
+}
+
 TEST_F(RunReconstructTest, AGivenModelGivesTheSameBytes) {
   Run();
   Calls();

@@ -48,6 +48,26 @@ TEST_F(RunTrackTest, ObservationsAreWhereThePointsProject) {
   }
 }
 
+// A person stands before the picture, whose box is not used.
+TEST_F(RunTrackTest, NoPointInABoxOfAPerson) {
+  const Box person = {100.0, 20.0, 180.0, 200.0};
+  const auto in_box = [&] {
+    size_t count = 0;
+    for (const MapPoint& point : Run()) {
+      count += std::ranges::count_if(point.observations, [&](const PointObservation& seen) {
+        return person.Contains(seen.pixel);
+      });
+    }
+    return count;
+  };
+  for (int i = 0; i < kImages; ++i) {
+    sequence_.rejected.push_back({i, "person", 0.5, person, {}, RejectingStage::kImport, "near_border"});
+  }
+  EXPECT_EQ(in_box(), 0u);
+  sequence_.moving_labels = "dog";
+  EXPECT_GT(in_box(), 100u);
+}
+
 TEST_F(RunTrackTest, SameBytesForAnyNumberOfThreads) {
   ExpectSameBytesForThreads([&](int threads) { Run(threads); }, {files_.at("output")});
 }

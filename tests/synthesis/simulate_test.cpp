@@ -48,6 +48,21 @@ TEST(Simulate, ObjectBehindAnotherIsNotInSight) {
   EXPECT_EQ(seen, (std::vector<int>{0, 2, 3}));
 }
 
+// What stands before another object is moved away.
+TEST(Simulate, ObjectsAreThereInTheirFrames) {
+  Scene scene = Row(6);
+  SceneObject wall{0, "wall", Shape::kBox, {0.05, 0.4, 0.4}, {2.1, 0.06}, 0.0, 0, 4};
+  wall.until_frame = 2;
+  scene.objects.insert(scene.objects.begin(), wall);
+  scene.objects[3].from_frame = 4;
+  std::vector<std::vector<int>> seen(6);
+  for (const SimulatedBox& row : Simulate(scene, false).detections) {
+    seen[row.frame_index].push_back(scene.objects[row.object_index].id);
+  }
+  const std::vector<int> with_wall = {0, 1}, without = {1, 2}, last = {1, 2, 3};
+  EXPECT_EQ(seen, (std::vector{with_wall, with_wall, without, without, last, last}));
+}
+
 TEST(Simulate, TruncatedAndPassedObjectsAreNotInSight) {
   Scene scene = Row(1);
   scene.objects[0].position_on_plane = {1.2, -0.75};  // reaches over the image's border
