@@ -24,8 +24,8 @@ constexpr double kMoved = 0.01;
 // the curve).
 double CostOfMisses(int frames) {
   constexpr double kDetected = 1.5, kMissed = 0.5;
-  return std::lgamma(kMissed) - std::lgamma(kMissed + frames) + std::lgamma(kDetected + kMissed + frames) -
-         std::lgamma(kDetected + kMissed);
+  return std::lgamma(kMissed) - std::lgamma(kMissed + frames) +
+         std::lgamma(kDetected + kMissed + frames) - std::lgamma(kDetected + kMissed);
 }
 
 // True if a box of the frame, also one that is not used, may be of what stands at the outline.
@@ -67,22 +67,20 @@ std::vector<MovedThing> FindMovedThings(const AssociationModel& model,
     return association.tracks[association.objects[object]];
   };
   struct Seen {
-    int first, last;          // frame
-    std::vector<int> empty;   // frames that show the place without it
+    int first, last;         // frames
+    std::vector<int> empty;  // frames that show its place without it
   };
   std::vector<Seen> seen;
   for (size_t i = 0; i < association.objects.size(); ++i) {
-    const auto [first, last] = std::ranges::minmax(track_of(i).boxes, {}, [&](int box) { return model.DetectionAt(box).frame_index; });
-    seen.push_back({model.DetectionAt(first).frame_index, model.DetectionAt(last).frame_index, {}});
-    for (const Miss& miss : MissesOf(model, track_of(i))) {
-      if (!IsTaken(sequence, miss) && IsSeenAlike(model, track_of(i), miss.frame_index)) seen.back().empty.push_back(miss.frame_index);
-    }
-    if (getenv("DUMP")) {
-      std::vector<int> d; for (int b : track_of(i).boxes) d.push_back(model.DetectionAt(b).frame_index);
-      fprintf(stderr, "DUMP %zu %s det", i, LabelOf(track_of(i)).c_str()); for (int x : d) fprintf(stderr, " %d", x);
-      fprintf(stderr, " empty"); for (int x : seen.back().empty) fprintf(stderr, " %d", x); fprintf(stderr, " taken");
-      for (const Miss& miss : MissesOf(model, track_of(i))) if (IsTaken(sequence, miss)) fprintf(stderr, " %d", miss.frame_index);
-      fprintf(stderr, "\n");
+    const Track& track = track_of(i);
+    std::vector<int> frames;
+    for (const int box : track.boxes) frames.push_back(model.DetectionAt(box).frame_index);
+    const auto [first, last] = std::ranges::minmax(frames);
+    seen.push_back({first, last, {}});
+    for (const Miss& miss : MissesOf(model, track)) {
+      if (!IsTaken(sequence, miss) && IsSeenAlike(model, track, miss.frame_index)) {
+        seen.back().empty.push_back(miss.frame_index);
+      }
     }
   }
   std::vector<MovedThing> moved;
@@ -92,13 +90,15 @@ std::vector<MovedThing> FindMovedThings(const AssociationModel& model,
           !AreSameLabel(LabelOf(track_of(i)), LabelOf(track_of(j)))) {
         continue;
       }
-      const auto left = static_cast<int>(std::ranges::count_if(seen[i].empty, [&](int frame) { return frame >= seen[j].first; }));
-      const auto not_yet = static_cast<int>(std::ranges::count_if(seen[j].empty, [&](int frame) { return frame <= seen[i].last; }));
-      const double log_odds = std::log(kMoved / (1.0 - kMoved)) + CostOfMisses(left) + CostOfMisses(not_yet);
-      if (left == 0 || not_yet == 0) continue;
-      if (getenv("DUMP")) fprintf(stderr, "PAIR %zu %zu %s left %d not_yet %d p %.3f\n", i, j, LabelOf(track_of(i)).c_str(), left, not_yet, 1.0 / (1.0 + std::exp(-log_odds)));
-      if (log_odds < 0.0) continue;
-      moved.push_back({static_cast<int>(i), static_cast<int>(j), left, not_yet, 1.0 / (1.0 + std::exp(-log_odds))});
+      const auto left = static_cast<int>(
+          std::ranges::count_if(seen[i].empty, [&](int frame) { return frame >= seen[j].first; }));
+      const auto not_yet = static_cast<int>(
+          std::ranges::count_if(seen[j].empty, [&](int frame) { return frame <= seen[i].last; }));
+      const double log_odds =
+          std::log(kMoved / (1.0 - kMoved)) + CostOfMisses(left) + CostOfMisses(not_yet);
+      if (left == 0 || not_yet == 0 || log_odds < 0.0) continue;
+      moved.push_back({static_cast<int>(i), static_cast<int>(j), left, not_yet,
+                       1.0 / (1.0 + std::exp(-log_odds))});
     }
   }
   std::ranges::stable_sort(moved, std::ranges::greater(), &MovedThing::probability);

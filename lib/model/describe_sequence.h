@@ -331,9 +331,10 @@ void Describe(Visitor& visit, Sequence& sequence) {
   visit.Field("odometry_world", &sequence.odometry_world,
               "world of world_from_camera, as the settings say: that of the truth, another one in "
               "metres, or another one of any unit");
-  visit.OrDefault("moving_labels", &sequence.moving_labels, Sequence().moving_labels,
-                  "labels of things that move, separated by commas: they get no place in a map, and "
-                  "points in their boxes are no evidence");
+  visit.OrDefault(
+      "moving_labels", &sequence.moving_labels, Sequence().moving_labels,
+      "labels of things that move, separated by commas: they get no place in a map, and "
+      "points in their boxes are no evidence");
   visit.OrAbsent("images_without_pose", &sequence.images_without_pose,
                  "images to which the reconstruction gave no pose, which are not used");
   visit.OrAbsent("edits", &sequence.edits,

@@ -89,7 +89,8 @@ std::vector<Finding> CheckMovingThings(const Sequence& sequence) {
   if (counts.empty()) return {};
   std::vector<std::string> words;
   for (const auto& [label, count] : counts) {
-    words.push_back(fmt::format("{} of {} in {}", count.boxes == 1 ? "a box" : fmt::format("{} boxes", count.boxes),
+    words.push_back(fmt::format("{} of {} in {}",
+                                count.boxes == 1 ? "a box" : fmt::format("{} boxes", count.boxes),
                                 label, Counted(count.frames.size(), "image")));
   }
   const std::vector<std::vector<Box>> boxes = BoxesOfMovingThings(sequence);

@@ -143,10 +143,11 @@ std::vector<std::vector<Box>> MovingBoxes(const fs::path& dataset, const Given& 
   boxes.moving_labels = moving_labels;
   for (const ListedImage& image : given.images) {
     const ImageSize size = ReadImageHeader(dataset / image.image).value().stored;
-    boxes.frames.emplace_back().camera = Camera{.width = size.width, .height = size.height};
+    boxes.frames.emplace_back().camera =
+        Camera{.width = static_cast<int>(size.width), .height = static_cast<int>(size.height)};
   }
   for (const DetectionRow& row : RowsWithoutObject(ReadDetectionsCsv(file), given.images)) {
-    boxes.rejected.push_back({row.frame_id, row.label, row.score, row.box});
+    boxes.rejected.push_back({row.frame_id, row.label, row.score, row.box, {}, {}, ""});
   }
   const std::vector<Finding> findings = CheckMovingThings(boxes);
   if (findings.empty()) return {};

@@ -42,9 +42,10 @@ std::vector<FeatureTrack> TracksOf(const Sequence& sequence, const std::vector<F
       // Homography between two images of a camera that only turns: where points at infinity move.
       const Eigen::Quaterniond frame_from_last =
           frame.world_from_camera.rotation.conjugate() * last.world_from_camera.rotation;
-      tracker.Add(grey[i], camera.Intrinsics() * frame_from_last.toRotationMatrix() *
-                               before.Intrinsics().inverse(),
-                  OutsideOf(moving[&frame - sequence.frames.data()], grey[i].size()));
+      tracker.Add(
+          grey[i],
+          camera.Intrinsics() * frame_from_last.toRotationMatrix() * before.Intrinsics().inverse(),
+          OutsideOf(moving[&frame - sequence.frames.data()], grey[i].size()));
       progress.Step();
     }
   }

@@ -88,7 +88,8 @@ TEST_F(RunMatchTest, NoPointInABoxOfAPerson) {
     return count;
   };
   for (int i = 0; i < kImages; ++i) {
-    sequence_.rejected.push_back({i, "person", 0.5, person, {}, RejectingStage::kImport, "near_border"});
+    sequence_.rejected.push_back(
+        {i, "person", 0.5, person, {}, RejectingStage::kImport, "near_border"});
   }
   EXPECT_EQ(in_box(), 0u);
   sequence_.moving_labels = "dog";
