@@ -275,7 +275,7 @@ TEST(FindFeaturesTest, NothingInMaskedBoxes) {
     }
     return count;
   };
-  EXPECT_GT(well_inside(all), 50);
+  EXPECT_GT(well_inside(all), 10);
   EXPECT_EQ(well_inside(outside), 0);
   EXPECT_GT(outside.pixels.cols(), 50);
 }

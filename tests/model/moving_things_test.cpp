@@ -20,8 +20,10 @@ class MovingThingsTest : public testing::Test {
     sequence_.camera = {100, 100, 80.0, 80.0, 49.5, 49.5};
     for (const int id : {0, 5, 10}) sequence_.frames.push_back({id, 0.1 * id, "", {}, {}});
     sequence_.objects = {{1, "Person", kNoPlane, {}}, {2, "chair", kNoPlane, {}}};
-    sequence_.detections = {{0, 0, 0.9, person_}, {0, 1, 0.9, chair_}, {1, 1, 0.9, chair_}};
-    sequence_.rejected = {{1, "person", 0.3, person_}, {2, "person", 0.2, person_}};
+    sequence_.detections = {
+        {0, 0, 0.9, person_, {}}, {0, 1, 0.9, chair_, {}}, {1, 1, 0.9, chair_, {}}};
+    sequence_.rejected = {{1, "person", 0.3, person_, {}, {}, "near_border"},
+                          {2, "person", 0.2, person_, {}, {}, "low_score"}};
   }
 
   Box person_ = {10.0, 20.0, 30.0, 90.0};
@@ -63,7 +65,7 @@ TEST_F(MovingThingsTest, TheyAreCounted) {
   EXPECT_THAT(found(), Not(HasSubstr("more than half")));
   // Together they cover 52 % of the image.
   sequence_.detections[0].box = {-0.5, -0.5, 29.5, 99.5};
-  sequence_.rejected[0] = {0, "dog", 0.9, {19.5, -0.5, 51.5, 99.5}};
+  sequence_.rejected[0] = {0, "dog", 0.9, {19.5, -0.5, 51.5, 99.5}, {}, {}, ""};
   EXPECT_THAT(found(), HasSubstr("they cover more than half of 1 image"));
   sequence_.rejected[0].box.x_max = 48.5;
   EXPECT_THAT(found(), Not(HasSubstr("more than half")));
