@@ -12,6 +12,7 @@
 #include "model/associations.h"
 #include "model/edits.h"
 #include "model/estimates.h"
+#include "model/image_matches.h"
 #include "model/map_points.h"
 #include "model/metrics.h"
 #include "model/reconstruction.h"
@@ -50,11 +51,11 @@ void WritePoints(const std::filesystem::path& path, const std::vector<MapPoint>&
 std::vector<MapPoint> ReadPoints(const std::filesystem::path& path);
 
 // Writes matches.h5 as WritePoints does points.h5.
-void WriteMatches(const std::filesystem::path& path, const std::vector<PointTrack>& tracks,
+void WriteMatches(const std::filesystem::path& path, const ImageMatches& matches,
                   const ArtefactInfo& info);
-// The tracks in file order. Throws as ReadPoints, for kind "matches", and for a track with fewer
-// than two observations, or whose frame ids do not ascend.
-std::vector<PointTrack> ReadMatches(const std::filesystem::path& path);
+// Tracks and colours in file order. Throws as ReadPoints, for kind "matches", and for a track with
+// fewer than two observations, or whose frame ids do not ascend.
+ImageMatches ReadMatches(const std::filesystem::path& path);
 
 // Kinds "associations", "planes" and "world".
 void WriteAssociations(const std::filesystem::path& path, const Associations& associations,

@@ -20,6 +20,7 @@ constexpr const char* kError = "/reprojection_error_px";
 constexpr const char* kBegin = "/observation_begin";
 constexpr const char* kFrame = "/observation_frame";
 constexpr const char* kPixel = "/observation_pixel";
+constexpr const char* kColours = "/colours";
 
 [[noreturn]] void Refuse(const Hdf5File& file, const char* name, size_t row,
                          const std::string& found, const char* expected) {
@@ -128,16 +129,18 @@ std::vector<MapPoint> ReadPoints(const std::filesystem::path& path) {
   return points;
 }
 
-void WriteMatches(const std::filesystem::path& path, const std::vector<PointTrack>& tracks,
+void WriteMatches(const std::filesystem::path& path, const ImageMatches& matches,
                   const ArtefactInfo& info) {
   Hdf5File file = CreateArtefact(path, kMatchesKind, info);
-  WriteObservations(tracks, &file);
+  WriteObservations(matches.tracks, &file);
+  file.WriteRows(kColours, matches.colours);
   file.Close();
 }
 
-std::vector<PointTrack> ReadMatches(const std::filesystem::path& path) {
+ImageMatches ReadMatches(const std::filesystem::path& path) {
   const Hdf5File file = OpenArtefact(path, kMatchesKind);
-  std::vector<PointTrack> tracks;
+  ImageMatches matches{{}, file.ReadRows<BoxColours>(kColours)};
+  std::vector<PointTrack>& tracks = matches.tracks;
   size_t row = 0;
   for (auto& observations : ReadObservations(file)) {
     if (observations.size() < 2) {
@@ -152,7 +155,7 @@ std::vector<PointTrack> ReadMatches(const std::filesystem::path& path) {
     row += observations.size();
     tracks.push_back({std::move(observations)});
   }
-  return tracks;
+  return matches;
 }
 
 }  // namespace soslam

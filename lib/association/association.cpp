@@ -110,7 +110,7 @@ Sequence WithoutPlanes(Sequence sequence) {
 }
 
 Association Associate(const Sequence& sequence, const SemanticTable& table,
-                      const SharedPoints& points, const AssociateOptions& options, int threads,
+                      const PairEvidence& pairs, const AssociateOptions& options, int threads,
                       const Edits& edits) {
   const AssociationModel model(sequence, table, options);
   Association association;
@@ -121,7 +121,7 @@ Association Associate(const Sequence& sequence, const SemanticTable& table,
   for (const auto& [detection, edit] : found.deleted) {
     association.detections[detection].fate = BoxFate::kDeleted;
   }
-  Clusters clusters = ClusterDetections(model, points, kept, threads);
+  Clusters clusters = ClusterDetections(model, pairs, kept, threads);
   association.is_settled = clusters.is_settled;
   clusters.all = WithEdits(model, found, std::move(clusters.all));
   association.tracks.resize(clusters.all.size());
@@ -142,7 +142,7 @@ Association Associate(const Sequence& sequence, const SemanticTable& table,
   }
   association.moved_things = FindMovedThings(model, association);
   association.up_of_segments = model.up_of_segments();
-  AddDecisiveEvidence(model, points, threads, &association);
+  AddDecisiveEvidence(model, pairs, threads, &association);
   return association;
 }
 

@@ -11,7 +11,7 @@
 #include "association/fit_track.h"
 #include "association/labels.h"
 #include "association/options.h"
-#include "association/shared_points.h"
+#include "association/pair_evidence.h"
 #include "association/up_estimate.h"
 #include "model/associations.h"
 #include "model/edits.h"
@@ -93,7 +93,7 @@ Sequence WithoutPlanes(Sequence sequence);
 // Edits change the groups (WithEdits). Throws SettingsError for malformed interchangeable_labels,
 // InputError for edits that fit no box or contradict each other.
 Association Associate(const Sequence& sequence, const SemanticTable& table,
-                      const SharedPoints& points, const AssociateOptions& options, int threads,
+                      const PairEvidence& pairs, const AssociateOptions& options, int threads,
                       const Edits& edits = {});
 
 }  // namespace soslam

@@ -43,7 +43,7 @@ struct Clustering {
   int FrameOf(int detection) const { return model.DetectionAt(detection).frame_index; }
 
   const AssociationModel& model;
-  const SharedPoints& points;
+  const PairEvidence& pairs;
   int threads;
   std::vector<Cluster> singles = {};  // by detection
   std::map<int, Group> groups = {};   // by id
@@ -105,7 +105,7 @@ double CostOfBoxes(const Clustering& all, const Cluster& cluster) {
 }
 
 // The cluster of some boxes, with the body that explains them best, if it is like those of the
-// parts (any, if there are none). `log_ratio` is what shared points say of all pairs.
+// parts (any, if there are none). `log_ratio` is what pictures say of all pairs.
 Cluster Evaluate(const Clustering& all, std::vector<int> detections, double log_ratio,
                  const std::vector<const Track*>& parts) {
   const AssociationModel& model = all.model;
@@ -145,13 +145,13 @@ double OnePlaceCost(const AssociationModel& model, const Cluster& one, const Clu
   return IntersectionVolume(a, b) < least ? 0.0 : kOnePlaceCost;
 }
 
-// Log odds of one object against two by pairs of boxes alone: points, and how the body of one
+// Log odds of one object against two by pairs of boxes alone: pictures, and how the body of one
 // predicts some boxes of the other. kNone where neither tells that they may be one.
 double Promise(const Clustering& all, const Cluster& one, const Cluster& other) {
   constexpr size_t kPredicted = 3;
   const AssociationModel& model = all.model;
   if (!model.MayShareSupport(one.track, other.track)) return kNone;
-  const double by_points = all.points.LogRatio(one.track.detections, other.track.detections);
+  const double by_pictures = all.pairs.LogRatio(one.track.detections, other.track.detections);
   const double by_place = 0.5 * OnePlaceCost(model, one, other);
   double by_boxes = 0.0;
   bool is_predicted = false;
@@ -168,16 +168,16 @@ double Promise(const Clustering& all, const Cluster& one, const Cluster& other) 
     }
     by_boxes = std::max(by_boxes, sum / static_cast<double>(some.size()));
   }
-  const bool may_be_one = is_predicted || by_points > 0.0 || by_place > 0.0;
-  return may_be_one ? by_points + by_boxes + by_place : kNone;
+  const bool may_be_one = is_predicted || by_pictures > 0.0 || by_place > 0.0;
+  return may_be_one ? by_pictures + by_boxes + by_place : kNone;
 }
 
-// Both as one cluster: fitted from their landmarks, and anew where points say that they are one
+// Both as one cluster: fitted from their landmarks, and anew where pictures say that they are one
 // object and some box is not explained.
 Cluster Joint(const Clustering& all, const Cluster& one, const Cluster& other) {
   std::vector<int> both = one.track.detections;
   both.insert(both.end(), other.track.detections.begin(), other.track.detections.end());
-  const double between = all.points.LogRatio(one.track.detections, other.track.detections);
+  const double between = all.pairs.LogRatio(one.track.detections, other.track.detections);
   const double log_ratio = one.log_ratio + other.log_ratio + between;
   Cluster joint = Evaluate(all, both, log_ratio, {&one.track, &other.track});
   if (std::ranges::all_of(joint.matches, &std::optional<BoxMatch>::has_value) || between <= 0.0) {
@@ -324,7 +324,7 @@ void Join(int block, Clustering* all) {
 }
 
 // The parts of a cluster that may be of another object: a box that its body does not explain; all
-// of these; the half in time that points hold least.
+// of these; the half in time that pictures hold least.
 std::vector<std::vector<int>> PartsOf(const Clustering& all, const Cluster& cluster) {
   const std::vector<int>& detections = cluster.track.detections;
   std::vector<std::vector<int>> parts;
@@ -344,8 +344,8 @@ std::vector<std::vector<int>> PartsOf(const Clustering& all, const Cluster& clus
   for (size_t i = 1; i + 1 < detections.size(); ++i) {
     const auto middle = detections.begin() + static_cast<std::ptrdiff_t>(i);
     const int moved = detections[i - 1];
-    held += all.points.LogRatio({moved}, {middle, detections.end()}) -
-            all.points.LogRatio({moved}, {detections.begin(), middle - 1});
+    held += all.pairs.LogRatio({moved}, {middle, detections.end()}) -
+            all.pairs.LogRatio({moved}, {detections.begin(), middle - 1});
     if (i < 2 || (weakest && held >= *weakest)) continue;
     weakest = held;
     size = i;
@@ -375,8 +375,8 @@ Division BestDivision(int block, int id, const Clustering& all) {
       return std::ranges::find(parts[i], index) == parts[i].end();
     });
     double own = 0.0;
-    for (const int index : parts[i]) own += 0.5 * all.points.LogRatio({index}, parts[i]);
-    const double between = all.points.LogRatio(parts[i], others);
+    for (const int index : parts[i]) own += 0.5 * all.pairs.LogRatio({index}, parts[i]);
+    const double between = all.pairs.LogRatio(parts[i], others);
     const Cluster rest = Evaluate(all, others, cluster.log_ratio - own - between, {&cluster.track});
     const bool is_single = parts[i].size() == 1;
     Division& best = divisions[i];
@@ -394,7 +394,7 @@ Division BestDivision(int block, int id, const Clustering& all) {
       std::vector<int> both = into.track.detections;
       both.push_back(parts[i].front());
       Cluster taken_in =
-          Evaluate(all, both, into.log_ratio + all.points.LogRatio(parts[i], into.track.detections),
+          Evaluate(all, both, into.log_ratio + all.pairs.LogRatio(parts[i], into.track.detections),
                    {&into.track});
       const double gain_there = gain + into.cost - taken_in.cost;
       if (gain_there > best.gain) best = {gain_there, rest, std::move(taken_in), other};
@@ -446,9 +446,9 @@ std::vector<bool> BestInFrames(const AssociationModel& model, const Track& track
   return is_best;
 }
 
-Clusters ClusterDetections(const AssociationModel& model, const SharedPoints& points,
+Clusters ClusterDetections(const AssociationModel& model, const PairEvidence& pairs,
                            const std::vector<int>& detections, int threads) {
-  Clustering all{model, points, threads};
+  Clustering all{model, pairs, threads};
   all.singles.resize(model.sequence().detections.size());
   ParallelFor("boxes", detections.size(), threads, [&](size_t i) {
     all.singles[detections[i]] = Evaluate(all, {detections[i]}, 0.0, {});
@@ -459,7 +459,7 @@ Clusters ClusterDetections(const AssociationModel& model, const SharedPoints& po
     double log_ratio = 0.0;
     std::vector<const Track*> parts;
     for (const int detection : tracklets[i]) {
-      log_ratio += 0.5 * points.LogRatio({detection}, tracklets[i]);
+      log_ratio += 0.5 * pairs.LogRatio({detection}, tracklets[i]);
       parts.push_back(&all.singles[detection].track);
     }
     clusters[i] = parts.size() == 1 ? all.singles[tracklets[i].front()]

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "association/association_model.h"
-#include "association/shared_points.h"
+#include "association/pair_evidence.h"
 
 namespace soslam {
 
@@ -14,7 +14,7 @@ struct Cluster {
   Track track;                                   // with all boxes
   std::vector<std::optional<BoxMatch>> matches;  // of each box by the track's body
   std::vector<bool> is_used;                     // each box: explained, and the best in its frame
-  double log_ratio = 0.0;  // of one object against as many as boxes, by shared points
+  double log_ratio = 0.0;  // of one object against as many as boxes, by pictures
   double cost = 0.0;       // -2 log of the evidence
 };
 
@@ -29,12 +29,12 @@ struct Clusters {
 
 // Groups detections (indices in Sequence::detections) into objects. The cost of a cluster is -2 log
 // of the evidence that its boxes are of one object: Laplace's approximation of its body's evidence,
-// where one of the boxes counts as that of an unseen object, and shared points. Tracklets of boxes
+// where one of the boxes counts as that of an unseen object, and PairEvidence. Tracklets of boxes
 // in neighbouring frames that no other box rivals are joined wherever that lowers the sum of all
 // costs, the largest gain first. Then boxes that their body does not explain, and halves that are
 // held together least, leave their cluster where that lowers it, in turn with further joins, until
 // nothing does.
-Clusters ClusterDetections(const AssociationModel& model, const SharedPoints& points,
+Clusters ClusterDetections(const AssociationModel& model, const PairEvidence& pairs,
                            const std::vector<int>& detections, int threads);
 
 }  // namespace soslam

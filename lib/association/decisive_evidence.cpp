@@ -26,15 +26,16 @@ using KeptOutRow = Associations::KeptOutRow;
 constexpr size_t kRows = 3;  // of each list, for each object
 
 double NearnessOf(const KeptOutRow& row) {
-  return row.evidence.points + row.evidence.body + row.evidence.labels;
+  const Evidence& evidence = row.evidence;
+  return evidence.points + evidence.colours + evidence.body + evidence.labels;
 }
 
 class EvidenceOfTracks {
  public:
-  EvidenceOfTracks(const AssociationModel& model, const SharedPoints& points,
+  EvidenceOfTracks(const AssociationModel& model, const PairEvidence& pairs,
                    const Association& association)
       : model_(model),
-        points_(points),
+        pairs_(pairs),
         association_(association),
         labels_(LabelsOf(model.sequence()), model.options()) {}
 
@@ -46,24 +47,24 @@ class EvidenceOfTracks {
     for (size_t i = 0; i < boxes.size(); ++i) {
       AddBox(track, boxes[i], association_.detections[boxes[i]].match, 1.0, &of_box[i]);
     }
-    std::vector<std::tuple<double, double, size_t, size_t>> pairs;  // points, the rest, boxes
+    std::vector<std::tuple<double, double, size_t, size_t>> pairs;  // pictures, the rest, boxes
     for (size_t j = 0; j < boxes.size(); ++j) {
       for (size_t i = 0; i < j; ++i) {
         if (FrameOf(boxes[i]) == FrameOf(boxes[j])) continue;
         const double rest = of_box[i].body + of_box[i].labels + of_box[j].body + of_box[j].labels;
         if (!std::isfinite(rest)) continue;
-        pairs.emplace_back(points_.LogRatio(boxes[i], boxes[j]), rest, i, j);
+        pairs.emplace_back(pairs_.LogRatio(boxes[i], boxes[j]), rest, i, j);
       }
     }
     std::ranges::sort(pairs);
     const auto row_of = [&](const auto& pair) {
-      const auto [points, rest, i, j] = pair;
+      const auto [pictures, rest, i, j] = pair;
       PairRow row = {
           object + 1,
           NameOfDetection(model_.sequence(), boxes[i]),
           NameOfDetection(model_.sequence(), boxes[j]),
           {.body = of_box[i].body + of_box[j].body, .labels = of_box[i].labels + of_box[j].labels}};
-      AddPoints(boxes[i], boxes[j], &row.evidence);
+      AddPictures(boxes[i], boxes[j], &row.evidence);
       return row;
     };
     // No pair is in both lists.
@@ -89,15 +90,17 @@ class EvidenceOfTracks {
       row.track = i;
       row.boxes = static_cast<int>(other.boxes.size());
       std::set<int> frames_with_both;
-      std::optional<std::pair<double, int>> nearest;  // evidence of points, and box
+      std::optional<std::pair<double, int>> nearest;  // evidence of pictures, and box
       for (const int box : other.boxes) {
         if (frames.contains(FrameOf(box))) frames_with_both.insert(FrameOf(box));
         Evidence of_box;
-        for (const int own : track.boxes) AddPoints(own, box, &of_box);
+        for (const int own : track.boxes) AddPictures(own, box, &of_box);
         row.evidence.points_in_both += of_box.points_in_both;
         row.evidence.points_in_any += of_box.points_in_any;
         row.evidence.points += of_box.points;
-        if (!nearest || of_box.points > nearest->first) nearest = {of_box.points, box};
+        row.evidence.colours += of_box.colours;
+        const double of_pictures = of_box.points + of_box.colours;
+        if (!nearest || of_pictures > nearest->first) nearest = {of_pictures, box};
       }
       row.nearest = NameOfDetection(model_.sequence(), nearest->second);
       row.frames_with_both = static_cast<int>(frames_with_both.size());
@@ -125,12 +128,13 @@ class EvidenceOfTracks {
 
   int FrameOf(int detection) const { return model_.DetectionAt(detection).frame_index; }
 
-  void AddPoints(int one, int other, Evidence* evidence) const {
-    if (FrameOf(one) == FrameOf(other)) return;
-    const SharedPoints::Counts counts = points_.CountsOf(one, other);
+  void AddPictures(int one, int other, Evidence* evidence) const {
+    if (!pairs_.AreLinked(one, other)) return;
+    const PairEvidence::Counts counts = pairs_.CountsOf(one, other);
     evidence->points_in_both += counts.in_both;
     evidence->points_in_any += counts.in_any;
-    evidence->points += points_.LogRatio(one, other);
+    evidence->points += pairs_.LogRatioOfPoints(one, other);
+    evidence->colours += pairs_.LogRatioOfColours(one, other);
   }
 
   // Adds what body and labels of a track say of a box, with this weight. `match`: by its body.
@@ -145,16 +149,16 @@ class EvidenceOfTracks {
   }
 
   const AssociationModel& model_;
-  const SharedPoints& points_;
+  const PairEvidence& pairs_;
   const Association& association_;
   LabelConfusion labels_;
 };
 
 }  // namespace
 
-void AddDecisiveEvidence(const AssociationModel& model, const SharedPoints& points, int threads,
+void AddDecisiveEvidence(const AssociationModel& model, const PairEvidence& pairs, int threads,
                          Association* association) {
-  const EvidenceOfTracks evidence(model, points, *association);
+  const EvidenceOfTracks evidence(model, pairs, *association);
   const size_t objects = association->objects.size();
   std::vector<std::vector<PairRow>> least(objects), most(objects);
   std::vector<std::vector<KeptOutRow>> kept_out(objects);
@@ -169,7 +173,8 @@ void AddDecisiveEvidence(const AssociationModel& model, const SharedPoints& poin
     std::ranges::copy(kept_out[i], std::back_inserter(association->kept_out));
   }
   const auto strength = [](const PairRow& row) {
-    return std::pair(row.evidence.points, row.evidence.body + row.evidence.labels);
+    return std::pair(row.evidence.points + row.evidence.colours,
+                     row.evidence.body + row.evidence.labels);
   };
   std::ranges::stable_sort(association->held_least, std::less<>(), strength);
   std::ranges::stable_sort(association->held_most, std::greater<>(), strength);

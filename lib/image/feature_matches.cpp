@@ -225,13 +225,13 @@ bool HasOnePoint(const FeatureTrack& track, const std::vector<FeatureView>& view
 
 }  // namespace
 
-ImageFeatures FindFeatures(const cv::Mat& grey, const MatchOptions& options, const cv::Mat& mask) {
+ImageFeatures FindFeatures(const cv::Mat& grey, const MatchOptions& options) {
   constexpr int kLayers = 3;  // of each octave; this and the edge threshold are Lowe's
   constexpr double kEdgeThreshold = 10.0;
   std::vector<cv::KeyPoint> points;
   cv::Mat histograms;
   cv::SIFT::create(options.max_features, kLayers, options.contrast_threshold, kEdgeThreshold)
-      ->detectAndCompute(grey, mask, points, histograms);
+      ->detectAndCompute(grey, cv::noArray(), points, histograms);
   std::vector<int> order(points.size());
   std::iota(order.begin(), order.end(), 0);
   std::ranges::sort(order, {}, [&](int i) {

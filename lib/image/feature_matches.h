@@ -56,9 +56,7 @@ struct ImageFeatures {
   Descriptors descriptors;
 };
 
-// Features at pixels where the mask, CV_8UC1, is not 0; without one at all pixels.
-ImageFeatures FindFeatures(const cv::Mat& grey, const MatchOptions& options,
-                           const cv::Mat& mask = cv::Mat());
+ImageFeatures FindFeatures(const cv::Mat& grey, const MatchOptions& options);
 
 // Features of an image without lens distortion, and the camera that took it.
 struct FeatureView {

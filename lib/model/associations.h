@@ -86,7 +86,7 @@ struct Associations {
   // Logarithms of likelihood ratios of one object against two.
   struct Evidence {
     int points_in_both = 0, points_in_any = 0;
-    double points = 0.0, body = 0.0, labels = 0.0;
+    double points = 0.0, colours = 0.0, body = 0.0, labels = 0.0;
   };
   // Two boxes of an object.
   struct PairRow {
@@ -203,6 +203,7 @@ void Describe(Visitor& visit, Associations::Evidence& evidence) {
   visit.Field("points", &evidence.points,
               "what these points say: logarithm of the likelihood ratio of one object against two, "
               "which all pairs of a box share");
+  visit.Field("colours", &evidence.colours, "the same of the colours in the boxes, at most 0");
   visit.Field(
       "body", &evidence.body,
       "the same of the boxes where the object's body predicts them, against boxes anywhere");
@@ -225,9 +226,11 @@ void Describe(Visitor& visit, Associations::KeptOutRow& row) {
   visit.Field("boxes", &row.boxes, "of the track", kAtLeastOne);
   visit.Field("frames_with_both", &row.frames_with_both,
               "in which both have a box, which speaks for two objects", kNotNegative);
-  visit.Field("nearest", &row.nearest, "box of the track that points tie most to the object");
+  visit.Field("nearest", &row.nearest,
+              "box of the track that points and colours tie most to the object");
   visit.Field("evidence", &row.evidence,
-              "points: summed over all pairs of a box of the object and one of the track; body and "
+              "points and colours: summed over all pairs of a box of the object and one of the "
+              "track; body and "
               "labels: mean over boxes of the track, at most 8");
 }
 
@@ -253,7 +256,8 @@ void Describe(Visitor& visit, Associations& associations) {
   visit.Field("tracks", &associations.tracks, "in the order of their first detections");
   visit.Field("objects", &associations.objects, "of the sequence that was written, by id");
   visit.Field("held_least", &associations.held_least,
-              "the pairs that hold each object together least, at most 3, by points, then by body "
+              "the pairs that hold each object together least, at most 3, by points and colours, "
+              "then by body "
               "and labels; the weakest of all objects first");
   visit.Field("held_most", &associations.held_most,
               "those that hold it together most, the strongest first");

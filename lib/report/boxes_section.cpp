@@ -42,9 +42,8 @@ struct Sheet {
 
 // What names a box for other programs: {"image": "rgb/7.png", "box": [10, 20, 30, 40]}.
 std::string AnchorOf(const std::string& image, const Box& box) {
-  return fmt::format("{{\"image\": {}, \"box\": [{}, {}, {}, {}]}}", JsonText(image),
-                     std::lround(box.x_min), std::lround(box.y_min), std::lround(box.x_max),
-                     std::lround(box.y_max));
+  return fmt::format("{{\"image\": {}, \"box\": [{:.1f}, {:.1f}, {:.1f}, {:.1f}]}}",
+                     JsonText(image), box.x_min, box.y_min, box.x_max, box.y_max);
 }
 
 std::string PointsInWords(const Associations::Evidence& evidence) {
@@ -66,14 +65,15 @@ std::string EvidenceInWords(const Associations& associations, int object) {
       std::ranges::find(associations.objects, nearest->track, &Associations::ObjectRow::track);
   const auto box = std::ranges::find(associations.detections, nearest->track,
                                      &Associations::DetectionRow::track);
-  const auto& [both, any, points, body, labels] = nearest->evidence;
+  const auto& [both, any, points, colours, body, labels] = nearest->evidence;
   return words + fmt::format(
-                     "Kept out, the nearest: {} with {}, by log odds of {:.1f} ({}: {:.1f}; body "
-                     "{:.1f}, labels {:.1f}); {} with both.",
+                     "Kept out, the nearest: {} with {}, by log odds of {:.1f} ({}: {:.1f}; "
+                     "colours {:.1f}, body {:.1f}, labels {:.1f}); {} with both.",
                      other == associations.objects.end() ? box->label + ", left out"
                                                          : ObjectName(other->label, other->object),
                      nearest->boxes == 1 ? "1 box" : fmt::format("{} boxes", nearest->boxes),
-                     points + body + labels, PointsInWords(nearest->evidence), points, body, labels,
+                     points + colours + body + labels, PointsInWords(nearest->evidence), points,
+                     colours, body, labels,
                      Counted(static_cast<size_t>(nearest->frames_with_both), "frame"));
 }
 

@@ -9,9 +9,8 @@
 #include "cli/command_line.h"
 #include "evaluation/statistics.h"
 #include "geometry/distortion.h"
-#include "image/box_mask.h"
+#include "image/box_colours.h"
 #include "image/feature_matches.h"
-#include "model/moving_things.h"
 #include "stage/read_evidence.h"
 #include "stage/stages.h"
 
@@ -47,21 +46,25 @@ void RunMatch(const MatchOptions& options, const StageFiles& files, int threads)
     segments.push_back(image.frame->segment);
   }
   const FrameImageReader reader(sequence);
-  const std::vector<std::vector<Box>> moving = BoxesOfMovingThings(sequence);
   std::vector<FeatureView> views(images.size());
+  ImageMatches found;
+  found.colours.resize(sequence.detections.size());
   ParallelFor("images", images.size(), threads, [&](size_t i) {
     const Frame& frame = *images[i].frame;
-    const cv::Mat grey = reader.Read(images[i], cv::IMREAD_GRAYSCALE);
-    const cv::Mat mask = OutsideOf(moving[&frame - sequence.frames.data()], grey.size());
     views[i] = {sequence.CameraOf(frame), frame.world_from_camera,
-                FindFeatures(grey, options, mask)};
+                FindFeatures(reader.Read(images[i], cv::IMREAD_GRAYSCALE), options)};
+    const cv::Mat colour = reader.Read(images[i], cv::IMREAD_COLOR);
+    for (const Detection& detection :
+         DetectionsIn(sequence, static_cast<int>(&frame - sequence.frames.data()))) {
+      found.colours[&detection - sequence.detections.data()] = ColoursIn(colour, detection.box);
+    }
   });
   const std::vector<std::pair<int, int>> pairs = ImagePairs(segments);
   std::vector<std::vector<FeatureMatch>> matches(pairs.size());
   ParallelFor("pairs", pairs.size(), threads, [&](size_t i) {
     matches[i] = MatchFeatures(views[pairs[i].first], views[pairs[i].second], options);
   });
-  std::vector<PointTrack> tracks;
+  std::vector<PointTrack>& tracks = found.tracks;
   for (const FeatureTrack& track : JoinMatches(views, pairs, matches, options)) {
     tracks.push_back(AsStored(sequence, images, track));
   }
@@ -74,7 +77,7 @@ void RunMatch(const MatchOptions& options, const StageFiles& files, int threads)
                       "check that poses and images have the same order and time stamps"}};
   }
   ReportFindings("match", info.findings);
-  WriteMatches(files.at("output"), tracks, info);
+  WriteMatches(files.at("output"), found, info);
   std::vector<double> lengths;
   for (const PointTrack& track : tracks) {
     lengths.push_back(static_cast<double>(track.observations.size()));

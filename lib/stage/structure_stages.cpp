@@ -60,11 +60,20 @@ void RunAssociate(const AssociateOptions& settings, const StageFiles& files, int
   if (options.shared_points && !files.contains("matches")) {
     throw SettingsError("shared_points = true needs --matches, the matches.h5 of soslam-match");
   }
-  const SharedPoints points = options.shared_points
-                                  ? SharedPoints(sequence, ReadMatches(files.at("matches")))
-                                  : SharedPoints();
+  PairEvidence pairs;
+  if (options.shared_points) {
+    const ImageMatches matches = ReadMatches(files.at("matches"));
+    if (matches.colours.size() != sequence.detections.size()) {
+      throw InputError(fmt::format(
+          "{}: found colours of {} boxes; expected {}, those of {}; likely cause: the file is of "
+          "another sequence",
+          files.at("matches").string(), matches.colours.size(), sequence.detections.size(),
+          files.at("sequence").string()));
+    }
+    pairs = PairEvidence(sequence, matches);
+  }
   const Edits edits = files.contains("edits") ? ReadEdits(files.at("edits")) : Edits();
-  const Association association = Associate(sequence, table, points, options, threads, edits);
+  const Association association = Associate(sequence, table, pairs, options, threads, edits);
   if (association.objects.empty()) {
     throw NothingUsableError(fmt::format("{}: no object in {} detections; tracks: {}",
                                          files.at("sequence").string(), sequence.detections.size(),

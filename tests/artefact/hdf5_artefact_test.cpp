@@ -258,7 +258,7 @@ class MatchesFileTest : public FolderTest {
                      const std::vector<std::string>& parts) {
     std::vector<PointTrack> tracks = TwoTracks();
     change(&tracks);
-    WriteMatches(path_, tracks, {});
+    WriteMatches(path_, ImageMatches{tracks}, {});
     ExpectError<InputError>([&] { ReadMatches(path_); }, parts);
   }
 
@@ -268,6 +268,7 @@ class MatchesFileTest : public FolderTest {
     file.WriteVector("/observation_begin", begins);
     file.WriteVector("/observation_frame", std::vector<int>{0, 1, 2});
     file.WriteMatrix("/observation_pixel", cv::Mat::zeros(pixel_rows, 2, CV_64FC1));
+    file.WriteRows("/colours", std::vector<BoxColours>());
     file.Close();
   }
 
@@ -275,16 +276,20 @@ class MatchesFileTest : public FolderTest {
 };
 
 TEST_F(MatchesFileTest, TracksComeBack) {
-  WriteMatches(path_, TwoTracks(), {});
-  const auto tracks = ReadMatches(path_);
+  const BoxColours colours = BoxColours::LinSpaced(0, 255);
+  WriteMatches(path_, {TwoTracks(), {BoxColours::Zero(), colours}}, {});
+  const ImageMatches matches = ReadMatches(path_);
+  const std::vector<PointTrack>& tracks = matches.tracks;
+  ASSERT_EQ(matches.colours.size(), 2u);
+  EXPECT_EQ(matches.colours[1], colours);
   ASSERT_EQ(tracks.size(), 2u);
   ASSERT_EQ(tracks[0].observations.size(), 3u);
   EXPECT_EQ(tracks[0].observations[2].pixel, Eigen::Vector2d(-0.5, 639.0));
   EXPECT_EQ(tracks[1].observations.at(1).frame_id, 7);
-  WriteMatches(folder_ / "again.h5", tracks, {});
+  WriteMatches(folder_ / "again.h5", matches, {});
   EXPECT_TRUE(FileBytes(folder_ / "again.h5") == FileBytes(path_));
   WriteMatches(path_, {}, {});
-  EXPECT_TRUE(ReadMatches(path_).empty());
+  EXPECT_TRUE(ReadMatches(path_).tracks.empty());
 }
 
 TEST_F(MatchesFileTest, ImpossibleTracksAreRefused) {

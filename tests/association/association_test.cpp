@@ -27,7 +27,7 @@ std::set<std::set<int>> Partition(const Association& association) {
 }
 
 Association AssociateAll(const Sequence& sequence, int threads = 2) {
-  return Associate(sequence, UnknowingTable(), SharedPoints(), EstimatedAssociation(), threads);
+  return Associate(sequence, UnknowingTable(), PairEvidence(), EstimatedAssociation(), threads);
 }
 
 Sequence NoisySequence(int seed, const std::vector<std::string>& labels) {

@@ -44,7 +44,7 @@ class DecisiveEvidenceTest : public testing::Test {
     return tracks;
   }
 
-  Association Run(const SharedPoints& points) const {
+  Association Run(const PairEvidence& points) const {
     return Associate(seen_, UnknowingTable(), points, EstimatedAssociation(), 2);
   }
   // The index of the detection that is named.
@@ -60,7 +60,7 @@ class DecisiveEvidenceTest : public testing::Test {
 };
 
 TEST_F(DecisiveEvidenceTest, PairsHaveTheEvidenceOfTheirBoxes) {
-  const SharedPoints points(seen_, Tracks());
+  const PairEvidence points(seen_, ImageMatches{Tracks()});
   const Association association = Run(points);
   ASSERT_EQ(association.objects.size(), 3u);
   ASSERT_EQ(association.held_least.size(), 9u);
@@ -86,7 +86,7 @@ TEST_F(DecisiveEvidenceTest, PairsHaveTheEvidenceOfTheirBoxes) {
 
 TEST_F(DecisiveEvidenceTest, BoxesWithoutTheirPointsAreHeldLeast) {
   constexpr int kBeside = 4;
-  const Association association = Run(SharedPoints(seen_, Tracks(kBeside)));
+  const Association association = Run(PairEvidence(seen_, ImageMatches{Tracks(kBeside)}));
   ASSERT_EQ(association.objects.size(), 3u);
   const int frame = seen_.frames[kBeside].id;
   for (const Associations::PairRow& row : association.held_least) {
@@ -103,7 +103,7 @@ TEST_F(DecisiveEvidenceTest, BoxesWithoutTheirPointsAreHeldLeast) {
 }
 
 TEST_F(DecisiveEvidenceTest, NeighboursAreKeptOut) {
-  const Association association = Run(SharedPoints(seen_, Tracks()));
+  const Association association = Run(PairEvidence(seen_, ImageMatches{Tracks()}));
   ASSERT_EQ(association.kept_out.size(), 6u);  // two neighbours of each
   for (const Associations::KeptOutRow& row : association.kept_out) {
     EXPECT_NE(association.objects[row.object - 1], row.track);
@@ -119,7 +119,7 @@ TEST_F(DecisiveEvidenceTest, NeighboursAreKeptOut) {
 }
 
 TEST_F(DecisiveEvidenceTest, BodiesAreAllThatIsKnownWithoutPoints) {
-  const Association association = Run(SharedPoints());
+  const Association association = Run(PairEvidence());
   ASSERT_EQ(association.held_least.size(), 9u);
   ASSERT_EQ(association.kept_out.size(), 6u);
   for (const Associations::PairRow& row : association.held_least) {

@@ -50,7 +50,7 @@ class EditsTest : public testing::Test {
   int Box(size_t object, size_t i) const { return of_objects_[object][i]; }
 
   Association Run(const std::vector<Edit>& edits) const {
-    return Associate(seen_, table_, SharedPoints(), EstimatedAssociation(), 2,
+    return Associate(seen_, table_, PairEvidence(), EstimatedAssociation(), 2,
                      {"", edits, "edits.json"});
   }
   static const Track& TrackOf(const Association& association, int box) {

@@ -32,7 +32,7 @@ class MovedThingsTest : public testing::Test {
 
   Association Associated() {
     sequence_ = WithoutIds(SyntheticSequence(scene_, true));
-    return Associate(sequence_, UnknowingTable(), SharedPoints(), EstimatedAssociation(), 2);
+    return Associate(sequence_, UnknowingTable(), PairEvidence(), EstimatedAssociation(), 2);
   }
   // The thing stands at the place of the first object before this frame, then at the second one's.
   void Move(int frame) {
@@ -108,7 +108,7 @@ TEST_F(MovedThingsTest, APlaceWithAnotherBoxIsNotEmpty) {
     sequence_.rejected.push_back(
         {row.frame_index, "vase", 0.1, row.box, {}, RejectingStage::kImport, "low_score"});
   }
-  EXPECT_THAT(Associate(sequence_, UnknowingTable(), SharedPoints(), EstimatedAssociation(), 2)
+  EXPECT_THAT(Associate(sequence_, UnknowingTable(), PairEvidence(), EstimatedAssociation(), 2)
                   .moved_things,
               IsEmpty());
 }

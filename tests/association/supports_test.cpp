@@ -46,7 +46,7 @@ TEST(SupportsTest, AreFoundFromBoxes) {
     const Sequence unknown = WithUnknownSupports(seen);
     ASSERT_FALSE(unknown.HasSupports());
     const Association association =
-        Associate(unknown, UnknowingTable(), SharedPoints(), EstimatedAssociation(), 2);
+        Associate(unknown, UnknowingTable(), PairEvidence(), EstimatedAssociation(), 2);
     const Agreement agreement = CompareWithGiven(given, association, 3);
     sum += agreement.F1().value();
     const Sequence associated =
@@ -75,7 +75,7 @@ TEST(SupportsTest, WhatStandsOnNoPlaneIsNoObject) {
     floor_only.planes.resize(1);
     for (Object& object : floor_only.objects) object.plane_index = 0;
     const Association association =
-        Associate(floor_only, table, SharedPoints(), EstimatedAssociation(), 2);
+        Associate(floor_only, table, PairEvidence(), EstimatedAssociation(), 2);
     for (const Track& track : association.tracks) {
       if (track.fate != TrackFate::kNoSupport) continue;
       const auto first = static_cast<size_t>(track.detections.front());
@@ -102,7 +102,7 @@ TEST(LabelEvidenceTest, BoxesDecideAmongSimilarLabels) {
   AssociateOptions options = EstimatedAssociation();
   options.similar_labels = "cup, mug";
   options.similar_label_confusion = 0.3;  // half of them are mugs
-  const Association association = Associate(WithoutIds(given), table, SharedPoints(), options, 2);
+  const Association association = Associate(WithoutIds(given), table, PairEvidence(), options, 2);
   const Agreement agreement = CompareWithGiven(given, association, 3);
   ASSERT_GE(association.objects.size(), 4U);
   for (size_t i = 0; i < association.objects.size(); ++i) {

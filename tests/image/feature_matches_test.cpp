@@ -263,23 +263,6 @@ TEST(FindFeaturesTest, DescriptorsAreUnitVectorsAndPixelsInOrder) {
   }
 }
 
-TEST(FindFeaturesTest, NothingInMaskedBoxes) {
-  const cv::Mat grey = GreyOf(DrawnView(0));
-  const Box box = {40.0, -10.0, 200.0, 150.0};
-  const ImageFeatures all = FindFeatures(grey, {});
-  const ImageFeatures outside = FindFeatures(grey, {}, OutsideOf({box}, grey.size()));
-  const auto well_inside = [&](const ImageFeatures& features) {
-    int count = 0;
-    for (const auto& pixel : features.pixels.colwise()) {
-      count += pixel.x() > 41.0 && pixel.x() < 199.0 && pixel.y() < 149.0;
-    }
-    return count;
-  };
-  EXPECT_GT(well_inside(all), 10);
-  EXPECT_EQ(well_inside(outside), 0);
-  EXPECT_GT(outside.pixels.cols(), 50);
-}
-
 TEST(OutsideOfTest, MasksThePixelsWhoseCentresAreInBoxes) {
   const auto masked = [](const Box& box) {
     return 12 * 10 - cv::countNonZero(OutsideOf({box}, {12, 10}));

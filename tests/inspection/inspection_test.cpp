@@ -239,7 +239,7 @@ TEST_F(InspectionTest, DataSetsOfHdf5FilesAreFacts) {
   EXPECT_EQ(Said(inspection, "reprojection_error_px"), "2, 0.5 to 1.5, mean 1");
   EXPECT_EQ(Said(inspection, "observation_frame"), "4, 3 to 9, mean 5.5");
   EXPECT_TRUE(inspection.tables.empty());
-  WriteMatches(File(), {{{{3, {1.0, 1.0}}, {6, {2.0, 2.0}}}}}, {});
+  WriteMatches(File(), ImageMatches{{{{{3, {1.0, 1.0}}, {6, {2.0, 2.0}}}}}}, {});
   EXPECT_THAT(Read().title, HasSubstr("points that several images show"));
   EXPECT_EQ(Said(Read(), "observation_frame"), "2, 3 to 6, mean 4.5");
 }

@@ -275,7 +275,7 @@ TEST_P(DegenerateTest, BackEndWithBodiesOfAnyShape) {
 TEST_P(DegenerateTest, Association) {
   ExpectAnswerOrRefusal([](const Sequence& sequence, const Priors&) {
     const auto association =
-        Associate(sequence, UnknowingTable(), SharedPoints(), EstimatedAssociation(), 1);
+        Associate(sequence, UnknowingTable(), PairEvidence(), EstimatedAssociation(), 1);
     EXPECT_EQ(association.detections.size(), sequence.detections.size());
     for (const Track& track : association.tracks) {
       if (track.fit) ExpectDefined(track.fit->landmark_in_world);

@@ -2,10 +2,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <opencv2/imgcodecs.hpp>
+
 #include "artefact/files.h"
 #include "base/error.h"
 #include "geometry/distortion.h"
+#include "image/box_colours.h"
 #include "image/feature_matches.h"
+#include "stage/read_evidence.h"
 #include "stage/stages.h"
 #include "support/expect_error.h"
 #include "support/printed.h"
@@ -17,11 +21,12 @@ namespace {
 
 class RunMatchTest : public WallSequenceTest {
  protected:
-  std::vector<PointTrack> Run(int threads = 2) {
+  ImageMatches RunAll(int threads = 2) {
     WriteSequence(folder_ / "sequence.json", sequence_, {});
     RunMatch({}, files_, threads);
     return ReadMatches(files_.at("output"));
   }
+  std::vector<PointTrack> Run(int threads = 2) { return RunAll(threads).tracks; }
 
   // Where an observation lies in the picture on the wall.
   Eigen::Vector2d PlaceOf(const PointObservation& observation) const {
@@ -75,25 +80,22 @@ TEST_F(RunMatchTest, PixelsAreThoseOfTheImageAsStored) {
   EXPECT_GT(static_cast<double>(same), 0.7 * static_cast<double>(all));
 }
 
-// A person stands before the picture, whose box is not used.
-TEST_F(RunMatchTest, NoPointInABoxOfAPerson) {
-  const Box person = {100.0, 20.0, 180.0, 200.0};
-  const auto in_box = [&] {
-    size_t count = 0;
-    for (const PointTrack& point : Run()) {
-      count += std::ranges::count_if(point.observations, [&](const PointObservation& seen) {
-        return person.Contains(seen.pixel);
-      });
-    }
-    return count;
-  };
+TEST_F(RunMatchTest, ColoursAreThoseOfTheBoxes) {
+  sequence_.objects = {{1, "picture", kNoPlane, {}}};
   for (int i = 0; i < kImages; ++i) {
-    sequence_.rejected.push_back(
-        {i, "person", 0.5, person, {}, RejectingStage::kImport, "near_border"});
+    Detection& detection = sequence_.detections.emplace_back();
+    detection.frame_index = i;
+    detection.object_index = 0;
+    detection.box = {20.0 + 5.0 * i, 30.0, 90.0 + 5.0 * i, 120.0};
   }
-  EXPECT_EQ(in_box(), 0u);
-  sequence_.moving_labels = "dog";
-  EXPECT_GT(in_box(), 100u);
+  const auto colours = RunAll().colours;
+  ASSERT_EQ(colours.size(), sequence_.detections.size());
+  for (const FrameImage& image :
+       FrameImages(sequence_, files_.at("dataset"), files_.at("sequence"))) {
+    const auto i = static_cast<size_t>(image.frame - sequence_.frames.data());
+    EXPECT_EQ(colours[i], ColoursIn(cv::imread(image.path.string()), sequence_.detections[i].box))
+        << i;
+  }
 }
 
 TEST_F(RunMatchTest, SameBytesForAnyNumberOfThreads) {

@@ -72,7 +72,7 @@ inline Box RandomBox(const Camera& camera) {
 // F1 of the objects found in `seen`, whose detections are those of `given` in the same order.
 inline double F1(const Sequence& seen, const Sequence& given,
                  const AssociateOptions& options = EstimatedAssociation()) {
-  const Association association = Associate(seen, UnknowingTable(), SharedPoints(), options, 2);
+  const Association association = Associate(seen, UnknowingTable(), PairEvidence(), options, 2);
   return CompareWithGiven(given, association, options.min_observations).F1().value();
 }
 

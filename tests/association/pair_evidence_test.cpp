@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "association/shared_points.h"
+#include "association/pair_evidence.h"
 
 #include <gtest/gtest.h>
 
@@ -36,12 +36,12 @@ PointTrack PointAt(const std::array<double, 3>& x) {
   return track;
 }
 
-TEST(SharedPointsTest, CountsThePointsThatBothFramesShow) {
+TEST(PairEvidenceTest, CountsThePointsThatBothFramesShow) {
   const double unseen = std::nan("");
-  const SharedPoints points(
+  const PairEvidence points(
       TwoBoxesInThreeFrames(),
-      {PointAt({10.0, 20.0, 30.0}), PointAt({20.0, 30.0, unseen}), PointAt({30.0, 130.0, unseen}),
-       PointAt({40.0, 80.0, 40.0}), PointAt({80.0, 80.0, 80.0})});
+      {{PointAt({10.0, 20.0, 30.0}), PointAt({20.0, 30.0, unseen}), PointAt({30.0, 130.0, unseen}),
+        PointAt({40.0, 80.0, 40.0}), PointAt({80.0, 80.0, 80.0})}});
   const auto expect = [&](int one, int other, int in_both, int in_any) {
     for (const auto& counts : {points.CountsOf(one, other), points.CountsOf(other, one)}) {
       EXPECT_EQ(counts.in_both, in_both) << one << " " << other;
@@ -55,10 +55,10 @@ TEST(SharedPointsTest, CountsThePointsThatBothFramesShow) {
   expect(2, 4, 1, 2);
   expect(3, 5, 0, 0);
   EXPECT_EQ(points.LogRatio(3, 5), 0.0);
-  EXPECT_EQ(SharedPoints().LogRatio(0, 2), 0.0);
+  EXPECT_EQ(PairEvidence().LogRatio(0, 2), 0.0);
 }
 
-TEST(SharedPointsTest, MoreSharedPointsAreMoreEvidence) {
+TEST(PairEvidenceTest, MoreSharedPointsAreMoreEvidence) {
   for (const int in_any : {1, 3, 10, 40, 200}) {
     double last = -std::numeric_limits<double>::infinity();
     for (int in_both = 0; in_both <= in_any; ++in_both) {
@@ -72,7 +72,7 @@ TEST(SharedPointsTest, MoreSharedPointsAreMoreEvidence) {
 }
 
 // The mean likelihood ratio under the hypothesis in its denominator is 1, whatever the curves are.
-TEST(SharedPointsTest, RatiosAreThoseOfTwoDistributions) {
+TEST(PairEvidenceTest, RatiosAreThoseOfTwoDistributions) {
   constexpr int kAny = 12;
   constexpr std::array<double, 2> kTwo = {0.06, 3.0};
   const auto log_beta = [](double a, double b) {
@@ -90,7 +90,7 @@ TEST(SharedPointsTest, RatiosAreThoseOfTwoDistributions) {
 }
 
 // All pairs of a detection together count as one comparison.
-TEST(SharedPointsTest, ManyFramesDoNotMakeTheSamePointsSurer) {
+TEST(PairEvidenceTest, ManyFramesDoNotMakeTheSamePointsSurer) {
   Sequence sequence;
   PointTrack track;
   for (int frame = 0; frame < 40; ++frame) {
@@ -100,14 +100,37 @@ TEST(SharedPointsTest, ManyFramesDoNotMakeTheSamePointsSurer) {
     detection.box = {0.0, 0.0, 50.0, 50.0};
     track.observations.push_back({frame, {20.0, 20.0}});
   }
-  const SharedPoints points(sequence, std::vector<PointTrack>(10, track));
+  const PairEvidence points(sequence, ImageMatches{std::vector<PointTrack>(10, track)});
   double sum = 0.0;
   for (int other = 1; other < 40; ++other) sum += points.LogRatio(0, other);
   EXPECT_NEAR(sum, 2.0 * LogRatioOfSharedPoints({10, 10}), 1e-9);
 }
 
+TEST(PairEvidenceTest, ColoursTellThingsApartInFramesThatShareAPoint) {
+  ImageMatches matches{{PointAt({200.0, 200.0, std::nan("")})}};
+  for (int i = 0; i < 6; ++i) {
+    BoxColours& colours = matches.colours.emplace_back(BoxColours::Zero());
+    colours[i % 2 == 0 ? 3 : 5] = 255;
+  }
+  const PairEvidence pairs(TwoBoxesInThreeFrames(), matches);
+  EXPECT_EQ(pairs.LogRatio(0, 2), 0.0) << "equal colours do not join";
+  EXPECT_NEAR(pairs.LogRatio(0, 3), LogRatioOfColours(0.0), 1e-9);
+  EXPECT_EQ(pairs.LogRatio(0, 3), pairs.LogRatio(3, 0));
+  EXPECT_EQ(pairs.LogRatio(0, 5), 0.0) << "frames that share no point";
+  EXPECT_NEAR(pairs.LogRatio({0, 1}, {2, 3, 5}), 2.0 * pairs.LogRatio(0, 3), 1e-9);
+}
+
+TEST(PairEvidenceTest, ColoursFartherApartAreMoreEvidence) {
+  EXPECT_EQ(LogRatioOfColours(1.0), 0.0);
+  EXPECT_EQ(LogRatioOfColours(1.0 + 1e-7), 0.0);
+  for (double product = 0.95; product > 0.0; product -= 0.05) {
+    EXPECT_LE(LogRatioOfColours(product), LogRatioOfColours(product + 0.05));
+  }
+  EXPECT_LT(LogRatioOfColours(0.5), -3.0);
+}
+
 // Equal things in a row, seen with odometry that drifts by more than the distance between them.
-TEST(SharedPointsTest, TellThingsApartThatOdometryConfuses) {
+TEST(PairEvidenceTest, TellThingsApartThatOdometryConfuses) {
   constexpr int kPoints = 8;
   Scene scene = LabelledScene(2, 6, 40, {"thing"});
   for (size_t i = 0; i < scene.objects.size(); ++i) {
@@ -144,7 +167,7 @@ TEST(SharedPointsTest, TellThingsApartThatOdometryConfuses) {
   AssociateOptions options = EstimatedAssociation();
   options.odometry_translation_sigma_m = kDriftM;
   // Pairs of detections that are of one object for the association or in truth, but not for both.
-  const auto wrong_pairs = [&](const SharedPoints& points) {
+  const auto wrong_pairs = [&](const PairEvidence& points) {
     const auto detections = Associate(seen, UnknowingTable(), points, options, 2).detections;
     int wrong = 0;
     for (size_t i = 0; i < detections.size(); ++i) {
@@ -158,7 +181,7 @@ TEST(SharedPointsTest, TellThingsApartThatOdometryConfuses) {
     return wrong;
   };
   // Not all are held: boxes far from where a body predicts them may be of something else.
-  EXPECT_LT(5 * wrong_pairs(SharedPoints(seen, tracks)), wrong_pairs(SharedPoints()));
+  EXPECT_LT(5 * wrong_pairs(PairEvidence(seen, ImageMatches{tracks})), wrong_pairs(PairEvidence()));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "association/shared_points.h"
+#include "association/pair_evidence.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ constexpr ShareOfPoints kOfTwoObjects = {0.06, 3.0};
 double LogBeta(double a, double b) { return std::lgamma(a) + std::lgamma(b) - std::lgamma(a + b); }
 
 // Logarithm of the beta-binomial probability, but for the binomial coefficient.
-double LogProbability(const SharedPoints::Counts& counts, const ShareOfPoints& share) {
+double LogProbability(const PairEvidence::Counts& counts, const ShareOfPoints& share) {
   return LogBeta(counts.in_both + share.in_both, counts.in_any - counts.in_both + share.in_one) -
          LogBeta(share.in_both, share.in_one);
 }
@@ -34,12 +34,21 @@ bool IsInside(const Box& box, const Eigen::Vector2d& pixel) {
 
 }  // namespace
 
-double LogRatioOfSharedPoints(const SharedPoints::Counts& counts) {
+double LogRatioOfSharedPoints(const PairEvidence::Counts& counts) {
   return LogProbability(counts, kOfOneObject) - LogProbability(counts, kOfTwoObjects);
 }
 
-SharedPoints::SharedPoints(const Sequence& sequence, const std::vector<PointTrack>& tracks)
+double LogRatioOfColours(double product) {
+  // By logistic regression over annotated sequences (docs/association.md): at no angle, per rad.
+  constexpr double kEqual = 3.9, kSlope = -7.2;
+  return std::min(0.0, kEqual + kSlope * std::acos(std::min(product, 1.0)));
+}
+
+PairEvidence::PairEvidence(const Sequence& sequence, const ImageMatches& matches)
     : detections_(sequence.detections.size()), linked_frames_(sequence.frames.size()) {
+  for (const BoxColours& colours : matches.colours) {
+    colours_.push_back(colours.cast<float>().normalized());
+  }
   for (size_t i = 0; i < detections_.size(); ++i) {
     detections_[i].frame_index = sequence.detections[i].frame_index;
   }
@@ -47,7 +56,7 @@ SharedPoints::SharedPoints(const Sequence& sequence, const std::vector<PointTrac
     int frame_index;
     std::vector<int> detections;  // whose boxes have the point
   };
-  for (const PointTrack& track : tracks) {
+  for (const PointTrack& track : matches.tracks) {
     std::vector<Sight> sights;
     for (const PointObservation& observation : track.observations) {
       const auto frame = FrameIndexOf(sequence, observation);
@@ -73,7 +82,7 @@ SharedPoints::SharedPoints(const Sequence& sequence, const std::vector<PointTrac
   }
 }
 
-SharedPoints::Counts SharedPoints::CountsOf(int detection, int other) const {
+PairEvidence::Counts PairEvidence::CountsOf(int detection, int other) const {
   if (detections_.empty()) return {};
   const auto count_in = [](const std::map<int, int>& counts, int index) {
     const auto found = counts.find(index);
@@ -85,7 +94,12 @@ SharedPoints::Counts SharedPoints::CountsOf(int detection, int other) const {
                        count_in(two.in_frame, one.frame_index) - in_both};
 }
 
-double SharedPoints::LogRatio(int detection, int other) const {
+bool PairEvidence::AreLinked(int detection, int other) const {
+  return !detections_.empty() && linked_frames_[detections_[detection].frame_index].contains(
+                                     detections_[other].frame_index);
+}
+
+double PairEvidence::LogRatioOfPoints(int detection, int other) const {
   const Counts counts = CountsOf(detection, other);
   if (counts.in_any == 0) return 0.0;
   const double frames = std::sqrt(static_cast<double>(detections_[detection].in_frame.size()) *
@@ -94,7 +108,16 @@ double SharedPoints::LogRatio(int detection, int other) const {
   return LogRatioOfSharedPoints(counts) * std::min(1.0, 2.0 / frames);
 }
 
-double SharedPoints::LogRatio(const std::vector<int>& detections,
+double PairEvidence::LogRatioOfColours(int detection, int other) const {
+  if (colours_.empty() || !AreLinked(detection, other)) return 0.0;
+  const std::set<int>& linked = linked_frames_[detections_[detection].frame_index];
+  const std::set<int>& linked_to_other = linked_frames_[detections_[other].frame_index];
+  const double frames = std::sqrt(static_cast<double>(linked.size() * linked_to_other.size()));
+  return soslam::LogRatioOfColours(colours_[detection].dot(colours_[other])) *
+         std::min(1.0, 2.0 / frames);
+}
+
+double PairEvidence::LogRatio(const std::vector<int>& detections,
                               const std::vector<int>& others) const {
   double sum = 0.0;
   if (detections_.empty()) return sum;
