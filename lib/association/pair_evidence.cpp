@@ -39,7 +39,7 @@ double LogRatioOfSharedPoints(const PairEvidence::Counts& counts) {
 }
 
 double LogRatioOfColours(double product) {
-  // By logistic regression over annotated sequences (docs/association.md): at no angle, per rad.
+  // Logistic regression over annotated sequences (docs/association.md): at no angle, per rad.
   constexpr double kEqual = 3.9, kSlope = -7.2;
   return std::min(0.0, kEqual + kSlope * std::acos(std::min(product, 1.0)));
 }

@@ -76,7 +76,7 @@ TEST_F(BoxesSectionTest, ShowsAllBoxesOfAnObject) {
   EXPECT_EQ(CountOf("<strong>unexplained</strong> 3: &lt;3&gt;.png</summary>", html), 1u);
   EXPECT_EQ(CountOf("<strong>duplicate</strong> 0: &lt;0&gt;.png</summary>", html), 1u);
   EXPECT_THAT(html, HasSubstr("<code>{&quot;image&quot;: &quot;rgb/&lt;2&gt;.png&quot;, "
-                              "&quot;box&quot;: [12, 20, 63, 71]}</code>"));
+                              "&quot;box&quot;: [12.4, 20.0, 62.6, 70.5]}</code>"));
 }
 
 TEST_F(BoxesSectionTest, WithoutImagesBoxesAreInEmptyFrames) {
@@ -110,17 +110,19 @@ TEST_F(BoxesSectionTest, SaysWhatHoldsAnObject) {
   const int object = sequence_.objects[0].id;
   const auto& rows = associations_.detections;
   associations_.held_least = {{object, rows[1].name, rows[3].name, {0, 31, -0.5, 4.0, 1.0}}};
-  associations_.kept_out = {{object, 1, 1, 1, rows.back().name, {12, 40, 0.7, -3.0, 1.0}}};
+  associations_.kept_out = {{object, 1, 1, 1, rows.back().name, {12, 40, 0.7, -0.2, -3.0, 1.0}}};
   const std::string frames =
       std::to_string(rows[1].name.frame) + " and " + std::to_string(rows[3].name.frame);
   const std::string html = Html(images_);
   EXPECT_EQ(CountOf("<image ", html), 8u);
   EXPECT_EQ(CountOf("<strong>kept out</strong> 1: &lt;1&gt;.png", html), 1u);
   EXPECT_THAT(html, HasSubstr("7 boxes, 2 not used. "));
-  EXPECT_THAT(html,
-              HasSubstr("Held least by 0 of 31 points of frames " + frames +
-                        ". Kept out, the nearest: cup, left out with 1 box, by log odds of -1.3 "
-                        "(12 of 40 points: 0.7; body -3.0, labels 1.0); 1 frame with both.</p>"));
+  EXPECT_THAT(
+      html,
+      HasSubstr(
+          "Held least by 0 of 31 points of frames " + frames +
+          ". Kept out, the nearest: cup, left out with 1 box, by log odds of -1.5 "
+          "(12 of 40 points: 0.7; colours -0.2, body -3.0, labels 1.0); 1 frame with both.</p>"));
 }
 
 TEST_F(BoxesSectionTest, GivenIdsHaveNone) {
