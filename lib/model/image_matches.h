@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "image/box_colours.h"
+#include "geometry/box_colours.h"
 #include "model/map_points.h"
 
 namespace soslam {
