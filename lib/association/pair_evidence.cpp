@@ -123,8 +123,9 @@ double PairEvidence::LogRatio(const std::vector<int>& detections,
   if (detections_.empty()) return sum;
   const auto frame_of = [this](int detection) { return detections_[detection].frame_index; };
   const auto sum_of_pairs = [&](int detection, int frame) {
-    for (const int other : std::ranges::equal_range(others, frame, {}, frame_of)) {
-      sum += LogRatio(detection, other);
+    auto other = std::ranges::lower_bound(others, frame, {}, frame_of);
+    for (; other != others.end() && frame_of(*other) == frame; ++other) {
+      sum += LogRatio(detection, *other);
     }
   };
   for (const int detection : detections) {
