@@ -11,6 +11,7 @@
 #include "geometry/distortion.h"
 #include "image/box_colours.h"
 #include "image/feature_matches.h"
+#include "model/occlusion.h"
 #include "stage/read_evidence.h"
 #include "stage/stages.h"
 
