@@ -2,7 +2,6 @@
 #include "association/association.h"
 
 #include <algorithm>
-#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -59,6 +58,10 @@ Track Finished(const AssociationModel& model, const Cluster& cluster,
   const std::vector<int>& boxes = track.boxes = track.detections;
   std::vector<std::optional<BoxMatch>> matches = cluster.matches;
   std::vector<bool> is_used = cluster.is_used;
+  // A person says that these boxes are of one thing.
+  if (track.by_hand && std::ranges::count(is_used, true) == 0) is_used.assign(boxes.size(), true);
+  const std::vector<bool> is_held =
+      track.by_hand ? is_used : std::vector<bool>(boxes.size(), false);
   const auto use = [&] {
     track.detections.clear();
     for (size_t i = 0; i < boxes.size(); ++i) {
@@ -69,16 +72,14 @@ Track Finished(const AssociationModel& model, const Cluster& cluster,
   std::vector<std::optional<BoxMatch>> candidates = matches;
   if (track.by_hand ||
       static_cast<int>(track.detections.size()) >= model.options().min_observations) {
+    if (track.by_hand) track.fit.reset();
     model.Fit(&track);
     track.detections = boxes;
     candidates = matches = model.Explain(track);
-    for (size_t i = 0; track.by_hand && i < boxes.size(); ++i) {
-      constexpr double kWorst = std::numeric_limits<double>::infinity();
-      if (!cluster.is_used[i]) {
-        candidates[i].reset();
-      } else if (!matches[i]) {
-        candidates[i] = BoxMatch{.cost = kWorst};
-      }
+    for (size_t i = 0; i < boxes.size(); ++i) {
+      constexpr double kHeldFirst = 1e9;  // more than any match costs
+      if (is_held[i])
+        candidates[i] = BoxMatch{.cost = matches[i] ? matches[i]->cost - kHeldFirst : 0.0};
     }
     const std::vector<bool> used_before =
         std::exchange(is_used, BestInFrames(model, track, candidates));

@@ -190,6 +190,7 @@ Cluster Joint(const Clustering& all, const Cluster& one, const Cluster& other) {
 // Single boxes of neighbouring frames that are certainly of one object.
 std::vector<std::vector<int>> Tracklets(const Clustering& all, const std::vector<int>& detections) {
   std::vector<std::vector<int>> in_frame(all.model.sequence().frames.size());
+  if (in_frame.empty()) return {};
   for (const int detection : detections) in_frame[all.FrameOf(detection)].push_back(detection);
   std::vector<std::optional<int>> next(all.singles.size());
   std::vector<char> has_previous(all.singles.size(), 0);
@@ -396,7 +397,8 @@ Division BestDivision(int block, int id, const Clustering& all) {
       Cluster taken_in =
           Evaluate(all, both, into.log_ratio + all.pairs.LogRatio(parts[i], into.track.detections),
                    {&into.track});
-      const double gain_there = gain + into.cost - taken_in.cost;
+      const double gain_there =
+          gain + into.cost - taken_in.cost - OnePlaceCost(all.model, rest, taken_in);
       if (gain_there > best.gain) best = {gain_there, rest, std::move(taken_in), other};
     }
   });
@@ -469,6 +471,7 @@ Clusters ClusterDetections(const AssociationModel& model, const PairEvidence& pa
   Clusters result;
   const auto frames = static_cast<int>(model.sequence().frames.size());
   for (int block = kBlockFrames;; block *= 2) {
+    for (auto& [id, group] : all.groups) group.tried_until = 0;
     result.is_settled = false;
     for (int round = 0; round < kMaxRounds && !result.is_settled; ++round) {
       Join(block, &all);

@@ -271,6 +271,7 @@ std::vector<Cluster> WithEdits(const AssociationModel& model, const FoundEdits& 
         cluster.track.votes[model.LabelOf(detection)] += detection.score;
         cluster.is_used.push_back(used.contains(box));
       }
+      cluster.matches.resize(boxes.size());
     }
     const auto named_by = edits_of.find(object);
     if (named_by == edits_of.end()) continue;

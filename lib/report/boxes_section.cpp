@@ -95,7 +95,8 @@ std::vector<Sheet> SheetsOf(const Associations& associations, const Sequence& se
     const Associations::DetectionName& name = row.duplicate_of.value_or(row.name);
     const auto track = track_of.find({name.frame, name.given_object});
     if (track == track_of.end()) continue;
-    const bool is_used = row.fate == BoxFate::kExplained || row.fate == BoxFate::kAlone;
+    const bool is_used = row.fate == BoxFate::kExplained || row.fate == BoxFate::kAlone ||
+                         row.fate == BoxFate::kByHand;
     boxes_of[track->second].push_back(box_of(row.name, is_used ? "" : NameOf(row.fate)));
   }
   std::vector<Sheet> sheets;

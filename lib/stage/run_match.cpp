@@ -49,7 +49,7 @@ void RunMatch(const MatchOptions& options, const StageFiles& files, int threads)
   const FrameImageReader reader(sequence);
   std::vector<FeatureView> views(images.size());
   ImageMatches found;
-  found.colours.resize(sequence.detections.size());
+  found.colours.resize(sequence.detections.size(), BoxColours::Zero());
   ParallelFor("images", images.size(), threads, [&](size_t i) {
     const Frame& frame = *images[i].frame;
     views[i] = {sequence.CameraOf(frame), frame.world_from_camera,

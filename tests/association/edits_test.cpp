@@ -111,6 +111,18 @@ TEST_F(EditsTest, BoxesThatAreSplitOffAreAnObjectHoweverFew) {
   EXPECT_THAT(TrackOf(association, Box(1, 0)).boxes, ElementsAreArray(rest));
 }
 
+// What a split leaves is dropped where it has too few boxes for an object.
+TEST_F(EditsTest, FewBoxesThatASplitLeavesAreNoObject) {
+  std::set<int> rest = BoxesOf(1);
+  const std::vector<int> split(std::next(rest.begin(), 2), rest.end());
+  rest.erase(std::next(rest.begin(), 2), rest.end());
+  const Association association = Run({Of(EditKind::kSplit, split)});
+  EXPECT_THAT(TrackOf(association, *rest.begin()).boxes, ElementsAreArray(rest));
+  EXPECT_EQ(TrackOf(association, *rest.begin()).fate, TrackFate::kTooFewDetections);
+  EXPECT_THAT(TrackOf(association, split.front()).boxes, ElementsAreArray(split));
+  EXPECT_EQ(association.objects.size(), 3u);
+}
+
 // Two things are one, which no body explains: boxes stay nevertheless, one in each frame.
 TEST_F(EditsTest, JoinedObjectsAreOneWhetherOrNotABodyExplainsThem) {
   const Association association = Run({Of(EditKind::kJoin, {Box(0, 0), Box(1, 0)})});
