@@ -28,6 +28,7 @@ class AssociationModel {
 
   const Sequence& sequence() const { return sequence_; }
   const AssociateOptions& options() const { return options_; }
+  const LabelConfusion& labels() const { return labels_; }
   const std::map<int, UpEstimate>& up_of_segments() const { return up_of_segments_; }
   const Detection& DetectionAt(int index) const { return sequence_.detections[index]; }
   const std::string& LabelOf(const Detection& detection) const {

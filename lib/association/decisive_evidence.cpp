@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "association/agreement.h"
-#include "association/labels.h"
 #include "base/parallel.h"
 
 namespace soslam {
@@ -34,10 +33,7 @@ class EvidenceOfTracks {
  public:
   EvidenceOfTracks(const AssociationModel& model, const PairEvidence& pairs,
                    const Association& association)
-      : model_(model),
-        pairs_(pairs),
-        association_(association),
-        labels_(LabelsOf(model.sequence()), model.options()) {}
+      : model_(model), pairs_(pairs), association_(association) {}
 
   // Adds the pairs of boxes of an object in different frames that hold it least and most.
   void AddPairs(int object, std::vector<PairRow>* least, std::vector<PairRow>* most) const {
@@ -120,12 +116,6 @@ class EvidenceOfTracks {
   }
 
  private:
-  static std::set<std::string> LabelsOf(const Sequence& sequence) {
-    std::set<std::string> labels;
-    for (const Object& object : sequence.objects) labels.insert(object.label);
-    return labels;
-  }
-
   int FrameOf(int detection) const { return model_.DetectionAt(detection).frame_index; }
 
   void AddPictures(int one, int other, Evidence* evidence) const {
@@ -141,8 +131,9 @@ class EvidenceOfTracks {
   void AddBox(const Track& track, int box, const std::optional<BoxMatch>& match, double weight,
               Evidence* evidence) const {
     const Detection& detection = model_.DetectionAt(box);
-    const double by_label = std::log(labels_.Probability(model_.LabelOf(detection), track.labels)) +
-                            0.5 * labels_.CostOfAnyLabel();
+    const double by_label =
+        std::log(model_.labels().Probability(model_.LabelOf(detection), track.labels)) +
+        0.5 * model_.labels().CostOfAnyLabel();
     const double cost = match ? match->cost : model_.UnexplainedCost(track, detection);
     evidence->labels += weight * by_label;
     evidence->body += weight * (0.5 * (model_.NewObjectCost(detection) - cost) - by_label);
@@ -151,7 +142,6 @@ class EvidenceOfTracks {
   const AssociationModel& model_;
   const PairEvidence& pairs_;
   const Association& association_;
-  LabelConfusion labels_;
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "association/edits.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -285,6 +286,22 @@ std::vector<Cluster> WithEdits(const AssociationModel& model, const FoundEdits& 
     }
   }
   return edited;
+}
+
+std::vector<Finding> CheckEdits(const Sequence& sequence, const Association& association) {
+  std::vector<std::string> lost;
+  for (const Track& track : association.tracks) {
+    if (!track.by_hand || track.fate != TrackFate::kNoLandmark) continue;
+    const Detection& detection = sequence.detections[track.boxes.front()];
+    lost.push_back(fmt::format("box {} in image \"{}\"", InWords(detection.box),
+                               sequence.FrameOf(detection).image));
+  }
+  if (lost.empty()) return {};
+  return {{"edits_without_body", Severity::kWarning,
+           fmt::format("no body fits the object that edits name by {}", fmt::join(lost, ", ")),
+           "a body for each object that edits name",
+           "a label that no support plane suits, or boxes of several things",
+           "mend edits.json: rename to another label, or split"}};
 }
 
 }  // namespace soslam

@@ -7,6 +7,7 @@
 #include "association/association.h"
 #include "association/clustering.h"
 #include "model/edits.h"
+#include "model/finding.h"
 #include "model/sequence.h"
 
 namespace soslam {
@@ -24,6 +25,9 @@ struct FoundEdits {
 // alike, and for an edit of a box that another one deletes.
 FoundEdits FindBoxes(const Edits& edits, const Sequence& sequence,
                      const std::vector<DetectionDecision>& decisions);
+
+// Edits whose object no body fits, and which therefore change nothing in the map.
+std::vector<Finding> CheckEdits(const Sequence& sequence, const Association& association);
 
 // The clusters as edits have them. First boxes that are split off leave their clusters, for a
 // cluster of their own, then clusters that are joined become one. Clusters that an edit names are

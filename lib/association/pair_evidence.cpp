@@ -39,8 +39,8 @@ double LogRatioOfSharedPoints(const PairEvidence::Counts& counts) {
 }
 
 double LogRatioOfColours(double product) {
-  // Logistic regression over annotated sequences (docs/association.md): at no angle, per rad.
-  constexpr double kEqual = 3.9, kSlope = -7.2;
+  // Logistic regression over rendered scenes (docs/association.md): at no angle, per rad.
+  constexpr double kEqual = 3.7, kSlope = -9.1;
   return std::min(0.0, kEqual + kSlope * std::acos(std::min(product, 1.0)));
 }
 

@@ -122,8 +122,10 @@ void WriteMasks(const ColmapJob& job, const fs::path& folder) {
     const ImageSize size = ReadImageHeader(job.dataset / job.images[i]).value().stored;
     const fs::path mask = folder / (job.images[i] + ".png");
     fs::create_directories(mask.parent_path());
-    cv::imwrite(mask.string(), OutsideOf(job.masked[i], {static_cast<int>(size.width),
-                                                         static_cast<int>(size.height)}));
+    const cv::Size pixels(static_cast<int>(size.width), static_cast<int>(size.height));
+    if (!cv::imwrite(mask.string(), OutsideOf(job.masked[i], pixels))) {
+      throw SettingsError(fmt::format("{}: cannot be written", mask.string()));
+    }
   }
 }
 

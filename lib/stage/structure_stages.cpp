@@ -10,6 +10,7 @@
 #include "artefact/files.h"
 #include "association/agreement.h"
 #include "association/association.h"
+#include "association/edits.h"
 #include "association/moved_things.h"
 #include "association/options.h"
 #include "base/error.h"
@@ -100,6 +101,7 @@ void RunAssociate(const AssociateOptions& settings, const StageFiles& files, int
     associated.edits = AppliedEdits{{}, Sha256OfFile(edits.file)};
     for (const Edit& edit : edits.edits) ++associated.edits->kinds[NameOf(edit.kind)];
   }
+  std::ranges::move(CheckEdits(sequence, association), std::back_inserter(info.findings));
   std::ranges::move(CheckMovedThings(sequence, association), std::back_inserter(info.findings));
   ReportFindings("associate", info.findings);
   WriteAssociations(files.at("associations"), ReportOf(sequence, association, agreement), info);

@@ -166,6 +166,20 @@ TEST_F(EditsTest, RenamedObjectsHaveTheLabelAndItsPrior) {
   EXPECT_THAT(chest->labels, testing::SizeIs(1));
 }
 
+// No floor holds what is on a wall.
+TEST_F(EditsTest, AnObjectWhoseNewLabelNoBodyFitsIsSaid) {
+  for (Object& object : seen_.objects) object.plane_index = kNoPlane;
+  table_.priors["poster"] = {{2.0, 1.5}, {0.2, 0.2}};
+  table_.priors["poster"].mount = Mount::kOnWall;
+  EXPECT_THAT(CheckEdits(seen_, Run({})), testing::IsEmpty());
+  const Association association = Run({Rename(Box(2, 1), "poster")});
+  EXPECT_EQ(TrackOf(association, Box(2, 0)).fate, TrackFate::kNoLandmark);
+  const std::vector<Finding> findings = CheckEdits(seen_, association);
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings.front().check, "edits_without_body");
+  EXPECT_THAT(findings.front().found, testing::HasSubstr(seen_.frames[0].image));
+}
+
 // One box and a plane say where an object is; its size makes it a body without any ratio.
 TEST_F(EditsTest, AKnownSizeIsThatOfTheBodyAndOfTheSequence) {
   const Eigen::Vector3d half_axes = given_.objects[1].ground_truth->landmark_in_world.half_axes;

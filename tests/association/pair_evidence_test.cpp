@@ -126,7 +126,7 @@ TEST(PairEvidenceTest, ColoursFartherApartAreMoreEvidence) {
   for (double product = 0.95; product > 0.0; product -= 0.05) {
     EXPECT_LE(LogRatioOfColours(product), LogRatioOfColours(product + 0.05));
   }
-  EXPECT_LT(LogRatioOfColours(0.5), -3.0);
+  EXPECT_LT(LogRatioOfColours(0.5), -4.0);
 }
 
 // Equal things in a row, seen with odometry that drifts by more than the distance between them.
