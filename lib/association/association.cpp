@@ -78,8 +78,9 @@ Track Finished(const AssociationModel& model, const Cluster& cluster,
     candidates = matches = model.Explain(track);
     for (size_t i = 0; i < boxes.size(); ++i) {
       constexpr double kHeldFirst = 1e9;  // more than any match costs
-      if (is_held[i])
-        candidates[i] = BoxMatch{.cost = matches[i] ? matches[i]->cost - kHeldFirst : 0.0};
+      if (!is_held[i]) continue;
+      candidates[i] = matches[i].value_or(BoxMatch());
+      candidates[i]->cost -= kHeldFirst;
     }
     const std::vector<bool> used_before =
         std::exchange(is_used, BestInFrames(model, track, candidates));
