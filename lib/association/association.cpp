@@ -58,10 +58,8 @@ Track Finished(const AssociationModel& model, const Cluster& cluster,
   const std::vector<int>& boxes = track.boxes = track.detections;
   std::vector<std::optional<BoxMatch>> matches = cluster.matches;
   std::vector<bool> is_used = cluster.is_used;
-  // A person says that these boxes are of one thing.
+  // A body for the object that a person names, even if none explained any of its boxes before.
   if (track.by_hand && std::ranges::count(is_used, true) == 0) is_used.assign(boxes.size(), true);
-  const std::vector<bool> is_held =
-      track.by_hand ? is_used : std::vector<bool>(boxes.size(), false);
   const auto use = [&] {
     track.detections.clear();
     for (size_t i = 0; i < boxes.size(); ++i) {
@@ -76,11 +74,13 @@ Track Finished(const AssociationModel& model, const Cluster& cluster,
     model.Fit(&track);
     track.detections = boxes;
     candidates = matches = model.Explain(track);
-    for (size_t i = 0; i < boxes.size(); ++i) {
-      constexpr double kHeldFirst = 1e9;  // more than any match costs
-      if (!is_held[i]) continue;
-      candidates[i] = matches[i].value_or(BoxMatch());
-      candidates[i]->cost -= kHeldFirst;
+    for (size_t i = 0; i < boxes.size() && track.by_hand; ++i) {
+      constexpr double kMostCost = 1e9;  // more than any match costs
+      if (track.by_hand->named.contains(boxes[i])) {
+        candidates[i].emplace().cost = (matches[i] ? matches[i]->cost : 0.0) - kMostCost;
+      } else if (track.by_hand->grouped.contains(boxes[i]) && !matches[i]) {
+        candidates[i].emplace().cost = kMostCost;
+      }
     }
     const std::vector<bool> used_before =
         std::exchange(is_used, BestInFrames(model, track, candidates));

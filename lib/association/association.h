@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,9 @@ struct DetectionDecision {
 
 // What edits say of a track.
 struct ByHand {
+  // Boxes of the object, whether they fit or not: those that edits join or split, which come before
+  // others of their frames; and what else these edits make one object of, which comes after them.
+  std::set<int> named, grouped;
   bool is_deleted = false;
   std::optional<std::string> label = {};
   KnownSize size = {};

@@ -441,7 +441,11 @@ std::vector<bool> BestInFrames(const AssociationModel& model, const Track& track
     if (!matches[i]) continue;
     const int frame = model.DetectionAt(track.detections[i]).frame_index;
     const auto [at, is_first] = best.emplace(frame, i);
-    if (!is_first && matches[i]->cost < matches[at->second]->cost) at->second = i;
+    // A box with an edge that is not the object's is of a part where another one is whole.
+    const auto rank = [&](size_t k) {
+      return std::pair(matches[k]->cut_edge.has_value(), matches[k]->cost);
+    };
+    if (!is_first && rank(i) < rank(at->second)) at->second = i;
   }
   std::vector<bool> is_best(matches.size(), false);
   for (const auto& [frame, i] : best) is_best[i] = true;

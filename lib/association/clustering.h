@@ -18,7 +18,8 @@ struct Cluster {
   double cost = 0.0;       // -2 log of the evidence
 };
 
-// For each box of a track: true if it is the one that the body explains best in its frame.
+// For each box of a track: true if it is the one that the body explains best in its frame. Boxes
+// with an edge that is not the object's come after all others.
 std::vector<bool> BestInFrames(const AssociationModel& model, const Track& track,
                                const std::vector<std::optional<BoxMatch>>& matches);
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -262,6 +263,7 @@ std::vector<Cluster> WithEdits(const AssociationModel& model, const FoundEdits& 
   std::vector<Cluster> edited;
   for (const auto& [object, boxes] : boxes_of) {
     Cluster& cluster = edited.emplace_back();
+    std::set<int> grouped;
     if (object < cluster_count && boxes == clusters[object].track.detections) {
       cluster = std::move(clusters[object]);
     } else {
@@ -271,13 +273,19 @@ std::vector<Cluster> WithEdits(const AssociationModel& model, const FoundEdits& 
         const Detection& detection = model.DetectionAt(box);
         cluster.track.votes[model.LabelOf(detection)] += detection.score;
         cluster.is_used.push_back(used.contains(box));
+        if (cluster.is_used.back()) grouped.insert(box);
       }
       cluster.matches.resize(boxes.size());
     }
     const auto named_by = edits_of.find(object);
     if (named_by == edits_of.end()) continue;
     ByHand& by_hand = cluster.track.by_hand.emplace();
+    by_hand.grouped = std::move(grouped);
     for (const int e : named_by->second) {
+      if (edits[e].kind == EditKind::kJoin || edits[e].kind == EditKind::kSplit) {
+        std::ranges::copy_if(found.boxes[e], std::inserter(by_hand.named, by_hand.named.end()),
+                             [&](int box) { return object_of(box) == object; });
+      }
       if (edits[e].kind == EditKind::kDelete) by_hand.is_deleted = true;
       if (edits[e].kind == EditKind::kRename) by_hand.label = edits[e].label;
       if (edits[e].size.depth_m) by_hand.size.depth_m = edits[e].size.depth_m;
@@ -300,8 +308,9 @@ std::vector<Finding> CheckEdits(const Sequence& sequence, const Association& ass
   return {{"edits_without_body", Severity::kWarning,
            fmt::format("no body fits the object that edits name by {}", fmt::join(lost, ", ")),
            "a body for each object that edits name",
-           "a label that no support plane suits, or boxes of several things",
-           "mend edits.json: rename to another label, or split"}};
+           "a label that no support plane suits, a size in another unit than metres, or boxes of "
+           "several things",
+           "mend edits.json: rename to another label, correct the size, or split"}};
 }
 
 }  // namespace soslam

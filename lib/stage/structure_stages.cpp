@@ -6,6 +6,7 @@
 #include <iterator>
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "artefact/files.h"
 #include "association/agreement.h"
@@ -25,6 +26,7 @@
 #include "mapping/back_end.h"
 #include "mapping/initial_landmarks.h"
 #include "mapping/options.h"
+#include "model/label_groups.h"
 #include "model/moving_things.h"
 #include "model/reasons.h"
 #include "planes/options.h"
@@ -44,6 +46,20 @@ std::string DescribeTracks(const Association& association) {
     ++counts[NameOf(track.fate)];
   }
   return CountsInWords(ReasonsInWords(counts));
+}
+
+// Throws InputError for an edit whose label is not in the semantic table.
+void CheckLabels(const Edits& edits, const SemanticTable& table) {
+  for (size_t i = 0; i < edits.edits.size(); ++i) {
+    const std::string label = NormalisedLabel(edits.edits[i].label);
+    if (label.empty() || table.priors.contains(label)) continue;
+    std::vector<std::string> known;
+    for (const auto& [name, prior] : table.priors) known.push_back(name);
+    const auto meant = LikelyMeant(label, known);
+    throw InputError(fmt::format(
+        "{}: /edits/{}/label is \"{}\"; expected a label of the semantic table{}", edits.file, i,
+        edits.edits[i].label, meant ? fmt::format(", as \"{}\"", *meant) : ""));
+  }
 }
 
 }  // namespace
@@ -74,6 +90,7 @@ void RunAssociate(const AssociateOptions& settings, const StageFiles& files, int
     pairs = PairEvidence(sequence, matches);
   }
   const Edits edits = files.contains("edits") ? ReadEdits(files.at("edits")) : Edits();
+  CheckLabels(edits, table);
   const Association association = Associate(sequence, table, pairs, options, threads, edits);
   if (association.objects.empty()) {
     throw NothingUsableError(fmt::format("{}: no object in {} detections; tracks: {}",

@@ -140,6 +140,23 @@ TEST_F(EditsTest, JoinedObjectsAreOneWhetherOrNotABodyExplainsThem) {
   EXPECT_EQ(track.detections.size(), frames.size());
 }
 
+// The box that a join names is used; in other frames, boxes that the body explains come first.
+TEST_F(EditsTest, AJoinUsesTheBoxesThatItNames) {
+  const Association association =
+      Run({Of(EditKind::kJoin, {Box(0, 0), Box(0, 1), Box(0, 2), Box(1, 5)})});
+  for (const int box : {Box(0, 0), Box(0, 1), Box(0, 2), Box(1, 5)}) {
+    const BoxFate fate = association.detections[box].fate;
+    EXPECT_TRUE(fate == BoxFate::kExplained || fate == BoxFate::kByHand) << NameOf(fate);
+  }
+}
+
+// A size says nothing of which boxes are of the object.
+TEST_F(EditsTest, ASizeHoldsNoBoxes) {
+  seen_.detections[Box(1, 3)].box = {1.0, 1.0, 9.0, 9.0};
+  const Association association = Run({Size(Box(1, 0), {{}, {}, 0.6})});
+  EXPECT_NE(association.detections[Box(1, 3)].fate, BoxFate::kByHand);
+}
+
 TEST_F(EditsTest, ASplitAndAJoinMoveABoxToAnotherObject) {
   const std::vector<Edit> edits = {Of(EditKind::kJoin, {Box(1, 3), Box(0, 0)}),
                                    Of(EditKind::kSplit, {Box(1, 3)})};

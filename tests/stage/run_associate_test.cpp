@@ -29,7 +29,10 @@ class RunAssociateTest : public FolderTest {
     WriteSequence(File("sequence"), sequence_, {});
     WriteBytes(File("table"), R"({"default": {"a_by_c": 1, "a_by_c_log_sigma": 0.5, "b_by_c": 1,
                                   "b_by_c_log_sigma": 0.5, "shape_exponent": 1.1,
-                                  "source": "the test"}, "labels": {}})");
+                                  "source": "the test"},
+                                  "labels": {"chest": {"a_by_c": 1, "a_by_c_log_sigma": 0.5,
+                                  "b_by_c": 1, "b_by_c_log_sigma": 0.5, "shape_exponent": 1.1,
+                                  "source": "the test"}}})");
   }
 
   std::filesystem::path File(const std::string& name) const { return folder_ / (name + ".json"); }
@@ -102,6 +105,10 @@ TEST_F(RunAssociateTest, EditsAreAppliedAndTold) {
   Run(3);
   EXPECT_EQ(FileBytes(File("output")), one_thread);
 
+  WriteBytes(
+      File("edits"),
+      json{{"edits", {{{"edit", "rename"}, {"boxes", {anchor}}, {"label", "chset"}}}}}.dump());
+  ExpectError<InputError>([&] { Run(); }, {"edits.json: /edits/0/label is \"chset\""});
   // A box that is no longer there.
   anchor["box"][0] = seen.box.x_min - 300.0;
   WriteBytes(File("edits"), json{{"edits", {{{"edit", "delete"}, {"boxes", {anchor}}}}}}.dump());
