@@ -47,5 +47,6 @@ $(steps)/detected: $(steps)/dataset $(steps)/network.txt
 	@mkdir -p $(MAP_ROOT)/detections
 	$(call step,detect,test -z "$$MAP_NETWORK" || { \
 	  $(BIN)/soslam-detect --dataset $(folder) --network "$$MAP_NETWORK" \
-	  --output $(MAP_ROOT)/detections/detections.csv $$MAP_DETECT_OPTIONS --threads $(MAP_THREADS) $(QUIET) && \
-	  cp $(MAP_ROOT)/detections/detections.csv $(folder); })
+	  --output $(MAP_ROOT)/detections/detections.csv --turns $(MAP_ROOT)/detections/turns.json \
+	  $$MAP_DETECT_OPTIONS --threads $(MAP_THREADS) $(QUIET) && \
+	  cp $(addprefix $(MAP_ROOT)/detections/,detections.csv turns.json) $(folder); })

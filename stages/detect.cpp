@@ -14,7 +14,12 @@ int main(int argc, char** argv) {
                    "names of its classes, one a line; those in the network's file, or COCO's 80, "
                    "when absent",
                    false}},
-       .outputs = {{"output", "detections.csv to write, without object ids"}},
+       .outputs = {{"output", "detections.csv to write, without object ids"},
+                   {"turns",
+                    "turns.json to write: what is found in ten images as they are and turned by "
+                    "quarters. The detections are then those in images turned upright, if they "
+                    "are not; boxes refer to the images as they are",
+                    false}},
        .example = "soslam-detect --dataset data/room_a --network yolov5s.onnx --output "
                   "detections.csv"},
       &soslam::RunDetect);

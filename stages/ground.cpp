@@ -12,7 +12,9 @@ int main(int argc, char** argv) {
        .inputs = {{"sequence", "sequence.json of soslam-import"},
                   {"points", "points.h5 in the world of its poses"},
                   {"table", "semantic table with the height of each label"},
-                  {"dataset", "dataset folder with the images, where verticals are looked for",
+                  {"dataset",
+                   "dataset folder with the images, where verticals are looked for, and turns.json "
+                   "of soslam-detect, if there is one",
                    false}},
        .outputs = {{"output", "sequence.json to write: z up, in metres, with support planes"},
                    {"world", "world.json to write: what was found, how sure it is, and why"}},

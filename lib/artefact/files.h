@@ -13,6 +13,7 @@
 #include "model/edits.h"
 #include "model/estimates.h"
 #include "model/image_matches.h"
+#include "model/image_turns.h"
 #include "model/map_points.h"
 #include "model/metrics.h"
 #include "model/reconstruction.h"
@@ -57,7 +58,7 @@ void WriteMatches(const std::filesystem::path& path, const ImageMatches& matches
 // fewer than two observations, or whose frame ids do not ascend.
 ImageMatches ReadMatches(const std::filesystem::path& path);
 
-// Kinds "associations", "planes" and "world".
+// Kinds "associations", "planes", "turns" and "world".
 void WriteAssociations(const std::filesystem::path& path, const Associations& associations,
                        const ArtefactInfo& info);
 Artefact<Associations> ReadAssociations(const std::filesystem::path& path);
@@ -65,6 +66,9 @@ Artefact<Associations> ReadAssociations(const std::filesystem::path& path);
 Edits ReadEdits(const std::filesystem::path& path);
 void WritePlanes(const std::filesystem::path& path, const PlanesReport& report,
                  const ArtefactInfo& info);
+void WriteTurns(const std::filesystem::path& path, const ImageTurns& turns,
+                const ArtefactInfo& info);
+Artefact<ImageTurns> ReadTurns(const std::filesystem::path& path);
 void WriteWorld(const std::filesystem::path& path, const WorldReport& report,
                 const ArtefactInfo& info);
 Artefact<WorldReport> ReadWorld(const std::filesystem::path& path);

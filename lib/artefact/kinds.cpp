@@ -9,6 +9,7 @@
 #include "model/describe_metrics.h"
 #include "model/describe_sequence.h"
 #include "model/frames_record.h"
+#include "model/image_turns.h"
 #include "model/reconstruction.h"
 #include "model/semantic_table.h"
 #include "model/world.h"
@@ -44,6 +45,7 @@ const std::vector<ArtefactKind>& ArtefactKinds() {
       {"semantic_table", "sizes and shapes by label", &SemanticTableSchema,
        [](const nlohmann::json& document) { DescribedFromJson<Artefact<SemanticRows>>(document); }},
       KindOf<Sequence>("sequence", "a dataset, checked and gated"),
+      KindOf<ImageTurns>("turns", "what a detector finds in turned images"),
       KindOf<WorldReport>("world", "up, scale and support planes of a world that had neither")};
   return kinds;
 }

@@ -37,6 +37,17 @@ Artefact<WorldReport> ReadWorld(const std::filesystem::path& path) {
   return ReadDescribed<WorldReport>(path, kWorldKind);
 }
 
+constexpr const char* kTurnsKind = "turns";
+
+void WriteTurns(const std::filesystem::path& path, const ImageTurns& turns,
+                const ArtefactInfo& info) {
+  WriteArtefact(path, kTurnsKind, info, DescribedToJson(turns));
+}
+
+Artefact<ImageTurns> ReadTurns(const std::filesystem::path& path) {
+  return ReadDescribed<ImageTurns>(path, kTurnsKind);
+}
+
 constexpr const char* kReconstructionKind = "reconstruction";
 
 void WriteReconstruction(const std::filesystem::path& path, const ReconstructionSummary& summary,

@@ -400,7 +400,6 @@ std::vector<Finding> CheckPlaneCount(size_t planes, size_t objects) {
 
 std::string DoubtOfUp(const std::vector<Finding>& findings) {
   const std::map<std::string, std::string> doubts = {
-      {kHoldingOfPlanesCheck, "objects and flat surfaces contradict each other"},
       {kCamerasTurnedCheck, "the photos are turned in many ways"},
       {kFewObjectsOnPlanesCheck, "few objects stand on flat surfaces"},
       {kUpDirectionCheck, "objects look alike in other ways to hold the camera"}};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "ground/object_heights.h"
 #include "ground/options.h"
 #include "ground/scale_posterior.h"
+#include "model/image_turns.h"
 #include "model/map_points.h"
 #include "model/semantic_table.h"
 #include "model/sequence.h"
@@ -56,28 +58,20 @@ struct GroundObject {
 struct GroundEstimate {
   Similarity output_from_input;  // the output's world has z up, in metres
   Eigen::Vector3d up_in_input = Eigen::Vector3d::UnitZ();
-  double tilt_sigma = 0.0;          // of up, both tilts together (rad)
-  double cameras_tilt_sigma = 0.0;  // of up from the cameras and vertical edges alone (rad)
-  double tilt_to_cameras = 0.0;     // from that up to the final one (rad)
-  UpEstimate up_of_cameras;         // from the cameras alone
-  CameraHolding holding_of_boxes = CameraHolding::kLevel;  // where planes do not contradict it
-  bool cameras_are_turned = false;                         // in many ways: only planes tell up
-  bool verticals = false;                                  // vertical edges were used
-  std::optional<ScalePosterior> scale;                     // of metres per unit of the input
-  std::vector<KnownScale> known_scales;                    // by two options, of the same unit
-  std::optional<ScalePosterior> scale_of_objects;          // without `scale` and `camera_height_m`
-  std::vector<EstimatedPlane> planes;                      // of the output
+  double tilt_sigma = 0.0;               // of up, both tilts together (rad)
+  double cameras_tilt_sigma = 0.0;       // of up from the cameras and vertical edges alone (rad)
+  double tilt_to_cameras = 0.0;          // from that up to the final one (rad)
+  UpEstimate up_of_cameras;              // how they are held, and how probable other ways are
+  bool cameras_are_turned = false;       // in many ways: only planes tell up
+  bool verticals = false;                // vertical edges were used
+  std::optional<ScalePosterior> scale;   // of metres per unit of the input
+  std::vector<KnownScale> known_scales;  // by two options, of the same unit
+  std::optional<ScalePosterior> scale_of_objects;  // without `scale` and `camera_height_m`
+  std::vector<EstimatedPlane> planes;              // of the output
   std::vector<int> points_on_planes;
   int planes_of_points = 0;  // before planes without an object were dropped
   int points = 0;
   std::vector<GroundObject> objects;
-
-  // True if boxes alone tell how the cameras are held: there are no planes that contradict the
-  // boxes, nor any on which at least half of the objects stand.
-  bool IsUpByBoxes() const {
-    const bool planes_agree = !planes.empty() && 2 * StandingObjects() >= std::ssize(objects);
-    return up_of_cameras.holding == holding_of_boxes && !cameras_are_turned && !planes_agree;
-  }
 
   std::ptrdiff_t StandingObjects() const {
     return std::ranges::count_if(
@@ -99,12 +93,20 @@ struct GroundEstimate {
   }
 };
 
+// What a detector finds in a frame's image and in its turned copies (ImageTurns::Row).
+struct TurnedImage {
+  int frame_index;
+  std::array<double, kQuarterTurns> scores;
+};
+
 // Estimates up, scale and support planes from sparse points, boxes and the way cameras are held.
 // The result does not depend on the frame and unit of the input. `views`: line segments per frame;
 // empty to not use vertical edges. At least one frame, all of one segment.
 GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoint>& points,
-                              const std::vector<SegmentView>& views, const SemanticTable& table,
-                              const GroundOptions& options, int threads);
+                              const std::vector<SegmentView>& views,
+                              const std::vector<TurnedImage>& turned_images,
+                              const SemanticTable& table, const GroundOptions& options,
+                              int threads);
 
 // The sequence in the output's world, with its planes. On which of them an object stands is not
 // known yet. Its scale is an estimate, so that evaluation finds the true one apart from other

@@ -136,22 +136,12 @@ void CheckSupport(const GroundEstimate& estimate, std::vector<Finding>* findings
                        "look at the map from the side; more images of the ground"});
 }
 
-// Each CameraHolding in words, in their order.
-constexpr std::array kHoldingWords = {
-    "level, as is usual",
-    "turned clockwise by a quarter turn",
-    "upside down",
-    "turned anticlockwise by a quarter turn",
-    "looking straight down, with upright images",
-    "looking straight down, with images turned by a quarter turn"};
-static_assert(kHoldingWords.size() == kCameraHoldingNames.size());
-
 constexpr const char* kSeeWhetherUpright =
     "see in the map from the side whether objects stand upright. If not, take photos with the "
     "camera always held level, looking ahead, with more of the floor or table and of upright "
     "edges in them, such as door frames and table legs";
 
-void CheckHolding(const GroundEstimate& estimate, std::vector<Finding>* findings) {
+void CheckTurned(const GroundEstimate& estimate, std::vector<Finding>* findings) {
   if (estimate.cameras_are_turned) {
     findings->push_back(
         {kCamerasTurnedCheck, Severity::kWarning,
@@ -163,20 +153,6 @@ void CheckHolding(const GroundEstimate& estimate, std::vector<Finding>* findings
          "surfaces of points come out tilted",
          kSeeWhetherUpright});
   }
-  const CameraHolding holding = estimate.up_of_cameras.holding;
-  if (holding == estimate.holding_of_boxes) return;
-  findings->push_back(
-      {kHoldingOfPlanesCheck, Severity::kWarning,
-       fmt::format("which way is up is not clear: objects look as if the camera was held {}, but "
-                   "more than twice as many objects stand on flat surfaces if it was held {}, "
-                   "which is assumed. If that is wrong, the map lies on its side or is upside "
-                   "down, and heights and scale are wrong with it",
-                   kHoldingWords.at(static_cast<size_t>(estimate.holding_of_boxes)),
-                   kHoldingWords.at(static_cast<size_t>(holding))),
-       "objects and surfaces that agree on which way is up",
-       "photos that were turned in different ways or look steeply down, few objects, or surfaces "
-       "without texture",
-       kSeeWhetherUpright});
 }
 
 void CheckCameraHeight(const GroundEstimate& estimate, const GroundOptions& options,
@@ -201,7 +177,7 @@ std::vector<Finding> CheckGround(const GroundEstimate& estimate, const GroundOpt
   CheckObjectsAgainstSettings(estimate, &findings);
   CheckSettingsAgainstEachOther(estimate, &findings);
   CheckCameraHeight(estimate, options, &findings);
-  CheckHolding(estimate, &findings);
+  CheckTurned(estimate, &findings);
   CheckSupport(estimate, &findings);
   if (estimate.planes.empty()) {
     findings.push_back({"no_support_plane", Severity::kWarning,
@@ -283,6 +259,9 @@ WorldReport ReportOf(const GroundEstimate& estimate, const Sequence& input,
                estimate.verticals,
                kDegPerRad * estimate.cameras_tilt_sigma,
                kDegPerRad * estimate.tilt_to_cameras};
+  for (const TriedHolding& tried : estimate.up_of_cameras.holdings) {
+    report.up.tried.push_back({tried.holding, tried.cost, tried.probability});
+  }
   report.scale = WorldScaleOf(estimate, findings);
   report.output_from_input = {estimate.output_from_input.scale, estimate.output_from_input.rigid};
   for (int i = 0; i < std::ssize(estimate.planes); ++i) {

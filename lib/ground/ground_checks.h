@@ -14,7 +14,6 @@ namespace soslam {
 // Checks whose findings mean that up may be quite wrong: few objects stand on planes; planes say
 // another way to hold the cameras than boxes; only planes tell up.
 inline constexpr const char* kFewObjectsOnPlanesCheck = "few_objects_on_planes";
-inline constexpr const char* kHoldingOfPlanesCheck = "camera_holding_of_planes";
 inline constexpr const char* kCamerasTurnedCheck = "cameras_turned";
 
 // A scale that cannot be told or is uncertain, and what contradicts it; a camera height that says

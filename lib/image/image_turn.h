@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
 #include <opencv2/core.hpp>
 
 #include "geometry/box.h"
@@ -45,6 +47,12 @@ constexpr ImageTurn ExifTurn(int orientation) {
   const auto is_between = [&](int a, int b) { return orientation >= a && orientation <= b; };
   return {orientation >= 5, is_between(2, 3) || is_between(6, 7),
           is_between(3, 4) || is_between(7, 8)};
+}
+
+// A turn clockwise by 0 to 3 quarters.
+constexpr ImageTurn QuarterTurn(int quarters) {
+  constexpr std::array kExif = {1, 6, 3, 8};
+  return ExifTurn(kExif.at(static_cast<size_t>(quarters)));
 }
 
 // The turned box; `size` is that of the image before.

@@ -237,6 +237,11 @@ void Describe(Visitor& visit, OutputFromInput& change) {
 }
 
 struct WorldReport {
+  struct TriedRow {
+    CameraHolding held = CameraHolding::kLevel;
+    double cost = 0.0;
+    double probability = 0.0;
+  };
   struct Up {
     Eigen::Vector3d up_in_input = Eigen::Vector3d::UnitZ();
     double sigma_deg = 0.0;
@@ -245,6 +250,7 @@ struct WorldReport {
     bool verticals = false;
     double sigma_of_cameras_deg = 0.0;
     double angle_to_cameras_deg = 0.0;
+    std::vector<TriedRow> tried = {};
   };
   struct SupportRow {
     PlaneRow plane;
@@ -270,6 +276,14 @@ struct WorldReport {
   std::vector<ObjectRow> objects = {};
 };
 template <typename Visitor>
+void Describe(Visitor& visit, WorldReport::TriedRow& row) {
+  visit.Field("held", &row.held, "how the cameras are held");
+  visit.Field("cost", &row.cost,
+              "negative log likelihood over that of the one taken, of the prior, boxes, turned "
+              "images and objects on planes");
+  visit.Field("probability", &row.probability, "among all that were tried", kShare);
+}
+template <typename Visitor>
 void Describe(Visitor& visit, WorldReport::Up& up) {
   visit.Field("up_in_input", &up.up_in_input, "unit vector in the input's world");
   visit.Field("sigma_deg", &up.sigma_deg, "standard deviation, both tilts together", kNotNegative);
@@ -290,6 +304,9 @@ void Describe(Visitor& visit, WorldReport::Up& up) {
               kNotNegative);
   visit.Field("angle_to_cameras_deg", &up.angle_to_cameras_deg,
               "between up without the points and up", kNotNegative);
+  visit.OrDefault("tried", &up.tried, {},
+                  "ways to hold the cameras, but for those that are 10000 times less probable "
+                  "before planes are looked for");
 }
 template <typename Visitor>
 void Describe(Visitor& visit, WorldReport::SupportRow& row) {

@@ -20,9 +20,8 @@ HeldAxes AxesOf(CameraHolding holding) {
 
 namespace {
 
-// Negative log prior probabilities: a holding other than level, wrongly classified vertical edges,
-// all objects seen from below, an object with wrong boxes.
-const double kNotLevel = std::log(100.0);
+// Negative log prior probabilities: wrongly classified vertical edges, all objects seen from below,
+// an object with wrong boxes.
 const double kWrongVerticals = std::log(100.0);
 const double kFromBelow = std::log(1000.0);
 const double kWrongObject = std::log(1e4);
@@ -52,7 +51,7 @@ HoldingChoice ChooseHolding(const std::vector<HoldingEvidence>& evidence, double
   HoldingChoice choice;
   for (const HoldingEvidence& one : evidence) {
     double cost = one.other_cost / misfit + kFromBelow * one.share_from_below;
-    if (one.holding != CameraHolding::kLevel) cost += kNotLevel;
+    if (one.holding != CameraHolding::kLevel) cost += kNotLevelCost;
     if (one.ignores_verticals) cost += kWrongVerticals;
     for (size_t i = 0; i < lowest.size(); ++i) {
       if (!std::isfinite(lowest[i])) continue;

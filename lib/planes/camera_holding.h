@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -42,6 +43,9 @@ struct HoldingChoice {
   // clear.
   double tilt_variance = 0.0;
 };
+
+// Negative log prior probability of each holding other than level.
+inline const double kNotLevelCost = std::log(100.0);
 
 // True if two up directions differ by at most a few degrees, which boxes cannot distinguish.
 // Holdings with the same up are the same hypothesis.

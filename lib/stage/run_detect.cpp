@@ -5,11 +5,13 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "artefact/atomic_file.h"
+#include "artefact/files.h"
 #include "artefact/json_file.h"
 #include "base/error.h"
 #include "base/parallel.h"
@@ -23,7 +25,9 @@
 #include "image/detector_options.h"
 #include "image/image_turn.h"
 #include "image/read_image.h"
+#include "model/image_turns.h"
 #include "model/label_groups.h"
+#include "planes/turn_evidence.h"
 #include "stage/stages.h"
 
 namespace soslam {
@@ -91,7 +95,8 @@ struct AllDetections {
 };
 AllDetections DetectAll(const std::vector<fs::path>& images, const NetworkFile& network,
                         const NetworkFormat& format, const DetectorLabels& labels,
-                        const DetectorOptions& options, ImageOrientation orientation, int threads) {
+                        const DetectorOptions& options, ImageOrientation orientation,
+                        const ImageTurn& turn, int threads) {
   const int count = static_cast<int>(images.size());
   const int workers = std::min(threads, count);
   AllDetections all{std::vector<std::vector<NetworkDetection>>(images.size()), {}};
@@ -100,7 +105,11 @@ AllDetections DetectAll(const std::vector<fs::path>& images, const NetworkFile& 
   ParallelFor(workers, workers, [&](int worker) {
     Detector detector(network, format, labels.groups, options);
     for (int i = worker; i < count; i += workers) {
-      all.of_image[i] = detector.Detect(ReadImage(images[i], cv::IMREAD_COLOR, orientation));
+      const cv::Mat image = Turned(ReadImage(images[i], cv::IMREAD_COLOR, orientation), turn);
+      all.of_image[i] = detector.Detect(image);
+      for (NetworkDetection& detection : all.of_image[i]) {
+        detection.box = Turned(detection.box, {image.cols, image.rows}, turn.Inverse());
+      }
       progress.Step();
     }
     tallies[worker] = detector.tally();
@@ -154,6 +163,29 @@ AllDetections DetectInBoth(const std::vector<fs::path>& images, const DetectIn& 
   return all;
 }
 
+// What the detector finds in some images as they are and turned by quarters.
+ImageTurns SeenInTurns(const std::vector<ListedImage>& listed, const std::vector<fs::path>& paths,
+                       const std::function<AllDetections(const std::vector<fs::path>& images,
+                                                         const ImageTurn& turn)>& detect) {
+  constexpr size_t kImages = 10;
+  ImageTurns turns;
+  std::vector<int> all(paths.size());
+  std::iota(all.begin(), all.end(), 0);
+  std::vector<fs::path> seen;
+  for (const int i : SpreadOver(all, kImages)) {
+    turns.images.push_back({listed[i].image, {}});
+    seen.push_back(paths[i]);
+  }
+  for (size_t turn = 0; turn < kQuarterTurns; ++turn) {
+    const AllDetections found = detect(seen, QuarterTurn(static_cast<int>(turn)));
+    for (size_t i = 0; i < seen.size(); ++i) {
+      turns.images[i].scores[turn] = SumOfScores(found.of_image[i]);
+    }
+  }
+  ChooseTurn(&turns);
+  return turns;
+}
+
 // The artefact header as comments: one line, then one per input.
 std::string Comments(const ArtefactInfo& info, NetworkBackend backend) {
   nlohmann::json header = ArtefactHeader("detections", info);
@@ -192,14 +224,28 @@ void RunDetect(const DetectorOptions& options, const StageFiles& files, int thre
   const DetectorLabels labels = LabelsForDetector(
       files.contains("labels") ? ReadLabelFile(files.at("labels")) : NamesIn(network), options);
   const fs::path list = dataset / "rgb.txt";
+  const std::vector<ListedImage> listed = ReadImageList(list);
   std::vector<fs::path> images;
-  for (const ListedImage& image : ReadImageList(list)) {
+  for (const ListedImage& image : listed) {
     images.push_back(ImagePath(dataset, image.image, list.string()));
   }
-  const NetworkFormat format = FindFormat(network, static_cast<int>(labels.names.size()), options,
-                                          ReadImage(images.front(), cv::IMREAD_COLOR).size());
+  const cv::Size size = ReadImage(images.front(), cv::IMREAD_COLOR).size();
+  const auto format_of = [&](const ImageTurn& turn) {
+    return FindFormat(network, static_cast<int>(labels.names.size()), options,
+                      turn.swaps_axes ? cv::Size(size.height, size.width) : size);
+  };
+  ImageTurns turns;
+  if (files.contains("turns")) {
+    turns =
+        SeenInTurns(listed, images, [&](const std::vector<fs::path>& some, const ImageTurn& turn) {
+          return DetectAll(some, network, format_of(turn), labels, options,
+                           ImageOrientation::kUpright, turn, threads);
+        });
+  }
+  const ImageTurn upright = QuarterTurn(turns.upright_turn_deg / 90);
+  const NetworkFormat format = format_of(upright);
   const auto detect = [&](const std::vector<fs::path>& some, ImageOrientation orientation) {
-    return DetectAll(some, network, format, labels, options, orientation, threads);
+    return DetectAll(some, network, format, labels, options, orientation, upright, threads);
   };
   // What was found in place of "auto" and "surer": the same comes out again.
   DetectorOptions found = options;
@@ -233,8 +279,17 @@ void RunDetect(const DetectorOptions& options, const StageFiles& files, int thre
   WriteTextFile(files.at("output"),
                 Comments({OptionsToJson(found), inputs, {}, "detect"}, options.backend) +
                     LabelledBoxesText(boxes));
-  fmt::print("{}: {}\n{}: {} images, {} detections\n", network.name, format.Text(),
-             dataset.string(), images.size(), boxes.size());
+  if (files.contains("turns")) {
+    WriteTurns(files.at("turns"), turns, {OptionsToJson(found), inputs, {}, "detect"});
+  }
+  fmt::print("{}: {}\n{}: {} images{}, {} detections\n", network.name, format.Text(),
+             dataset.string(), images.size(),
+             turns.upright_turn_deg == 0
+                 ? ""
+                 : fmt::format(" turned clockwise by {} degrees, in which they are upright with a "
+                               "probability of {:.3f}",
+                               turns.upright_turn_deg, turns.probability),
+             boxes.size());
 }
 
 }  // namespace soslam

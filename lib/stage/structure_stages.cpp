@@ -315,6 +315,26 @@ void RunPlanes(const PlanesOptions& options, const StageFiles& files, int thread
              sequence.objects.size());
 }
 
+namespace {
+
+// What turns.json of the dataset folder has of the frames; empty where there is none.
+std::vector<TurnedImage> TurnedImages(const Sequence& sequence, const StageFiles& files,
+                                      std::vector<std::filesystem::path>* inputs) {
+  if (!files.contains("dataset")) return {};
+  const std::filesystem::path path = files.at("dataset") / "turns.json";
+  if (!std::filesystem::exists(path)) return {};
+  inputs->push_back(path);
+  std::vector<TurnedImage> images;
+  for (const ImageTurns::Row& row : ReadTurns(path).body.images) {
+    const auto frame = std::ranges::find(sequence.frames, row.image, &Frame::image);
+    if (frame == sequence.frames.end()) continue;  // one without a pose
+    images.push_back({static_cast<int>(frame - sequence.frames.begin()), row.scores});
+  }
+  return images;
+}
+
+}  // namespace
+
 void RunGround(const GroundOptions& options, const StageFiles& files, int threads) {
   if (options.ground == GroundSource::kGiven) {
     throw SettingsError("ground is given; expected estimated (a given world needs no stage)");
@@ -328,13 +348,12 @@ void RunGround(const GroundOptions& options, const StageFiles& files, int thread
       ViewsOfSegments(sequence, options.verticals, files, threads, &info.inputs);
   const GroundEstimate estimate =
       EstimateGround(sequence, WithoutMovingThings(sequence, ReadPoints(files.at("points"))), views,
+                     TurnedImages(sequence, files, &info.inputs),
                      ReadSemanticTable(files.at("table")), options, threads);
   info.findings = CheckGround(estimate, options);
-  if (estimate.IsUpByBoxes()) {
-    std::ranges::move(CheckUp(estimate.up_of_cameras.holding, estimate.up_of_cameras.holdings,
-                              estimate.up_of_cameras.holding_tilt_variance),
-                      std::back_inserter(info.findings));
-  }
+  std::ranges::move(CheckUp(estimate.up_of_cameras.holding, estimate.up_of_cameras.holdings,
+                            estimate.up_of_cameras.holding_tilt_variance),
+                    std::back_inserter(info.findings));
   ReportFindings("ground", info.findings);
   WriteWorld(files.at("world"), ReportOf(estimate, sequence, info.findings), info);
   Sequence grounded = WithGround(sequence, estimate);

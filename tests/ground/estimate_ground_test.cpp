@@ -41,7 +41,7 @@ PriorScene SceneOf(unsigned seed) {
 
 GroundEstimate Estimate(const Sequence& sequence, const std::vector<MapPoint>& points,
                         const GroundOptions& options = {}) {
-  return EstimateGround(sequence, points, {}, ShippedTable(), options, 2);
+  return EstimateGround(sequence, points, {}, {}, ShippedTable(), options, 2);
 }
 
 // How many findings are of this check.
@@ -272,21 +272,25 @@ TEST(CheckGroundTest, FewObjectsOnPlanesAreAFinding) {
   EXPECT_EQ(CountOf(kFewObjectsOnPlanesCheck, CheckGround(estimate, {})), 0);
 }
 
-TEST(CheckGroundTest, AnotherWayToHoldCamerasThanThatOfTheBoxesIsAFinding) {
-  GroundEstimate estimate;
-  estimate.up_of_cameras.holding = CameraHolding::kRolled90;
-  EXPECT_THAT(CheckGround(estimate, {}),
-              Contains(AllOf(Field(&Finding::check, "camera_holding_of_planes"),
-                             Field(&Finding::found, HasSubstr("turned clockwise")))));
-  estimate.holding_of_boxes = CameraHolding::kLookingDown;
-  estimate.up_of_cameras.holding = CameraHolding::kLookingDownRolled90;
-  EXPECT_THAT(CheckGround(estimate, {}),
-              Contains(Field(&Finding::found,
-                             AllOf(HasSubstr("was held looking straight down, with upright images"),
-                                   HasSubstr("more than twice as many objects stand on flat"),
-                                   HasSubstr("down, with images turned by a quarter turn")))));
-  estimate.holding_of_boxes = CameraHolding::kLookingDownRolled90;
-  EXPECT_EQ(CountOf("camera_holding_of_planes", CheckGround(estimate, {})), 0);
+TEST(EstimateGroundTest, TurnedImagesTellUpFromDown) {
+  const PriorScene scene = SceneOf(3);
+  // Boxes alone do not.
+  EXPECT_EQ(Estimate(scene.sequence, {}).up_of_cameras.holding, CameraHolding::kLevel);
+  const std::vector<TurnedImage> upside_down = {{0, {3.0, 2.0, 20.0, 2.0}}};
+  const GroundEstimate estimate =
+      EstimateGround(scene.sequence, {}, {}, upside_down, ShippedTable(), {}, 2);
+  EXPECT_EQ(estimate.up_of_cameras.holding, CameraHolding::kRolled180);
+  EXPECT_GT(AngleBetweenDeg(estimate.up_in_input, scene.up_in_world), 170.0);
+}
+
+TEST(EstimateGroundTest, WaysToHoldCamerasHaveProbabilities) {
+  const PriorScene scene = SceneOf(3);
+  const UpEstimate up = Estimate(scene.sequence, scene.points).up_of_cameras;
+  double sum = 0.0;
+  for (const TriedHolding& tried : up.holdings) sum += tried.probability;
+  EXPECT_NEAR(sum, 1.0, 1e-9);
+  EXPECT_EQ(up.holding, CameraHolding::kLevel);
+  EXPECT_EQ(up.holding_tilt_variance, 0.0);
 }
 
 TEST(EstimateGroundTest, PlanesTellUpWhereCamerasAreTurnedInManyWays) {
@@ -350,20 +354,6 @@ TEST(SlowGroundTest, TrueScalesAreWithinTheirIntervals) {
   EXPECT_LT(largest_up_error, 1.5) << summary;
   EXPECT_LE(missed, 0.05 * planes) << summary;
   EXPECT_LE(wrong, 0.05 * planes) << summary;
-}
-
-TEST(EstimateGroundTest, UpIsByBoxesUnlessPlanesTell) {
-  GroundEstimate estimate;
-  estimate.objects.resize(4);
-  EXPECT_TRUE(estimate.IsUpByBoxes());
-  estimate.planes.emplace_back();
-  estimate.objects[0].plane = 0;
-  EXPECT_TRUE(estimate.IsUpByBoxes());
-  estimate.objects[2].plane = 0;
-  EXPECT_FALSE(estimate.IsUpByBoxes());
-  estimate.planes.clear();
-  estimate.up_of_cameras.holding = CameraHolding::kRolled90;
-  EXPECT_FALSE(estimate.IsUpByBoxes());
 }
 
 }  // namespace
