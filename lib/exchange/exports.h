@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -72,8 +73,37 @@ std::string GlbBytes(const World& world, const LabelColours& colours);
 // missing landmark, and the verdict (`fate` and following) without an evaluation.
 std::string LandmarksCsvText(const std::vector<World>& worlds);
 
+// A short table of the bodies as upright boxes, one row each below a header: label; centre x, y, z;
+// full lengths size_x, size_y, size_z; yaw_deg, that of size_x about UpOf(world); score, the mean of
+// the object's detections; id. Metres. size_z is along the body's axis nearest to up; how far that
+// leans is left out.
+std::string BoxesCsvText(const World& world);
+
 // The poses in the text format of the TUM RGB-D benchmark: a line "timestamp tx ty tz qx qy qz qw"
 // per frame, world_from_camera, below a comment that states this. Numbers round-trip exactly.
 std::string TumTrajectoryText(const World& world);
+
+// The folder that holds the images of all worlds, relative to the dataset folder: "rgb", or the
+// last one that they share.
+std::filesystem::path FolderOfImages(const std::vector<World>& worlds);
+
+// A model of COLMAP in its text format: frames that have an image, and points. Image ids are those
+// of frames plus 1, names of images are relative to `images`, cameras have the lens of the image
+// files, and pixels count from the outer corner of the top-left one.
+struct ColmapTexts {
+  std::string cameras;   // cameras.txt
+  std::string images;    // images.txt
+  std::string points3D;  // points3D.txt
+};
+// Throws InputError for the name of an image that has a blank, at which COLMAP cuts it off, and as
+// ToColmap.
+ColmapTexts ColmapModelTexts(const World& world, const std::filesystem::path& images);
+
+// transforms.json of nerfstudio: frames that have an image, sorted by id, with the camera's axes as
+// OpenGL has them (x right, y up, z backward), the lens of the image files, and pixels that count
+// from the outer corner of the top-left one. Paths of images begin with `dataset`, the dataset
+// folder as seen from the file. The world has an image at least. Throws InputError for a lens that
+// nerfstudio does not know: of more than k1, k2, k3, p1 and p2.
+std::string TransformsText(const World& world, const std::filesystem::path& dataset);
 
 }  // namespace soslam

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "base/table.h"
 #include "dataset/trajectories.h"
@@ -72,6 +73,27 @@ std::string LandmarksCsvText(const std::vector<World>& worlds) {
     for (const WorldObject& object : world.objects) {
       text += fmt::format("{}\n", fmt::join(RowOf(object), ","));
     }
+  }
+  return text;
+}
+
+std::string BoxesCsvText(const World& world) {
+  const Eigen::Vector3d up = UpOf(world);
+  std::string text = "label,x,y,z,size_x,size_y,size_z,yaw_deg,score,id\n";
+  for (const WorldObject& object : world.objects) {
+    if (!object.estimate.landmark_in_world) continue;
+    const Landmark& landmark = *object.estimate.landmark_in_world;
+    const Eigen::Quaterniond& rotation = landmark.frame_from_object.rotation;
+    int z = 2;
+    (rotation.conjugate() * up).cwiseAbs().maxCoeff(&z);
+    const int x = z == 0 ? 1 : 0, y = 3 - x - z;
+    const Eigen::Quaterniond quarter_turn(
+        Eigen::AngleAxisd(0.5 * std::numbers::pi, Eigen::Vector3d::UnitZ()));
+    const double yaw = Yaw(up, x == 0 ? rotation : rotation * quarter_turn);
+    const Eigen::Vector3d& half = landmark.half_axes;
+    text += fmt::format("{},{:.6g},{:.6g},{:.6g},{:.4g},{}\n", CsvText(object.label),
+                        fmt::join(landmark.Centre(), ","), fmt::join(std::array{2.0 * half[x], 2.0 * half[y], 2.0 * half[z]}, ","),
+                        yaw * kDegPerRad, object.score, object.id);
   }
   return text;
 }

@@ -7,6 +7,7 @@
 #include "artefact/json_file.h"
 #include "evaluation/alignment.h"
 #include "evaluation/statistics.h"
+#include "geometry/triangulation.h"
 #include "model/segments.h"
 
 namespace soslam {
@@ -19,7 +20,7 @@ std::vector<World> WorldsOfFrames(const Sequence& sequence,
   for (size_t i = 0; i < sequence.frames.size(); ++i) {
     const Frame& frame = sequence.frames[i];
     if (worlds.empty() || worlds.back().segment != frame.segment) {
-      worlds.push_back({frame.segment, {}, {}});
+      worlds.push_back({frame.segment, {}, {}, sequence.image_distortion});
     }
     if (!world_from_camera[i]) continue;
     worlds.back().frames.push_back(
@@ -103,6 +104,33 @@ Eigen::Vector3d UpOf(const World& world) {
     most_shared = std::max(most_shared, shared);
   }
   return up;
+}
+
+void AddPoints(const Sequence& sequence, const std::vector<MapPoint>& points,
+               std::vector<World>* worlds) {
+  constexpr double kHuberPx = 1.0;
+  for (World& world : *worlds) {
+    std::map<int, const WorldFrame*> frames;
+    for (const WorldFrame& frame : world.frames) frames[frame.id] = &frame;
+    for (const MapPoint& point : points) {
+      WorldPoint placed;
+      std::vector<PointView> views;
+      for (const PointObservation& observation : point.observations) {
+        const auto frame = frames.find(observation.frame_id);
+        if (frame == frames.end()) continue;
+        const auto pixel = UndistortedPixel(sequence, observation);
+        if (!pixel) continue;
+        const auto& [id, seen_from] = *frame;
+        views.push_back({seen_from->camera, seen_from->world_from_camera.Inverse(), *pixel});
+        placed.observations.push_back(observation);
+      }
+      const auto triangulated = Triangulate(views, kHuberPx);
+      if (!triangulated) continue;
+      placed.position_in_world = triangulated->position_in_world;
+      placed.reprojection_error_px = triangulated->mean_error_px;
+      world.points.push_back(placed);
+    }
+  }
 }
 
 double YawOf(const WorldObject& object) {

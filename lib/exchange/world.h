@@ -2,14 +2,17 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "geometry/camera.h"
+#include "geometry/distortion.h"
 #include "geometry/rigid3.h"
 #include "model/estimates.h"
+#include "model/map_points.h"
 #include "model/sequence.h"
 
 namespace soslam {
@@ -42,12 +45,22 @@ struct WorldObject {
   std::optional<LandmarkVerdict> verdict = std::nullopt;  // none without an evaluation
 };
 
+// A sparse point with the image points that it was placed by, in frames of its world.
+struct WorldPoint {
+  Eigen::Vector3d position_in_world = Eigen::Vector3d::Zero();
+  double reprojection_error_px = 0.0;  // mean over its observations
+  std::vector<PointObservation> observations;
+  std::array<int, 3> rgb = {128, 128, 128};  // 0 to 255; grey where no image tells it
+};
+
 // Frames and objects of one segment, which can be shown together, see Frame::segment. Objects of
 // unknown segment belong to the first.
 struct World {
   int segment = 0;
   std::vector<WorldFrame> frames;
   std::vector<WorldObject> objects;
+  std::optional<Distortion> image_distortion = std::nullopt;  // Sequence::image_distortion
+  std::vector<WorldPoint> points = {};                        // none unless AddPoints adds them
 };
 
 // The poses and objects of a map of the sequence, one world per segment.
@@ -62,6 +75,12 @@ std::vector<World> WorldsOfTruth(const Sequence& sequence);
 // The support normal (in the world) that most objects with a landmark share to about 25 degrees;
 // the z axis if there are no objects.
 Eigen::Vector3d UpOf(const World& world);
+
+// Adds the points to the worlds of the frames that see them, where the poses of these frames place
+// their image points: the world that a file of points has may be another one. Left out are points
+// that fewer than two frames of a world see, or from nearly one direction.
+void AddPoints(const Sequence& sequence, const std::vector<MapPoint>& points,
+               std::vector<World>* worlds);
 
 // The yaw (rad) of the object's landmark about its support normal. The object must have a landmark.
 double YawOf(const WorldObject& object);

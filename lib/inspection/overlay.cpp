@@ -23,7 +23,8 @@ const Stroke kTruthAxis{palette::kVermilion, 1};
 
 constexpr double kGridOpacity = 0.5;
 
-std::string CaptionOf(const Object& object) {
+// Id and label of an Object or WorldObject.
+std::string CaptionOf(const auto& object) {
   return fmt::format("{} {}", object.id, object.label);
 }
 
@@ -103,8 +104,21 @@ std::vector<OverlayInput::Ground> GroundsOf(const Sequence& sequence, int frame_
   return grounds;
 }
 
-// The landmarks of objects whose outline box overlaps the image. Those that are not detected there
-// have captions.
+// Adds the landmark of an object if its outline box overlaps the image.
+void AddBodyInImage(const ObjectEstimate& estimate, const std::string& caption,
+                    const Rigid3d& camera_from_world, const Camera& camera,
+                    std::vector<OverlayInput::Body>* bodies) {
+  if (!estimate.landmark_in_world) return;
+  const Landmark in_camera = Transform(camera_from_world, *estimate.landmark_in_world);
+  const auto outline = OutlineBox(camera, in_camera);
+  const Box image{-0.5, -0.5, camera.width - 0.5, camera.height - 0.5};
+  if (!outline || BoxOverlap(*outline, image) == 0.0) return;
+  bodies->push_back({in_camera, caption});
+  if (!estimate.FrontIsKnown()) return;
+  bodies->back().front_caption = fmt::format("front {:.0f} %", 100.0 * *estimate.front_probability);
+}
+
+// The landmarks of objects that are in the image. Those that are not detected there have captions.
 std::vector<OverlayInput::Body> BodiesInImage(const Sequence& sequence,
                                               const std::vector<ObjectEstimate>& estimates,
                                               const Rigid3d& camera_from_world, int frame_index) {
@@ -113,19 +127,12 @@ std::vector<OverlayInput::Body> BodiesInImage(const Sequence& sequence,
   for (const Detection& detection : DetectionsIn(sequence, frame_index)) {
     detected.insert(detection.object_index);
   }
-  const Box image{-0.5, -0.5, camera.width - 0.5, camera.height - 0.5};
   std::vector<OverlayInput::Body> bodies;
   for (const ObjectEstimate& estimate : estimates) {
-    if (!estimate.landmark_in_world) continue;
-    const Landmark in_camera = Transform(camera_from_world, *estimate.landmark_in_world);
-    const auto outline = OutlineBox(camera, in_camera);
-    if (!outline || BoxOverlap(*outline, image) == 0.0) continue;
-    const Object& object = sequence.objects[estimate.object_index];
-    bodies.push_back(
-        {in_camera, detected.contains(estimate.object_index) ? "" : CaptionOf(object)});
-    if (!estimate.FrontIsKnown()) continue;
-    bodies.back().front_caption =
-        fmt::format("front {:.0f} %", 100.0 * *estimate.front_probability);
+    const bool is_detected = detected.contains(estimate.object_index);
+    AddBodyInImage(estimate,
+                   is_detected ? "" : CaptionOf(sequence.objects[estimate.object_index]),
+                   camera_from_world, camera, &bodies);
   }
   return bodies;
 }
@@ -172,6 +179,16 @@ OverlayInput OverlayOfMap(const Sequence& sequence, const MapEstimate& map, int 
     planes_in_camera.push_back(Transform(camera_from_world, plane));
   }
   input.grounds = GroundsOf(sequence, frame_index, planes_in_camera);
+  return input;
+}
+
+OverlayInput OverlayOfWorld(const World& world, const WorldFrame& frame) {
+  OverlayInput input{.camera = frame.camera};
+  const Rigid3d camera_from_world = frame.world_from_camera.Inverse();
+  for (const WorldObject& object : world.objects) {
+    AddBodyInImage(object.estimate, CaptionOf(object), camera_from_world, frame.camera,
+                   &input.landmarks);
+  }
   return input;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "exchange/world.h"
 #include "geometry/box.h"
 #include "geometry/camera.h"
 #include "geometry/landmark.h"
@@ -57,6 +58,9 @@ OverlayInput OverlayOfLandmarks(const Sequence& sequence, const LandmarkEstimate
 
 // The same, and the landmarks of the map that are in the image, with poses and planes of the map.
 OverlayInput OverlayOfMap(const Sequence& sequence, const MapEstimate& map, int frame_index);
+
+// The bodies of a world that are in the image of one of its frames, each with its caption.
+OverlayInput OverlayOfWorld(const World& world, const WorldFrame& frame);
 
 // Draws on `image` (CV_8UC3), which shows the view of `input`'s camera in its size or a whole
 // multiple of it (see DrawingGround): detections as boxes, landmarks by their silhouette and axes,

@@ -183,12 +183,17 @@ struct ExportOptions {
 };
 
 // soslam-export: writes "sequence" and, unless truth is set, "map" (with its evaluation "metrics")
-// to one or more of "trajectory", "ply", "gltf", "coco", "coco_dataset" and "csv". Without a map,
-// only the sequence's own poses are exported. With several segments, each in its own world,
-// "trajectory", "ply" and "gltf" become one file per segment, map-3.ply. Throws SettingsError
-// without an output, for objects without a map or truth, for both, and for an extension that glTF
-// does not have; NothingUsableError when there is no pose or landmark to write. Nothing is written
-// in these cases.
+// to one or more of "trajectory", "ply", "gltf", "coco", "coco_dataset", "csv", "boxes", the folder
+// "colmap", "transforms" and the folder "overlays". Without a map, only the sequence's own poses are
+// exported. Of "points", "colmap" has those that its poses place; with the images of folder
+// "dataset" they have colours, "transforms" has the way to the images, and "overlays" shows them.
+// With several segments, each in its own world, all but tables of the whole sequence ("coco",
+// "coco_dataset", "csv") and "overlays" become one file or folder per segment, map-3.ply. Throws
+// SettingsError without an output, for objects without a map or truth, for both, for points without
+// "colmap", for overlays without "dataset", and for an extension that glTF does not have;
+// NothingUsableError when there is no pose, image or landmark to write; InputError for images and
+// points as their readers. Nothing is written in these cases, but for overlays before an image that
+// cannot be read.
 void RunExport(const ExportOptions& options, const StageFiles& files, int threads);
 
 // A report always contains all datasets and variants, so that reports of different runs can be
