@@ -129,5 +129,7 @@ locked_run all
 
 map=$RESULTS/$DATASET/${VARIANT%% *}/map.json
 [[ -e $map ]] || refuse "$makes_no_map" 4
+export_map "${map%/map.json}" "$MAP_ROOT/export" > /dev/null ||
+  echo "map: not all files could be written to $MAP_ROOT/export" >&2
 headline=$("$BIN/soslam-inspect" "$map" --headline)
 echo "$headline, page: $RESULTS/$DATASET/report.html"

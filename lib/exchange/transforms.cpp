@@ -35,7 +35,7 @@ ordered_json Lens(const std::optional<Distortion>& distortion) {
 // The rows of world_from_opengl.
 ordered_json TransformMatrix(const Rigid3d& world_from_camera) {
   Eigen::Matrix4d matrix = world_from_camera.Matrix();
-  matrix.middleCols<2>(1) *= -1.0;
+  matrix.block<3, 2>(0, 1) *= -1.0;
   ordered_json rows = ordered_json::array();
   for (int i = 0; i < 4; ++i) {
     rows.push_back({matrix(i, 0), matrix(i, 1), matrix(i, 2), matrix(i, 3)});

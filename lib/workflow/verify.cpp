@@ -76,9 +76,14 @@ DatasetRuns RunsOfDataset(const std::string& name, const fs::path& results,
   }
   for (const VariantRuns& variant : dataset.variants) {
     for (const std::string& folder : SubfoldersOf(dataset.results / variant.name)) {
-      const std::string run = variant.name + "/" + folder;
-      if (!Exists(dataset.results / run / "run.json")) continue;
-      dataset.exports.push_back({run, dataset.results / run, {variant.name}});
+      std::vector<std::string> runs = {variant.name + "/" + folder};
+      for (const std::string& inner : SubfoldersOf(dataset.results / runs.front())) {
+        runs.push_back(runs.front() + "/" + inner);
+      }
+      for (const std::string& run : runs) {
+        if (!Exists(dataset.results / run / "run.json")) continue;
+        dataset.exports.push_back({run, dataset.results / run, {variant.name}});
+      }
     }
   }
   return dataset;

@@ -33,7 +33,7 @@ struct DatasetRuns {
   std::filesystem::path dataset;  // the folder of the dataset itself
   std::vector<VariantRuns> variants;
   std::vector<RecordedRun> runs;  // runs used by variants, each after the runs that it reads from
-  std::vector<RecordedRun> exports;  // exports with a run.json in a folder of a variant
+  std::vector<RecordedRun> exports;  // with a run.json, in a folder of a variant or one level below
   std::vector<std::string> unused;   // "shared/<stage>-<key>" that no variant uses any more
 };
 

@@ -201,6 +201,37 @@ TEST(LandmarksCsvTest, SigmasAreOfMetresAndDegrees) {
   EXPECT_NEAR(number("sigma_yaw_deg"), std::sqrt(0.0212) * kDegPerRad, 1e-9);
 }
 
+// A body with half axes 1, 2 and 3 m, whose label wants quoting, in a world with z up.
+std::string BoxOf(const Eigen::Quaterniond& world_from_object) {
+  World world = ExportedWorld();
+  WorldObject object = world.objects[2];
+  object.support_normal = Eigen::Vector3d::UnitZ();
+  object.estimate.landmark_in_world =
+      Landmark{{world_from_object, {0.5, -1.25, 3.0}}, {1.0, 2.0, 3.0}};
+  world.objects = {object, world.objects[3]};
+  const std::string text = BoxesCsvText(world);
+  const std::string header = "label,x,y,z,size_x,size_y,size_z,yaw_deg,score,id\n";
+  EXPECT_EQ(text.substr(0, header.size()), header);
+  return text.substr(header.size());
+}
+
+Eigen::Quaterniond TurnDeg(double angle_deg, const Eigen::Vector3d& axis) {
+  return Eigen::Quaterniond(Eigen::AngleAxisd(angle_deg * kRadPerDeg, axis));
+}
+
+TEST(BoxesCsvTest, AreUprightWithFullLengths) {
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(),
+                        z = Eigen::Vector3d::UnitZ();
+  const std::string begin = "\"a \"\"b\"\", c\",0.5,-1.25,3,";
+  const Eigen::Quaterniond yaw = TurnDeg(30.0, z);
+  EXPECT_EQ(BoxOf(yaw), begin + "2,4,6,30,0.25,5\n");
+  EXPECT_EQ(BoxOf(yaw * TurnDeg(180.0, x)), begin + "2,4,6,30,0.25,5\n") << "hangs";
+  EXPECT_EQ(BoxOf(yaw * TurnDeg(20.0, x)), begin + "2,4,6,30,0.25,5\n") << "leans";
+  EXPECT_EQ(BoxOf(yaw * TurnDeg(90.0, x)), begin + "2,6,4,30,0.25,5\n") << "y is up";
+  // x is down, and y takes its place.
+  EXPECT_EQ(BoxOf(yaw * TurnDeg(90.0, y)), begin + "4,6,2,120,0.25,5\n");
+}
+
 TEST(TumTrajectoryTest, ReadsBackBitForBit) {
   World world = ExportedWorld();
   for (WorldFrame& frame : world.frames) {

@@ -173,5 +173,49 @@ TEST(AlignWorlds, WorldsAreMovedAsAWhole) {
   EXPECT_TRUE((moved.block<3, 3>(6, 6).isApprox(old.block<3, 3>(6, 6), 1e-12)));
 }
 
+// Three cameras side by side; the file of points is of another world than the map.
+TEST(WorldPointsTest, AreWhereThePosesPlaceTheirImagePoints) {
+  Sequence sequence;
+  sequence.camera = TestCamera();
+  sequence.image_distortion = Distortion{.k1 = -0.1};
+  for (int i = 0; i < 3; ++i) {
+    sequence.frames.push_back(
+        {10 * i, 0.1 * i, "", {Eigen::Quaterniond::Identity(), {0.3 * i, 0.0, 0.0}}, {}});
+  }
+  const std::vector<Eigen::Vector3d> positions = {{0.1, -0.2, 3.0}, {0.4, 0.3, 4.0}};
+  std::vector<MapPoint> points(3);
+  for (size_t k = 0; k < 2; ++k) {
+    for (const Frame& frame : sequence.frames) {
+      const auto pixel = sequence.camera.Project(frame.world_from_camera.Inverse() * positions[k]);
+      points[k].observations.push_back(
+          {frame.id,
+           DistortPixels(sequence.camera, *sequence.image_distortion, {*pixel}).front()});
+    }
+    points[k].observations.push_back({7, {1.0, 1.0}});  // no frame of the sequence
+  }
+  points[2].observations = {points[0].observations[0]};
+  const Rigid3d map_from_sequence = RandomRigid();
+  MapEstimate map;
+  for (const Frame& frame : sequence.frames) {
+    map.world_from_camera.push_back(map_from_sequence * frame.world_from_camera);
+  }
+  std::vector<World> worlds = WorldsOfMap(sequence, map);
+  AddPoints(sequence, points, &worlds);
+  const std::vector<WorldPoint>& placed = Only(worlds).points;
+  ASSERT_EQ(placed.size(), 2u);
+  for (size_t k = 0; k < 2; ++k) {
+    EXPECT_LT((placed[k].position_in_world - map_from_sequence * positions[k]).norm(), 1e-6);
+    EXPECT_LT(placed[k].reprojection_error_px, 1e-4);
+    EXPECT_EQ(placed[k].observations.size(), 3u);
+  }
+
+  // With a frame of another segment, each world has what two of its frames see.
+  for (size_t i = 1; i < 3; ++i) sequence.frames[i].segment = 1;
+  worlds = WorldsOfMap(sequence, map);
+  AddPoints(sequence, points, &worlds);
+  EXPECT_EQ(worlds[0].points.size(), 0u);
+  EXPECT_EQ(worlds[1].points.size(), 2u);
+}
+
 }  // namespace
 }  // namespace soslam

@@ -9,6 +9,7 @@
 
 #include "inspection/canvas.h"
 #include "inspection/projection.h"
+#include "support/exported_world.h"
 #include "support/random.h"
 #include "support/scene.h"
 
@@ -98,6 +99,25 @@ TEST(OverlayTest, WhatIsBehindTheCameraIsNotDrawn) {
   const cv::Mat image =
       Drawn({.camera = kCamera, .truths_in_camera = {{behind}}, .landmarks = {{behind, "x", "y"}}});
   EXPECT_EQ(cv::countNonZero(image.reshape(1)), 0);
+}
+
+// Of an object in the image, one beside it and one without a landmark, the first has its caption.
+TEST(OverlayTest, OfAWorldHasTheBodiesInTheImage) {
+  World world = ExportedWorld();
+  world.objects.erase(world.objects.begin() + 1);
+  world.objects[0].estimate.front_probability = 0.97;
+  world.objects[1].estimate.landmark_in_world->frame_from_object.translation.x() += 50.0;
+  const WorldFrame& frame = world.frames[1];
+  const OverlayInput input = OverlayOfWorld(world, frame);
+  EXPECT_EQ(input.camera, frame.camera);
+  ASSERT_EQ(input.landmarks.size(), 1u);
+  EXPECT_EQ(input.landmarks[0].caption, "2 Dining_Table");
+  EXPECT_EQ(input.landmarks[0].front_caption, "front 97 %");
+  EXPECT_LT((frame.world_from_camera * input.landmarks[0].landmark_in_camera.Centre() -
+             world.objects[0].estimate.landmark_in_world->Centre())
+                .norm(),
+            1e-12);
+  EXPECT_TRUE(OverlayOfWorld(world, world.frames[2]).landmarks.empty()) << "it looks away";
 }
 
 class OverlayOfSceneTest : public testing::Test {

@@ -59,7 +59,8 @@ class RunExportTest : public FolderTest {
   }
 
   const Outputs kAll = {{"trajectory", "t.txt"}, {"ply", "m.ply"},           {"gltf", "m.glb"},
-                        {"coco", "c.json"},      {"coco_dataset", "d.json"}, {"csv", "l.csv"}};
+                        {"coco", "c.json"},      {"coco_dataset", "d.json"}, {"csv", "l.csv"},
+                        {"boxes", "b.csv"}};
   ExportOptions options_;
   Sequence sequence_ = CuboidSequence(4, 9);
   MapEstimate map_ = TrueMap(sequence_);
@@ -76,6 +77,7 @@ TEST_F(RunExportTest, WritesWhatIsAskedFor) {
   const std::string table = FileBytes(File("l.csv"));
   EXPECT_EQ(std::ranges::count(table, '\n'), 5);
   EXPECT_NE(table.find("no_start"), std::string::npos);
+  EXPECT_EQ(FileBytes(File("b.csv")).substr(0, 10), "label,x,y,");
   Run({"map"}, {{"gltf", "m.gltf"}});
   EXPECT_EQ(nlohmann::json::parse(FileBytes(File("m.gltf"))).at("nodes"), scene.json["nodes"]);
 }
@@ -154,7 +156,7 @@ TEST_F(RunExportTest, SegmentsAreFilesOfTheirOwn) {
   EXPECT_EQ(ReadTrajectory(File("t-0.txt")).size(), 4u);
   EXPECT_EQ(ReadTrajectory(File("t-12.txt")).size(), sequence_.frames.size() - 4);
   for (const char* name :
-       {"m-0.ply", "m-12.ply", "m-0.glb", "m-12.glb", "m.v2-12.ply", "poses-0"}) {
+       {"m-0.ply", "m-12.ply", "m-0.glb", "m-12.glb", "b-12.csv", "m.v2-12.ply", "poses-0"}) {
     EXPECT_TRUE(fs::exists(File(name))) << name;
   }
   EXPECT_FALSE(fs::exists(File("t.txt")));
@@ -167,6 +169,9 @@ TEST_F(RunExportTest, SegmentsAreFilesOfTheirOwn) {
 TEST_F(RunExportTest, RefusesWhatItCannotDo) {
   ExpectRefused<SettingsError>({"map"}, {}, {"--trajectory", "--csv"});
   ExpectRefused<SettingsError>({"map"}, {{"gltf", "m.obj"}}, {"m.obj", ".glb or .gltf"});
+  ExpectRefused<SettingsError>({"map"}, {{"overlays", "drawn"}}, {"--dataset", "images"});
+  ExpectRefused<SettingsError>({"map", "points"}, {{"boxes", "b.csv"}}, {"--points", "--colmap"});
+  ExpectRefused<NothingUsableError>({}, {{"colmap", "model"}}, {"sequence.json", "an image"});
   for (ObjectEstimate& object : map_.objects) object.landmark_in_world.reset();
   Write();
   ExpectRefused<NothingUsableError>({"map"}, kAll, {"map.json", "no landmarks"});
