@@ -22,9 +22,10 @@ int ImageId(int frame_id) { return frame_id + 1; }
 std::string NameOfImage(const WorldFrame& frame, const fs::path& images) {
   const std::string name = fs::path(frame.image).lexically_relative(images).generic_string();
   if (name.find_first_of(" \t") == std::string::npos) return name;
-  throw InputError(fmt::format("frame {}: image '{}' has a blank in its name, at which COLMAP cuts "
-                               "it off; expected a name without blanks",
-                               frame.id, frame.image));
+  throw InputError(
+      fmt::format("frame {}: image '{}' has a blank in its name, at which COLMAP cuts "
+                  "it off; expected a name without blanks",
+                  frame.id, frame.image));
 }
 
 std::string CameraLine(size_t id, const Camera& camera,
@@ -75,9 +76,9 @@ ColmapTexts ColmapModelTexts(const World& world, const fs::path& images) {
       const auto image = seen.find(observation.frame_id);
       if (image == seen.end()) continue;
       texts.points3D += fmt::format(" {} {}", ImageId(image->first), image->second.count++);
-      image->second.words += fmt::format("{}{} {} {}", image->second.words.empty() ? "" : " ",
-                                         observation.pixel.x() + 0.5, observation.pixel.y() + 0.5,
-                                         i + 1);
+      image->second.words +=
+          fmt::format("{}{} {} {}", image->second.words.empty() ? "" : " ",
+                      observation.pixel.x() + 0.5, observation.pixel.y() + 0.5, i + 1);
     }
     texts.points3D += "\n";
   }
@@ -91,10 +92,10 @@ ColmapTexts ColmapModelTexts(const World& world, const fs::path& images) {
     }
     const Rigid3d camera_from_world = frame.world_from_camera.Inverse();
     const Eigen::Quaterniond& q = camera_from_world.rotation;
-    texts.images += fmt::format("{} {} {} {} {} {} {} {}\n{}\n", ImageId(frame.id), q.w(), q.x(),
-                                q.y(), q.z(), fmt::join(camera_from_world.translation, " "),
-                                camera - cameras.begin() + 1, NameOfImage(frame, images),
-                                seen.at(frame.id).words);
+    texts.images +=
+        fmt::format("{} {} {} {} {} {} {} {}\n{}\n", ImageId(frame.id), q.w(), q.x(), q.y(), q.z(),
+                    fmt::join(camera_from_world.translation, " "), camera - cameras.begin() + 1,
+                    NameOfImage(frame, images), seen.at(frame.id).words);
   }
   return texts;
 }

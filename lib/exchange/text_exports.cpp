@@ -92,7 +92,8 @@ std::string BoxesCsvText(const World& world) {
     const double yaw = Yaw(up, x == 0 ? rotation : rotation * quarter_turn);
     const Eigen::Vector3d& half = landmark.half_axes;
     text += fmt::format("{},{:.6g},{:.6g},{:.6g},{:.4g},{}\n", CsvText(object.label),
-                        fmt::join(landmark.Centre(), ","), fmt::join(std::array{2.0 * half[x], 2.0 * half[y], 2.0 * half[z]}, ","),
+                        fmt::join(landmark.Centre(), ","),
+                        fmt::join(std::array{2.0 * half[x], 2.0 * half[y], 2.0 * half[z]}, ","),
                         yaw * kDegPerRad, object.score, object.id);
   }
   return text;

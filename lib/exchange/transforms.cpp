@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
 ordered_json Intrinsics(const Camera& camera) {
-  return {{"w", camera.width}, {"h", camera.height}, {"fl_x", camera.fx}, {"fl_y", camera.fy}, {"cx", camera.cx + 0.5}, {"cy", camera.cy + 0.5}};
+  return {{"w", camera.width}, {"h", camera.height},    {"fl_x", camera.fx},
+          {"fl_y", camera.fy}, {"cx", camera.cx + 0.5}, {"cy", camera.cy + 0.5}};
 }
 
 ordered_json Lens(const std::optional<Distortion>& distortion) {
@@ -48,9 +49,8 @@ ordered_json TransformMatrix(const Rigid3d& world_from_camera) {
 std::string TransformsText(const World& world, const fs::path& dataset) {
   std::vector<WorldFrame> frames = world.frames;
   std::erase_if(frames, [](const WorldFrame& frame) { return frame.image.empty(); });
-  const bool is_one_camera = std::ranges::all_of(frames, [&](const WorldFrame& frame) {
-    return frame.camera == frames.front().camera;
-  });
+  const bool is_one_camera = std::ranges::all_of(
+      frames, [&](const WorldFrame& frame) { return frame.camera == frames.front().camera; });
   ordered_json document = {{"camera_model", "OPENCV"}};
   if (is_one_camera) document.update(Intrinsics(frames.front().camera));
   document.update(Lens(world.image_distortion));

@@ -24,9 +24,7 @@ const Stroke kTruthAxis{palette::kVermilion, 1};
 constexpr double kGridOpacity = 0.5;
 
 // Id and label of an Object or WorldObject.
-std::string CaptionOf(const auto& object) {
-  return fmt::format("{} {}", object.id, object.label);
-}
+std::string CaptionOf(const auto& object) { return fmt::format("{} {}", object.id, object.label); }
 
 // Draws the x axis as an arrow to the front if there is one, else through the body.
 void DrawAxes(const Landmark& landmark_in_camera, bool has_front, const Stroke& x_axis,
@@ -130,8 +128,7 @@ std::vector<OverlayInput::Body> BodiesInImage(const Sequence& sequence,
   std::vector<OverlayInput::Body> bodies;
   for (const ObjectEstimate& estimate : estimates) {
     const bool is_detected = detected.contains(estimate.object_index);
-    AddBodyInImage(estimate,
-                   is_detected ? "" : CaptionOf(sequence.objects[estimate.object_index]),
+    AddBodyInImage(estimate, is_detected ? "" : CaptionOf(sequence.objects[estimate.object_index]),
                    camera_from_world, camera, &bodies);
   }
   return bodies;

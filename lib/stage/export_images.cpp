@@ -43,8 +43,7 @@ std::vector<PlacedImage> PlacedImages(const Sequence& sequence, const StageFiles
     for (const WorldFrame& frame : world.frames) places[frame.id] = {&world, &frame};
   }
   std::vector<PlacedImage> placed;
-  for (const FrameImage& image :
-       FrameImages(sequence, files.at("dataset"), files.at("sequence"))) {
+  for (const FrameImage& image : FrameImages(sequence, files.at("dataset"), files.at("sequence"))) {
     const auto place = places.find(image.frame->id);
     if (place == places.end()) continue;
     placed.push_back({image, place->second.first, place->second.second});
@@ -140,8 +139,7 @@ size_t WriteOverlays(const Sequence& sequence, const std::vector<World>& worlds,
     std::vector<std::vector<uchar>> pictures(std::min(batch, images.size() - begin));
     ParallelFor(pictures.size(), threads, [&](size_t i) {
       const auto& [image, world, frame] = images[begin + i];
-      pictures[i] =
-          DrawnJpeg(reader.Read(image, cv::IMREAD_COLOR), OverlayOfWorld(*world, *frame));
+      pictures[i] = DrawnJpeg(reader.Read(image, cv::IMREAD_COLOR), OverlayOfWorld(*world, *frame));
       progress.Step();
     });
     for (size_t i = 0; i < pictures.size(); ++i) {

@@ -25,8 +25,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kOutputs = {"trajectory", "ply",    "gltf",       "coco",    "coco_dataset",
-                                 "csv",        "boxes",  "colmap",     "transforms", "overlays"};
+constexpr std::array kOutputs = {"trajectory", "ply",   "gltf",   "coco",       "coco_dataset",
+                                 "csv",        "boxes", "colmap", "transforms", "overlays"};
 // Outputs of poses alone, which need no objects.
 constexpr std::array kPoseOutputs = {"trajectory", "colmap", "transforms"};
 
@@ -105,12 +105,13 @@ std::vector<Finding> CheckPoints(const std::vector<World>& worlds, size_t given,
   const size_t placed = errors_px.size();
   const std::optional<double> median_px = MedianOf(errors_px);
   if (2 * placed >= given && median_px.value_or(0.0) <= kMaxMedianErrorPx) return {};
-  return {{"points_and_poses", Severity::kWarning,
-           fmt::format("{}: {} of {} points can be placed by the poses that are written, at a median "
-                       "reprojection error of {:.1f} px",
-                       file.string(), placed, given, median_px.value_or(0.0)),
-           fmt::format("most of them, at less than {} px", kMaxMedianErrorPx),
-           "points of other images, or poses that drift", "points that were made of these images"}};
+  return {
+      {"points_and_poses", Severity::kWarning,
+       fmt::format("{}: {} of {} points can be placed by the poses that are written, at a median "
+                   "reprojection error of {:.1f} px",
+                   file.string(), placed, given, median_px.value_or(0.0)),
+       fmt::format("most of them, at less than {} px", kMaxMedianErrorPx),
+       "points of other images, or poses that drift", "points that were made of these images"}};
 }
 
 bool HasImage(const World& world) {
@@ -152,8 +153,8 @@ std::vector<Output> MakeOutputs(const std::vector<World>& worlds, const ExportOp
   const auto path_of = [&](const std::string& name, const World& world) {
     const fs::path path = PlainPath(files.at(name));
     if (worlds.size() == 1) return files.at(name);
-    return path.parent_path() / fmt::format("{}-{}{}", path.stem().string(), world.segment,
-                                            path.extension().string());
+    return path.parent_path() /
+           fmt::format("{}-{}{}", path.stem().string(), world.segment, path.extension().string());
   };
   const auto add_each = [&](const std::string& name,
                             const std::function<std::string(const World&)>& text) {

@@ -184,8 +184,8 @@ struct ExportOptions {
 
 // soslam-export: writes "sequence" and, unless truth is set, "map" (with its evaluation "metrics")
 // to one or more of "trajectory", "ply", "gltf", "coco", "coco_dataset", "csv", "boxes", the folder
-// "colmap", "transforms" and the folder "overlays". Without a map, only the sequence's own poses are
-// exported. Of "points", "colmap" has those that its poses place; with the images of folder
+// "colmap", "transforms" and the folder "overlays". Without a map, only the sequence's own poses
+// are exported. Of "points", "colmap" has those that its poses place; with the images of folder
 // "dataset" they have colours, "transforms" has the way to the images, and "overlays" shows them.
 // With several segments, each in its own world, all but tables of the whole sequence ("coco",
 // "coco_dataset", "csv") and "overlays" become one file or folder per segment, map-3.ply. Throws

@@ -188,8 +188,7 @@ TEST(WorldPointsTest, AreWhereThePosesPlaceTheirImagePoints) {
     for (const Frame& frame : sequence.frames) {
       const auto pixel = sequence.camera.Project(frame.world_from_camera.Inverse() * positions[k]);
       points[k].observations.push_back(
-          {frame.id,
-           DistortPixels(sequence.camera, *sequence.image_distortion, {*pixel}).front()});
+          {frame.id, DistortPixels(sequence.camera, *sequence.image_distortion, {*pixel}).front()});
     }
     points[k].observations.push_back({7, {1.0, 1.0}});  // no frame of the sequence
   }

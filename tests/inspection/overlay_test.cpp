@@ -101,7 +101,7 @@ TEST(OverlayTest, WhatIsBehindTheCameraIsNotDrawn) {
   EXPECT_EQ(cv::countNonZero(image.reshape(1)), 0);
 }
 
-// Of an object in the image, one beside it and one without a landmark, the first has its caption.
+// One object is in the image, one beside it, and one has no landmark.
 TEST(OverlayTest, OfAWorldHasTheBodiesInTheImage) {
   World world = ExportedWorld();
   world.objects.erase(world.objects.begin() + 1);

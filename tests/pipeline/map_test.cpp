@@ -14,6 +14,7 @@
 #include <thread>
 #include <vector>
 
+#include "dataset/colmap_model.h"
 #include "dataset/labelled_box.h"
 #include "dataset/trajectories.h"
 #include "support/fake_colmap.h"
@@ -123,6 +124,14 @@ TEST_F(SlowMapTest, EndsWithOneLineAndGoesOnWhereSomethingChanged) {
   EXPECT_THAT(first, ContainsRegex("\n3 objects, scale [+]- [0-9]+ %, page: "));
   EXPECT_THAT(first, EndsWith((map / "results/it_s_my_room_1/report.html").string() + "\n"));
   EXPECT_TRUE(fs::exists(map / "results/it_s_my_room_1/report.html"));
+  for (const char* file :
+       {"landmarks.csv", "boxes.csv", "map.glb", "transforms.json", "overlays/IMG_7.jpg"}) {
+    EXPECT_TRUE(fs::exists(map / "export" / file)) << file;
+  }
+  const ColmapModel model = ReadColmapModel(map / "export/colmap");
+  EXPECT_EQ(model.images.size(), size_t{kFrames});
+  EXPECT_EQ(model.points.size(), 120u);
+  EXPECT_TRUE(fs::exists(map / "data/it_s_my_room_1/rgb" / model.images.front().pose.image));
   const auto made = Made();
 
   EXPECT_THAT(ExpectSuccess(MapPhotos()), testing::Not(HasSubstr("[it_s_my_room_1]")))
@@ -191,7 +200,11 @@ TEST_F(SlowMapTest, OtherTargetsKnowAMapByItsName) {
   EXPECT_THAT(run("run", {"room_a", "--name", name}).errors, HasSubstr("expected one of them"));
   EXPECT_THAT(run("run", {"--name", name + " 2"}).errors, HasSubstr("expected letters and digits"));
   EXPECT_EQ(Made(), made);
+  ExpectSuccess(run("export", {"--name", name}));
   ExpectSuccess(run("verify", {"--name", name}));
+  const fs::path overlays = fs::path(results) / name / "OursSP/export/overlays";
+  fs::remove(overlays / "IMG_0.jpg");
+  EXPECT_THAT(run("verify", {"--name", name}).output, HasSubstr("IMG_0.jpg"));
 }
 
 TEST_F(MapTest, RefusesWhatIsMissing) {

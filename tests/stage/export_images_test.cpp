@@ -34,8 +34,11 @@ class ExportImagesTest : public WallSequenceTest {
     sequence_.planes = {{0, {-Eigen::Vector3d::UnitY(), 1.0}}};
     sequence_.objects = {{4, "cup", 0, {}}};
     map_ = EmptyMap(sequence_);
-    map_.objects = {{0, 3, Landmark{{Eigen::Quaterniond::Identity(), {0.2, 0.0, 2.0}},
-                                    {0.2, 0.2, 0.2}}, {}, ""}};
+    map_.objects = {{0,
+                     3,
+                     Landmark{{Eigen::Quaterniond::Identity(), {0.2, 0.0, 2.0}}, {0.2, 0.2, 0.2}},
+                     {},
+                     ""}};
     for (const char* output : {"colmap", "overlays"}) outputs_[output] = folder_ / "out" / output;
     outputs_["transforms"] = folder_ / "out/transforms.json";
   }
