@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,7 @@ int ImageId(int frame_id) { return frame_id + 1; }
 
 std::string NameOfImage(const WorldFrame& frame, const fs::path& images) {
   const std::string name = fs::path(frame.image).lexically_relative(images).generic_string();
-  if (name.find_first_of(" \t") == std::string::npos) return name;
+  if (name.find_first_of(" \t\r\n") == std::string::npos) return name;
   throw InputError(
       fmt::format("frame {}: image '{}' has a blank in its name, at which COLMAP cuts "
                   "it off; expected a name without blanks",
@@ -36,24 +37,6 @@ std::string CameraLine(size_t id, const Camera& camera,
 }
 
 }  // namespace
-
-fs::path FolderOfImages(const std::vector<World>& worlds) {
-  std::optional<fs::path> shared;
-  for (const World& world : worlds) {
-    for (const WorldFrame& frame : world.frames) {
-      if (frame.image.empty()) continue;
-      const fs::path folder = fs::path(frame.image).parent_path();
-      if (!shared) shared = folder;
-      fs::path both;
-      for (auto one = shared->begin(), other = folder.begin();
-           one != shared->end() && other != folder.end() && *one == *other; ++one, ++other) {
-        both /= *one;
-      }
-      shared = both;
-    }
-  }
-  return shared.value_or(fs::path());
-}
 
 ColmapTexts ColmapModelTexts(const World& world, const fs::path& images) {
   ColmapTexts texts;

@@ -83,10 +83,6 @@ std::string BoxesCsvText(const World& world);
 // per frame, world_from_camera, below a comment that states this. Numbers round-trip exactly.
 std::string TumTrajectoryText(const World& world);
 
-// The folder that holds the images of all worlds, relative to the dataset folder: "rgb", or the
-// last one that they share.
-std::filesystem::path FolderOfImages(const std::vector<World>& worlds);
-
 // A model of COLMAP in its text format: frames that have an image, and points. Image ids are those
 // of frames plus 1, names of images are relative to `images`, cameras have the lens of the image
 // files, and pixels count from the outer corner of the top-left one.

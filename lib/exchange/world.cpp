@@ -2,6 +2,7 @@
 #include "exchange/world.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 
 #include "artefact/json_file.h"
@@ -104,6 +105,24 @@ Eigen::Vector3d UpOf(const World& world) {
     most_shared = std::max(most_shared, shared);
   }
   return up;
+}
+
+std::filesystem::path FolderOfImages(const std::vector<World>& worlds) {
+  std::optional<std::filesystem::path> shared;
+  for (const World& world : worlds) {
+    for (const WorldFrame& frame : world.frames) {
+      if (frame.image.empty()) continue;
+      const std::filesystem::path folder = std::filesystem::path(frame.image).parent_path();
+      if (!shared) shared = folder;
+      std::filesystem::path both;
+      for (auto one = shared->begin(), other = folder.begin();
+           one != shared->end() && other != folder.end() && *one == *other; ++one, ++other) {
+        both /= *one;
+      }
+      shared = both;
+    }
+  }
+  return shared.value_or(std::filesystem::path());
 }
 
 void AddPoints(const Sequence& sequence, const std::vector<MapPoint>& points,

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -75,6 +76,10 @@ std::vector<World> WorldsOfTruth(const Sequence& sequence);
 // The support normal (in the world) that most objects with a landmark share to about 25 degrees;
 // the z axis if there are no objects.
 Eigen::Vector3d UpOf(const World& world);
+
+// The folder that holds the images of all worlds, relative to the dataset folder: "rgb", or the
+// last one that they share.
+std::filesystem::path FolderOfImages(const std::vector<World>& worlds);
 
 // Adds the points to the worlds of the frames that see them, where the poses of these frames place
 // their image points: the world that a file of points has may be another one. Left out are points

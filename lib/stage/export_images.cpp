@@ -16,7 +16,6 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/progress.h"
-#include "exchange/exports.h"
 #include "image/image_format.h"
 #include "image/read_image.h"
 #include "inspection/canvas.h"

@@ -125,12 +125,12 @@ void AddImages(const Sequence& sequence, const StageFiles& files, int threads,
   if (files.contains("points")) {
     const std::vector<MapPoint> points = ReadPointsOf(sequence, files);
     AddPoints(sequence, points, worlds);
-    ReportFindings("soslam-export", CheckPoints(*worlds, points.size(), files.at("points")));
+    ReportFindings("export", CheckPoints(*worlds, points.size(), files.at("points")));
   }
   if (!files.contains("dataset")) return;
-  ColourPoints(sequence, files, threads, worlds);
+  if (files.contains("points")) ColourPoints(sequence, files, threads, worlds);
   if (files.contains("colmap") || files.contains("transforms")) {
-    ReportFindings("soslam-export", CheckTurnedImages(sequence, files));
+    ReportFindings("export", CheckTurnedImages(sequence, files));
   }
 }
 

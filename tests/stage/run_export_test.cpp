@@ -171,10 +171,12 @@ TEST_F(RunExportTest, RefusesWhatItCannotDo) {
   ExpectRefused<SettingsError>({"map"}, {{"gltf", "m.obj"}}, {"m.obj", ".glb or .gltf"});
   ExpectRefused<SettingsError>({"map"}, {{"overlays", "drawn"}}, {"--dataset", "images"});
   ExpectRefused<SettingsError>({"map", "points"}, {{"boxes", "b.csv"}}, {"--points", "--colmap"});
-  ExpectRefused<NothingUsableError>({}, {{"colmap", "model"}}, {"sequence.json", "an image"});
   for (ObjectEstimate& object : map_.objects) object.landmark_in_world.reset();
   Write();
   ExpectRefused<NothingUsableError>({"map"}, kAll, {"map.json", "no landmarks"});
+  for (Frame& frame : sequence_.frames) frame.image.clear();
+  Write();
+  ExpectRefused<NothingUsableError>({}, {{"colmap", "model"}}, {"sequence.json", "an image"});
   EXPECT_EQ(FilesInFolder(), 2u);
 }
 
