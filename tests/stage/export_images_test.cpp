@@ -34,11 +34,9 @@ class ExportImagesTest : public WallSequenceTest {
     sequence_.planes = {{0, {-Eigen::Vector3d::UnitY(), 1.0}}};
     sequence_.objects = {{4, "cup", 0, {}}};
     map_ = EmptyMap(sequence_);
-    map_.objects = {{0,
-                     3,
-                     Landmark{{Eigen::Quaterniond::Identity(), {0.2, 0.0, 2.0}}, {0.2, 0.2, 0.2}},
-                     {},
-                     ""}};
+    const Landmark cube{
+        {Eigen::Quaterniond::Identity(), {0.2, 0.0, 2.0}}, {0.2, 0.2, 0.2}, kCuboidExponent};
+    map_.objects = {{0, 3, cube, {}, ""}};
     for (const char* output : {"colmap", "overlays"}) outputs_[output] = folder_ / "out" / output;
     outputs_["transforms"] = folder_ / "out/transforms.json";
   }
@@ -66,7 +64,7 @@ TEST_F(ExportImagesTest, OverlaysHaveTheNamesAndSizeOfImages) {
     const cv::Mat image = cv::imread((folder_ / sequence_.frames[i].image).string());
     ASSERT_FALSE(drawn.empty());
     ASSERT_EQ(drawn.cols, DrawingGround(image).cols);
-    // The outline of the nearer face, at 1.8 m, in sky blue; a grey picture has none.
+    // The left edge of the nearer face, at 1.8 m, in sky blue, which JPEG blurs; the rest is grey.
     const auto centre = sequence_.camera.Project({0.2 - 0.06 * i, 0.0, 1.8});
     ASSERT_TRUE(centre);
     const double scale = static_cast<double>(drawn.cols) / image.cols;
@@ -77,12 +75,11 @@ TEST_F(ExportImagesTest, OverlaysHaveTheNamesAndSizeOfImages) {
       const auto& pixel = drawn.at<cv::Vec3b>(row, x);
       bluest = std::max(bluest, pixel[0] - pixel[2]);
     }
-    EXPECT_GT(bluest, 80) << i;
+    EXPECT_GT(bluest, 40) << i;
   }
 }
 
 TEST_F(ExportImagesTest, ImagesOfOneNameButForTheExtensionKeepIt) {
-  fs::copy(folder_ / "rgb/0.png", folder_ / "rgb/1.bmp.png");
   Write("rgb/1.jpg", EncodedImage(".jpg", cv::imread((folder_ / "rgb/0.png").string())));
   sequence_.frames[0].image = "rgb/1.jpg";
   Run({"overlays"});
