@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "geometry/angles.h"
+#include "model/segments.h"
 
 namespace soslam {
 namespace {
@@ -92,6 +93,32 @@ AlignmentKind ChosenKind(AlignmentKind choice, const Sequence& sequence,
              : AlignmentKind::kRigid;
 }
 
+// Up of a segment's true world: the z axis of the standing true object that has the least sum of
+// angles to those of the others, as single ones may lean. None without one.
+std::optional<Eigen::Vector3d> TrueUp(const Sequence& sequence, int segment) {
+  std::vector<Eigen::Vector3d> axes;
+  for (const TrueObject& object : sequence.true_objects) {
+    const Landmark& landmark = object.truth.landmark_in_world;
+    if (object.segment != segment || landmark.rests_on != RestingFace::kBottom) continue;
+    axes.emplace_back(landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ());
+  }
+  if (axes.empty()) return std::nullopt;
+  return *std::ranges::min_element(axes, {}, [&](const Eigen::Vector3d& axis) {
+    double sum = 0.0;
+    for (const Eigen::Vector3d& other : axes) sum += AngleBetween(axis, other);
+    return sum;
+  });
+}
+
+std::optional<double> UpErrorDeg(const Sequence& sequence, int segment,
+                                 const std::vector<PosePair>& pairs) {
+  const bool has_own_up =
+      sequence.odometry_world != OdometryWorld::kOfTruth && sequence.HasSupports();
+  const auto true_up = TrueUp(sequence, segment);
+  if (!has_own_up || !true_up || pairs.empty()) return std::nullopt;
+  return AngleBetweenDeg(MeanRotation(pairs) * UpOfSegment(sequence, segment), *true_up);
+}
+
 }  // namespace
 
 Alignment Align(const std::vector<PosePair>& pairs, AlignmentKind kind) {
@@ -147,7 +174,8 @@ Alignments AlignSegments(const Sequence& sequence, const std::vector<Rigid3d>& w
   Alignments alignments;
   for (const auto& [segment, poses] : segments) {
     const AlignmentKind asked = ChosenKind(choice, sequence, poses.odometry);
-    const Alignment alignment = Align(poses.estimated, asked);
+    Alignment alignment = Align(poses.estimated, asked);
+    alignment.up_error_deg = UpErrorDeg(sequence, segment, poses.estimated);
     alignments.of_segment[segment] = alignment;
     const char* kind = kAlignmentKindNames[static_cast<size_t>(alignment.kind)];
     if (alignment.kind != asked) {

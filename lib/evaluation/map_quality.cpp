@@ -49,6 +49,14 @@ std::optional<InFrames> CompareInFrames(const ReasonInput& input, const TrueView
                   *MeanWhatIf(errors, &LandmarkErrors::what_if)};
 }
 
+// The mean score of an object's detections, times the share of the segment's frames that they are
+// in. There is at most one in a frame.
+double ScoreOf(const Sequence& sequence, const std::vector<int>& detections, int segment) {
+  double sum = 0.0;
+  for (const int index : detections) sum += sequence.detections[index].score;
+  return sum / static_cast<double>(std::ranges::count(sequence.frames, segment, &Frame::segment));
+}
+
 // The row of a landmark: found as `input` matches it; otherwise ignored if things are there that
 // are ignored and it is not to blame for a wanted object, or false, with the reason. `detections`
 // are those of the landmark's object.
@@ -59,6 +67,7 @@ LandmarkRow RowOf(const ReasonInput& input, const TrueViews& views,
   const std::string& label = sequence.objects[landmark.object_index].label;
   LandmarkRow row;
   row.object_index = landmark.object_index;
+  row.score = ScoreOf(sequence, detections, landmark.segment);
   if (const int truth = input.truth_of_landmark[landmark_index]; truth != kUnassigned) {
     row.fate = Fate::kFound;
     row.true_index = truth;
@@ -152,6 +161,27 @@ std::optional<double> Share(int part, int whole) {
   return static_cast<double>(part) / whole;
 }
 
+// The area under the envelope of the precision over the recall, as landmarks are taken by
+// descending score, those of one score at once. None without true objects.
+std::optional<double> AveragePrecision(int true_objects, std::vector<LandmarkRow> landmarks) {
+  std::erase_if(landmarks, [](const LandmarkRow& row) { return row.fate == Fate::kIgnored; });
+  std::ranges::sort(landmarks, std::greater<>(), &LandmarkRow::score);
+  double precision = 0.0, area = 0.0;  // of the envelope, from the last landmark to the first
+  auto right = std::ranges::count(landmarks, Fate::kFound, &LandmarkRow::fate);
+  for (size_t i = landmarks.size(); i-- > 0;) {
+    const bool ends_score =
+        i + 1 == landmarks.size() || landmarks[i + 1].score < landmarks[i].score;
+    if (ends_score) {
+      precision = std::max(precision, static_cast<double>(right) / static_cast<double>(i + 1));
+    }
+    if (landmarks[i].fate != Fate::kFound) continue;
+    area += precision;
+    --right;
+  }
+  if (true_objects == 0) return std::nullopt;
+  return area / true_objects;
+}
+
 MapScore Score(double min_iou, const std::vector<TrueObjectRow>& objects,
                const std::vector<LandmarkRow>& landmarks) {
   MapScore score;
@@ -170,6 +200,7 @@ MapScore Score(double min_iou, const std::vector<TrueObjectRow>& objects,
   score.precision = Share(score.found, judged);
   score.recall = Share(score.found, score.true_objects);
   score.f1 = Share(2 * score.found, judged + score.true_objects);
+  score.average_precision = AveragePrecision(score.true_objects, landmarks);
   score.recall_of_detectable = Share(score.found_detectable, score.detectable);
   const int judged_of_detectable = judged - (score.found - score.found_detectable);
   score.f1_of_detectable =

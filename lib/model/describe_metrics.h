@@ -24,6 +24,9 @@ void Describe(Visitor& visit, Alignment& alignment) {
   visit.Field("truth_from_scaled", &alignment.truth_from_scaled, "motion after scaling");
   visit.Field("frames", &alignment.frames, "with an estimated and a true pose", kNotNegative);
   visit.Field("rmse_m", &alignment.rmse_m, "distance of the camera centres, aligned");
+  visit.OrAbsent("up_error_deg", &alignment.up_error_deg,
+                 "between up of the estimates and of the truth, with the cameras' rotations "
+                 "aligned; absent where the world is that of the truth, or either up is unknown");
 }
 
 // The alignments of segments, by segment.
@@ -212,6 +215,9 @@ void Describe(Visitor& visit, MapScore& score) {
   visit.Field("precision", &score.precision, "of the landmarks that are not ignored");
   visit.Field("recall", &score.recall, "of all true objects");
   visit.Field("f1", &score.f1, "of all true objects");
+  visit.OrDefault("average_precision", &score.average_precision, {},
+                  "area under the envelope of the precision over the recall of all true objects, "
+                  "as landmarks are taken by descending score");
   visit.Field("recall_of_detectable", &score.recall_of_detectable, "as if there were no others");
   visit.Field("f1_of_detectable", &score.f1_of_detectable, "as if there were no others");
   visit.Field("of_found", &score.of_found, "errors of the found landmarks");
@@ -282,6 +288,10 @@ template <typename Visitor>
 void Describe(Visitor& visit, LandmarkRow& row) {
   DescribeObject(visit, row);
   visit.Field("fate", &row.fate, "found: right; ignored: neither right nor wrong");
+  visit.OrAbsent("score", &row.score,
+                 "mean score of its detections, times the share of the segment's frames that they "
+                 "are in; absent: 0",
+                 kNotNegative);
   visit.Id("true_object", &row.true_index, &Sequence::true_objects,
            "what it matches; of a false one what its reason is about");
   visit.Field("errors", &row.errors, "against that object");

@@ -98,7 +98,16 @@ inline constexpr MetricOf<MapScore> kScoreMetrics[] = {
     {{"precision", "P", "", 2, true}, Get<&MapScore::precision>},
     {{"recall", "R", "", 2, true}, Get<&MapScore::recall>},
     {{"f1", "F1", "", 2, true}, Get<&MapScore::f1>},
+    {{"average_precision", "AP", "", 2, true}, Get<&MapScore::average_precision>},
     {kIou, [](const MapScore& score) { return Get<&FoundSummary::iou_mean>(score.of_found); }}};
+
+// The world of a map from images alone.
+inline constexpr MetricOf<Alignment> kWorldMetrics[] = {
+    {{"world_up_error", "up of map", "deg", 1}, Get<&Alignment::up_error_deg>},
+    {{"world_scale", "true / map scale", "", 3}, [](const Alignment& alignment) -> MetricValues {
+       const bool is_scaled = alignment.kind == AlignmentKind::kSimilarity;
+       return {is_scaled ? std::optional(alignment.scale) : std::nullopt};
+     }}};
 
 // Means of absolute values over the landmarks that are right.
 inline constexpr Metric kCentre = {"centre", "centre", "m", 3};

@@ -19,4 +19,13 @@ Plane Alignment::Apply(const Plane& plane_in_world) const {
   return Transform(truth_from_scaled, Plane{plane_in_world.normal, scale * plane_in_world.offset});
 }
 
+Alignment Alignment::Inverse() const {
+  Alignment inverse;
+  inverse.kind = kind;
+  inverse.scale = 1.0 / scale;
+  inverse.truth_from_scaled = truth_from_scaled.Inverse();
+  inverse.truth_from_scaled.translation /= scale;
+  return inverse;
+}
+
 }  // namespace soslam

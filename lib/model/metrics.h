@@ -44,6 +44,9 @@ struct Alignment {
   int frames = 0;  // frames with an estimated and a true pose
   // Root mean square distance of the camera centres, aligned; none without frames.
   std::optional<double> rmse_m = std::nullopt;
+  // Angle between up of the estimates' own world and up of the truth, with the cameras' rotations
+  // aligned; none where the world is that of the truth, or either up is unknown.
+  std::optional<double> up_error_deg = std::nullopt;
 
   Eigen::Vector3d Apply(const Eigen::Vector3d& point) const {
     return truth_from_scaled * (scale * point);
@@ -51,6 +54,8 @@ struct Alignment {
   Rigid3d Apply(const Rigid3d& world_from_camera) const;
   Landmark Apply(const Landmark& landmark_in_world) const;
   Plane Apply(const Plane& plane_in_world) const;
+  // The transformation alone, of the true world to estimates.
+  Alignment Inverse() const;
 };
 
 // One for each segment, as each has a world of its own, and what is not as asked for.
@@ -178,6 +183,8 @@ struct LandmarkRow {
   std::optional<Explanation> why_false = std::nullopt;
   std::string label = {};  // of the object, where the row was read
   FrontError front = {};
+  // Mean score of its detections, times the share of the segment's frames that they are in.
+  double score = 0.0;
 };
 
 // Summary over the found landmarks for one IoU threshold.
@@ -203,6 +210,9 @@ struct MapScore {
   int found = 0;
   int found_detectable = 0;
   std::optional<double> precision, recall, f1;  // over all true objects
+  // Area under the envelope of the precision over the recall, as landmarks are taken by descending
+  // score.
+  std::optional<double> average_precision = std::nullopt;
   std::optional<double> recall_of_detectable,
       f1_of_detectable;  // undetectable objects count as ignored
   FoundSummary of_found;

@@ -141,6 +141,27 @@ std::string KindOfAlignment(const VariantResult& map) {
   return of_segment.empty() ? kNoValue : NameOf(of_segment.begin()->second.kind);
 }
 
+// Adds how up and scale of maps with a world of their own differ from the truth, by the first
+// segment; nothing where no map has such a world.
+void AddWorlds(const std::vector<VariantResult>& maps, Table* table) {
+  std::vector<Alignment> worlds;
+  for (const VariantResult& map : maps) {
+    const auto& of_segment = map.metrics->map_quality->alignments.of_segment;
+    worlds.push_back(of_segment.empty() ? Alignment() : of_segment.begin()->second);
+  }
+  const auto has_own_up = [](const Alignment& world) { return world.up_error_deg.has_value(); };
+  if (std::ranges::none_of(worlds, has_own_up)) return;
+  for (const auto& metric : kWorldMetrics) {
+    table->header.push_back(metric.Header());
+    for (size_t i = 0; i < worlds.size(); ++i) {
+      table->rows[i].emplace_back(metric.TextOf(worlds[i]));
+    }
+  }
+  table->notes.emplace_back(
+      "Up of map: the angle between its up and the true one. True / map scale: what the map has to "
+      "be multiplied by.");
+}
+
 }  // namespace
 
 std::vector<Table> QualityTables(const DatasetResult& dataset) {
@@ -195,13 +216,14 @@ std::vector<Table> QualityTables(const DatasetResult& dataset) {
   quality.notes = {
       "True objects (detectable ones), landmarks (ignored ones), recall of the detectable at IoU "
       "0.25. Landmarks that match a true object with an IoU of so much or more: how many are "
-      "right, precision, recall, F1, mean IoU.",
+      "right, precision, recall, F1, average precision, mean IoU.",
       odometry_sources.empty() ? "Odometry: not said whose."
                                : fmt::format("Odometry: {}.", fmt::join(odometry_sources, ", "))};
   errors.notes = {
       "Means of absolute values; logarithms are of estimate over truth. Yaw of body: modulo a "
       "quarter turn, as a body with permuted axes is the same. Labels and ids: how many agree. IoU "
       "in the frames that saw what is right or wrong in part, and of the same in the world."};
+  AddWorlds(maps, &errors);
   return {quality, errors};
 }
 

@@ -48,6 +48,10 @@ TEST(AlignTest, UndoesAnyMotionAndScale) {
     EXPECT_EQ(alignment.path, CameraPath::kGeneral);
     EXPECT_NEAR(alignment.scale, scale, 1e-9 * scale);
     ExpectTrue(alignment, scaled);
+    const Rigid3d& truth = scaled[0].truth;
+    const Rigid3d back = alignment.Apply(alignment.Inverse().Apply(truth));
+    EXPECT_LT((back.translation - truth.translation).norm(), 1e-9);
+    EXPECT_LT(back.rotation.angularDistance(truth.rotation), 1e-7);
   }
 }
 

@@ -66,6 +66,50 @@ TEST_F(MapQualityTest, FrontsAreThoseOfFoundObjectsOfTheSameLabel) {
   EXPECT_EQ(quality.scores[0].of_found.fronts->known_but_wrong, 1);
 }
 
+// Precisions 1, 1/2, 2/3, 3/4 at recalls 1/4, 1/4, 2/4, 3/4: the envelope is 1, then 3/4.
+TEST_F(MapQualityTest, AveragePrecisionIsTheAreaUnderTheEnvelope) {
+  for (int i = 0; i < 3; ++i) AddFound();
+  AddTruth();
+  const Landmark nowhere = Shifted(0, {0, 9, 0});
+  DetectNothing(AddLandmark(nowhere));
+  DetectNothing(AddLandmark(Shifted(0, {0, 12, 0}), "mouse"));
+  sequence_.ignored = {{"mouse", std::nullopt}};
+  const auto average_precision = [&](const std::vector<double>& scores) {
+    for (Detection& detection : sequence_.detections) {
+      detection.score = scores[detection.object_index];
+    }
+    return Evaluate().scores[0].average_precision.value();
+  };
+  EXPECT_NEAR(average_precision({0.9, 0.7, 0.6, 0.8, 0.95}), (1.0 + 0.75 + 0.75) / 4.0, 1e-12);
+  EXPECT_NEAR(average_precision({0.7, 0.9, 0.8, 0.6, 0.1}), 3.0 / 4.0, 1e-12);
+  // No landmark comes before others of its score.
+  EXPECT_NEAR(average_precision({0.9, 0.7, 0.6, 0.9, 0.1}), 3.0 * 0.75 / 4.0, 1e-12);
+}
+
+TEST_F(MapQualityTest, TheScoreOfALandmarkCountsFramesWithoutABox) {
+  const int truth = AddTruth();
+  Detect(truth, AddLandmark(Truth(truth)), 0, kFrames / 2);
+  for (Detection& detection : sequence_.detections) detection.score = 0.8;
+  EXPECT_NEAR(Evaluate().landmarks[0].score, 0.4, 1e-12);
+}
+
+TEST_F(MapQualityTest, UpOfAnOwnWorldIsComparedWithThatOfMostTrueObjects) {
+  for (int i = 0; i < 3; ++i) AddFound();
+  sequence_.true_objects[1].truth.landmark_in_world.frame_from_object.rotation =
+      ExpRotation({0.3, 0, 0});
+  Move({AlignmentKind::kSimilarity, CameraPath::kGeneral, 2.0, {ExpRotation({0.2, 0.1, 1}), {}}});
+  Eigen::Vector3d& up = sequence_.planes[0].plane_in_world.normal;
+  up = ExpRotation(0.05 * up.unitOrthogonal()) * up;
+  const auto up_error_deg = [&] { return Evaluate().alignments.of_segment.at(0).up_error_deg; };
+  EXPECT_EQ(up_error_deg(), std::nullopt) << "the world is not said to be another";
+  sequence_.odometry_world = OdometryWorld::kOwnWithScale;
+  EXPECT_NEAR(up_error_deg().value(), 9.0 / std::numbers::pi, 1e-6);
+  for (TrueObject& object : sequence_.true_objects) {
+    object.truth.landmark_in_world.rests_on = RestingFace::kSide;
+  }
+  EXPECT_EQ(up_error_deg(), std::nullopt) << "no object says where up is";
+}
+
 // Without true poses, with the truth of each frame, as KITTI has it.
 TEST_F(MapQualityTest, TheTruthOfAFrameGoesBeforeThatOfTheWorld) {
   const int truth = AddFound();

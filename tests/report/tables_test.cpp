@@ -32,6 +32,7 @@ MapScore Score(int found, double f1) {
   score.precision = 0.875;
   score.recall = 0.625;
   score.f1 = f1;
+  score.average_precision = 0.5625;
   score.recall_of_detectable = 0.75;
   FoundSummary& of_found = score.of_found;
   of_found.iou_mean = 0.5;
@@ -160,8 +161,8 @@ TEST(MapsTable, SaysWhatTheVariantWasGiven) {
   WriteBytes(folder / "associations.json", "");
   const Table table = MapsTable(OneMap(MapMetrics(kExact), folder.path()), {"OursSTE", "OursS"});
   EXPECT_THAT(CellTexts(table),
-              ElementsAre("room OursS estimated given 4 (3) 5 (1) 0.75 3 0.88 0.62 0.75 0.500 2 "
-                          "0.88 0.62 0.50 0.500"));
+              ElementsAre("room OursS estimated given 4 (3) 5 (1) 0.75 3 0.88 0.62 0.75 0.56 0.500 "
+                          "2 0.88 0.62 0.50 0.56 0.500"));
   EXPECT_EQ(table.header.size(), table.rows.front().size());
 }
 
@@ -211,8 +212,10 @@ TEST(QualityTables, HaveARowForEachMap) {
         {"OursS", {}, MapMetrics(OneAlignment(AlignmentKind::kRigid, 1.0, 9, 0.25))}}});
   ASSERT_EQ(tables.size(), 2u);
   EXPECT_EQ(tables[0].name, "map_quality_room");
-  EXPECT_THAT(CellTexts(tables[0]),
-              ElementsAre("OursS 4 (3) 5 (1) 0.75 3 0.88 0.62 0.75 0.500 2 0.88 0.62 0.50 0.500"));
+  EXPECT_THAT(
+      CellTexts(tables[0]),
+      ElementsAre("OursS 4 (3) 5 (1) 0.75 3 0.88 0.62 0.75 0.56 0.500 2 0.88 0.62 0.50 0.56 "
+                  "0.500"));
   EXPECT_THAT(tables[0].notes,
               ElementsAre(testing::StartsWith("True objects"), "Odometry: ORB-SLAM2."));
   EXPECT_EQ(tables[1].name, "map_errors_room");
@@ -220,6 +223,16 @@ TEST(QualityTables, HaveARowForEachMap) {
               ElementsAre("OursS 0.125 0.25 0.10, 0.20, - 0.062 - 1.5 0.010 2.5 2 of 3 1 of 3 "
                           "0.625 0.500"));
   for (const Table& table : tables) EXPECT_EQ(table.header.size(), table.rows.front().size());
+}
+
+TEST(QualityTables, HaveUpAndScaleOfMapsWithAWorldOfTheirOwn) {
+  Alignments own = OneAlignment(AlignmentKind::kSimilarity, 1.25, 9, 0.25);
+  own.of_segment[0].up_error_deg = 2.125;
+  const Table errors = QualityTables(
+      {"room", {{"OursS", {}, MapMetrics(kExact)}, {"OursSP", {}, MapMetrics(own)}}})[1];
+  EXPECT_THAT(errors.header, testing::Contains("up of map deg"));
+  EXPECT_THAT(CellTexts(errors),
+              ElementsAre(testing::EndsWith(" - -"), testing::EndsWith(" 2.1 1.250")));
 }
 
 TEST(DatasetTable, HasColumnsOfFrontsWhereThereAreSome) {
