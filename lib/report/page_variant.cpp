@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "model/map_points.h"
 #include "model/reasons.h"
+#include "model/segments.h"
 #include "report/page_html.h"
 #include "report/page_parts.h"
 
@@ -111,6 +112,36 @@ void AddMap(const MapEstimate& map, const Sequence& sequence, const PageSelectio
   }
 }
 
+// Adds static true objects and true poses, moved to the world of the map, unless that is the true
+// one.
+void AddAlignedTruth(const Sequence& sequence, const PageSelection& selection,
+                     PageVariant* variant) {
+  const auto& quality = variant->metrics.map_quality;
+  if (!quality) return;
+  json objects = json::array(), trajectory = json::array();
+  int place_of_segment = 0;
+  for (const int segment : SegmentsOf(sequence)) {
+    const int place = place_of_segment++;
+    const auto aligned = quality->alignments.of_segment.find(segment);
+    if (aligned == quality->alignments.of_segment.end()) continue;
+    if (aligned->second.kind == AlignmentKind::kNone) return;
+    const Alignment map_from_truth = aligned->second.Inverse();
+    for (const TrueObject& object : sequence.true_objects) {
+      if (object.segment != segment || !object.is_static) continue;
+      Landmark truth = map_from_truth.Apply(object.truth.landmark_in_world);
+      truth.shape_exponents = kCuboidExponent;
+      objects.push_back({{"segment", place}, {"landmark", PageLandmark(truth)}});
+    }
+    for (const int index : selection.frames) {
+      const Frame& frame = sequence.frames[index];
+      if (frame.segment != segment || !frame.true_world_from_camera) continue;
+      const Rigid3d pose = map_from_truth.Apply(*frame.true_world_from_camera);
+      trajectory.push_back({{"segment", place}, {"pose", PagePose(pose)}});
+    }
+  }
+  variant->data["truth"] = {{"objects", objects}, {"trajectory", trajectory}};
+}
+
 // Adds outlines of all estimates and, for each object, its first observation that has a landmark.
 void AddFrames(const LandmarkEstimates& estimates, const Sequence& sequence,
                const PageSelection& selection, PageVariant* variant) {
@@ -176,7 +207,7 @@ json PagePoints(const MapEstimate& map, const std::vector<MapPoint>& points,
 PageVariant ReadPageVariant(const VariantResult& result, const Sequence& sequence,
                             const PageSelection& selection) {
   PageVariant variant = {Utf8(result.name), *result.metrics};
-  for (const char* key : {"trajectory", "solver", "planes", "grids", "points"}) {
+  for (const char* key : {"trajectory", "solver", "planes", "grids", "points", "truth"}) {
     variant.data[key] = nullptr;
   }
   const fs::path& folder = result.folder;
@@ -184,6 +215,7 @@ PageVariant ReadPageVariant(const VariantResult& result, const Sequence& sequenc
     CheckWasMadeOf(folder / "map.json", "map", folder / "sequence.json");
     const MapEstimate map = ReadMap(folder / "map.json", sequence);
     AddMap(map, sequence, selection, &variant);
+    AddAlignedTruth(sequence, selection, &variant);
     const bool has_points = std::ranges::any_of(
         map.objects, [](const ObjectEstimate& object) { return !object.points.empty(); });
     if (has_points && ShowsStage(result, "track", "points.h5")) {

@@ -70,10 +70,12 @@ class MapView {
   }
 
   addObjects() {
+    const aligned = this.shows.truth ? this.alignedTruth("objects") : [];
+    aligned.forEach(({ landmark }) => this.content.add(bodyMesh(landmark, "truth", 0.18)));
     this.variant.objects.forEach((estimate, i) => {
       const { truth, segment } = this.sequence.objects[i];
       if (segment !== this.segment) return;
-      if (this.shows.truth && truth) this.content.add(bodyMesh(truth, "truth", 0.18));
+      if (this.shows.truth && truth && !this.variant.truth) this.content.add(bodyMesh(truth, "truth", 0.18));
       if (!estimate || !estimate.landmark) return;
       const mesh = bodyMesh(estimate.landmark, "estimate", i === this.picked ? 0.85 : 0.55);
       mesh.userData.object = i;
@@ -81,6 +83,11 @@ class MapView {
       this.content.add(mesh, frontBackAxis(estimate));
       if (i === this.picked && estimate.centre_covariance) this.content.add(uncertaintyBody(estimate));
     });
+  }
+
+  // The truth in the map's own world.
+  alignedTruth(list) {
+    return ((this.variant.truth || {})[list] || []).filter(({ segment }) => segment === this.segment);
   }
 
   addGrid() {
@@ -95,7 +102,8 @@ class MapView {
     const { frames } = this.sequence;
     const isHere = (_, i) => frames[i].segment === this.segment;
     this.content.add(threeLine(this.poses().filter(isHere).map((pose) => pose.slice(0, 3)), "detection", 1));
-    const truth = frames.map(({ true_pose }) => true_pose).filter(isHere);
+    const truth = this.variant.truth ? this.alignedTruth("trajectory").map(({ pose }) => pose) :
+      frames.map(({ true_pose }) => true_pose).filter(isHere);
     if (this.shows.truth && truth.every((pose) => pose)) {
       this.content.add(threeLine(truth.map((pose) => pose.slice(0, 3)), "truth", 0.8));
     }
@@ -106,7 +114,7 @@ class MapView {
     const points = this.sequence.frames.filter(({ segment }) => segment === this.segment)
       .map(({ pose }) => new THREE.Vector3(...pose.slice(0, 3)));
     this.sequence.objects.forEach(({ truth, segment }, i) => {
-      const landmark = truth || (this.variant.objects[i] && this.variant.objects[i].landmark);
+      const landmark = (!this.variant.truth && truth) || (this.variant.objects[i] && this.variant.objects[i].landmark);
       if (segment !== this.segment || !landmark) return;
       const turn = new THREE.Quaternion(...landmark.pose.slice(3));
       for (let corner = 0; corner < 8; ++corner) {
