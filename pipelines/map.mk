@@ -7,9 +7,9 @@ steps := $(MAP_ROOT)/steps
 QUIET ?=
 
 # Boxes first: COLMAP finds no features in those of things that move, and a network that cannot run is found out before
-# COLMAP works for minutes.
+# COLMAP works for minutes; so is a truth of other photos.
 .PHONY: dataset
-dataset: $(steps)/detected $(steps)/reconstructed
+dataset: $(steps)/true $(steps)/detected $(steps)/reconstructed
 
 # $(call step,TITLE,COMMAND)
 define step
@@ -34,6 +34,13 @@ $(steps)/dataset: $(steps)/frames $(steps)/camera.txt
 	@rm -f $(folder).new/run.json $(folder).new/timing.json $(folder).new/SHA256SUMS
 	@test -z "$$MAP_CAMERA" || cp -- "$$MAP_CAMERA" $(folder).new/camera.json
 	$(call step,dataset,rm -rf $(folder) && mv $(folder).new $(folder))
+
+# The truth changes no other step.
+$(steps)/true: $(steps)/dataset $(steps)/truth.txt
+	@test ! -d $(MAP_ROOT)/truth || rm -rf $(MAP_ROOT)/truth $(folder)/groundtruth.txt $(folder)/objects.json
+	$(call step,truth,test -z "$$MAP_TRUTH" || { \
+	  $(BIN)/soslam-truth --dataset $(MAP_ROOT)/frames --truth "$$MAP_TRUTH" --output $(MAP_ROOT)/truth $(QUIET) && \
+	  cp $(addprefix $(MAP_ROOT)/truth/,groundtruth.txt objects.json) $(folder); })
 
 # COLMAP's own files stay beside the dataset: it goes on from them. A finished model is turned as the boxes are.
 $(steps)/reconstructed: $(steps)/dataset $(steps)/model.txt $(steps)/detected

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # shellcheck shell=bash
 # map.sh: what `soslam map` does, by which it is read: its settings are those of IMAGES, NETWORK, DETECTIONS, CAMERA,
-# MODEL and EDITS, paths which may be empty and have any characters; SCALE and CAMERA_HEIGHT, numbers, which may be empty. The
-# steps, and the files that tell that they are done, are in map.mk.
+# MODEL, EDITS and TRUTH, paths which may be empty and have any characters; SCALE and CAMERA_HEIGHT, numbers, which may be
+# empty. The steps, and the files that tell that they are done, are in map.mk.
 
 [[ -n $IMAGES ]] || refuse "images are not given; expected a folder of photos, or a video"
 [[ -e $IMAGES ]] || refuse "images are '$IMAGES'; there is no such folder or video" 3
@@ -22,6 +22,12 @@ for file in "$NETWORK" "$DETECTIONS" "$CAMERA" "$EDITS"; do
   [[ -z $file || -f $file ]] || refuse "'$file': no such file" 3
 done
 [[ -z $MODEL || -d $MODEL ]] || refuse "model is '$MODEL'; there is no such folder" 3
+true_files=()
+[[ -z $TRUTH ]] || true_files=("$TRUTH"/{rgb.txt,groundtruth.txt,objects.json})
+for file in "${true_files[@]}"; do
+  [[ -f $file ]] || refuse "truth is '$TRUTH', which has no ${file##*/}; expected an annotated dataset folder of the same \
+photos, with rgb.txt, groundtruth.txt and objects.json" 3
+done
 # The page compares all variants; the map is that of the first one, which needs the stage "optimise".
 [[ $VARIANT != all ]] || VARIANT=OursSP
 variants=$VARIANT
@@ -49,7 +55,7 @@ done
 [[ ${CAMERA_HEIGHT%.*} -le 100 ]] || refuse "camera_height is $CAMERA_HEIGHT; expected metres, at most 100"
 
 export MAP_IMAGES=$IMAGES MAP_NETWORK=$NETWORK MAP_DETECTIONS=$DETECTIONS MAP_CAMERA=$CAMERA MAP_MODEL=$MODEL
-export MAP_ROOT=$MAPS/$NAME MAP_NAME=$NAME MAP_THREADS=$THREADS
+export MAP_TRUTH=$TRUTH MAP_ROOT=$MAPS/$NAME MAP_NAME=$NAME MAP_THREADS=$THREADS
 
 build
 if [[ -z $MODEL ]] && ! command -v colmap > /dev/null; then
@@ -98,6 +104,7 @@ echo "$photos" | keep "$MAP_ROOT/steps/images.txt"
 listed "$CAMERA" | keep "$MAP_ROOT/steps/camera.txt"
 listed "$MODEL" | keep "$MAP_ROOT/steps/model.txt"
 listed "$NETWORK" | keep "$MAP_ROOT/steps/network.txt"
+for file in "${true_files[@]}"; do listed "$file"; done | keep "$MAP_ROOT/steps/truth.txt"
 
 # The settings: those of all maps of photos, with the orientation that the boxes refer to.
 mkdir -p "$MAP_ROOT"/pipelines/{variants,datasets,priors,heads}

@@ -73,6 +73,13 @@ void RunTrainingCrops(const TrainingCropsOptions& options, const StageFiles& fil
 // NothingUsableError if fewer than two frames remain.
 void RunFrames(const FrameOptions& options, const StageFiles& files, int threads);
 
+// soslam-truth: the ground truth of photos, by that of the folder "truth", a dataset with true
+// poses and objects whose images have the names of these photos. Files: "dataset", the folder that
+// soslam-frames wrote; "output", a folder for groundtruth.txt and objects.json. Photos that have no
+// image of their name there have no true pose. Prints a one-line summary. Throws InputError for bad
+// files, frames of a video, and fewer than three photos with a true pose.
+void RunTruth(const NoOptions& options, const StageFiles& files, int threads);
+
 // The classes of a network as the options rename, select and group them, from class 0 on.
 struct DetectorLabels {
   std::vector<std::string> names;

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "artefact/json_file.h"
 #include "dataset/colmap_model.h"
 #include "dataset/labelled_box.h"
 #include "dataset/trajectories.h"
@@ -166,6 +168,40 @@ TEST_F(SlowMapTest, TakesAFinishedModel) {
   EXPECT_THAT(
       RunCommand(Words("map", {programs_, "--detections", detections_, "--name", "room"})).errors,
       HasSubstr("is of other images"));
+}
+
+// The truth has the photos under other times; the map is the same with it.
+TEST_F(SlowMapTest, IsEvaluatedByTheTruthOfItsPhotos) {
+  const fs::path truth = pipeline_.Folder() / "truth of $it",
+                 map = maps_ / "room/results/room/OursSP";
+  fs::create_directory(truth);
+  std::string list, poses;
+  for (TimedPose pose : ReadTrajectory(pipeline_.Dataset() / "groundtruth.txt")) {
+    const auto count = static_cast<int>(std::ranges::count(list, '\n'));
+    pose.timestamp = 100.0 + count;
+    list += fmt::format("{} rgb/IMG {}.png\n", pose.timestamp, count);
+    poses += TrajectoryLine(pose);
+  }
+  WriteBytes(truth / "rgb.txt", list);
+  WriteBytes(truth / "groundtruth.txt", poses);
+  fs::copy(pipeline_.Dataset() / "objects.json", truth);
+  std::vector<std::string> options = {"--model", programs_ / "models/0", "--name", "room"};
+  ExpectSuccess(RunCommand(WordsForPhotos(options)));
+  const auto landmarks = ParseJsonFile(map / "map.json")["objects"];
+  EXPECT_FALSE(ParseJsonFile(map / "metrics.json").contains("map_quality"));
+
+  options.insert(options.end(), {"--truth", truth});
+  EXPECT_THAT(
+      ExpectSuccess(RunCommand(WordsForPhotos(options))),
+      testing::AllOf(HasSubstr("8 of 8 photos have a true pose"), HasSubstr("[room] import"),
+                     testing::Not(HasSubstr("[room] reconstruct"))));
+  EXPECT_EQ(ParseJsonFile(map / "map.json")["objects"], landmarks);
+  const auto quality = ParseJsonFile(map / "metrics.json")["map_quality"];
+  EXPECT_EQ(quality["scores"][0]["found"], 3);
+  EXPECT_LT(quality["alignments"][0]["up_error_deg"], 2.0);
+
+  fs::remove(truth / "objects.json");
+  EXPECT_THAT(RunCommand(WordsForPhotos(options)).errors, HasSubstr("has no objects.json"));
 }
 
 // The model is of the photos as they are stored, the boxes of the upright ones.
