@@ -25,11 +25,7 @@ MIRROR ?=
 MAPS ?= maps
 IMAGES ?=
 NETWORK ?=
-DETECTIONS ?=
-CAMERA ?=
-MODEL ?=
-SCALE ?=
-CAMERA_HEIGHT ?=
+PHOTOS ?=
 BIN := $(BUILD)/bin
 
 # Some shells set NAME to that of the machine: only `make ... NAME=<map>` counts.
@@ -44,7 +40,7 @@ MAKEFLAGS += --no-print-directory
 # What ./soslam is told.
 TOLD := DATASET VARIANT STAGE $(if $(filter file,$(origin DATA_ROOT)),,DATA_ROOT) RESULTS PIPELINES THREADS BUILD BIN \
   OUTSIDE_PATHS LAUNCH DOWNLOADS ANNOTATIONS NETWORKS WITHOUT MIRROR MAPS IMAGES NETWORK DETECTIONS CAMERA MODEL EDITS \
-  SCALE CAMERA_HEIGHT NAME
+  TRUTH SCALE CAMERA_HEIGHT NAME
 SOSLAM = SETTINGS_OF_MAKE=yes $(foreach name,$(TOLD),$(name)='$(subst ','\'',$(value $(name)))') JOBS= MAKE='$(MAKE)' ./soslam
 
 # What make itself uses; ./soslam checks what it is told.
@@ -54,8 +50,8 @@ $(foreach name,RESULTS BUILD DATA_ROOT PIPELINES,$(if $(filter-out 1,$(words $(v
 # A variable that is misspelt would be ignored without a word. A make above this one has variables of its own.
 ifeq ($(MAKELEVEL),0)
 given-names = $(foreach name,$(.VARIABLES),$(if $(filter command,$(origin $(name))),$(name)))
-KNOWN := $(TOLD) DATA_ROOT CMAKE_ARGS DATASETS SCENES SEEDS SBATCH QUIET CC CXX SHELL %FLAGS CMAKE_% SOSLAM_% MAKE% \
-  CTEST_% GTEST_% VERBOSE %_proxy TMPDIR DEBIAN_FRONTEND
+KNOWN := $(TOLD) DATA_ROOT CMAKE_ARGS DATASETS SCENES SEEDS SBATCH PHOTOS QUIET CC CXX SHELL %FLAGS CMAKE_% SOSLAM_% \
+  MAKE% CTEST_% GTEST_% VERBOSE %_proxy TMPDIR DEBIAN_FRONTEND
 $(foreach name,$(filter-out $(KNOWN) -%,$(given-names)), \
   $(error $(name)=...: no variable of this Makefile has this name))
 endif
@@ -63,7 +59,7 @@ endif
 COMMANDS := clean map data network doctor export explain check-minima status report tables results-page verify reproduce \
   train-head
 .PHONY: $(COMMANDS) help demo run run-built plan ablation scenes sweep submit setup build test test-slow test-build \
-  test-slurm bench formatter format format-check clean distclean
+  test-slurm check-photos bench formatter format format-check clean distclean
 
 help: ## List the targets
 	@echo 'make <target> [NAME=value ...]; ./soslam help says what values there are: --data_root is DATA_ROOT'
@@ -170,6 +166,10 @@ test-slurm: build ## Install Slurm, and run the tests of sweeps on a cluster of 
 	@pipelines/install-packages.sh slurm
 	@pipelines/build.sh $(BUILD) slurm_test
 	@SOSLAM_SLURM=required ctest --test-dir $(BUILD) --output-on-failure --tests-regex '^slurm'
+
+check-photos: ## Make maps of annotated photos in DATA_ROOT, PHOTOS=<names>, with NETWORK=<file.onnx>; see tests/photos
+	@tests/photos/check --data_root '$(DATA_ROOT)' --network '$(NETWORK)' --maps '$(MAPS)' --results '$(RESULTS)' \
+	  --build '$(BUILD)' --photos '$(PHOTOS)'
 
 # Five repetitions, each of a tenth of a second or more: the table has their medians.
 bench: $(BUILD)/build.ninja ## Measure how long things take, beside the paper's method: RESULTS/bench.md, bench.json
