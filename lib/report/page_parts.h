@@ -235,10 +235,9 @@ struct PageVariant {
   //     counts of residuals used and left out
   //   planes: those of the map, see PageGrids, and grids, by selected frame, see PageGridInFrame;
   //     both null if they are the sequence's
-  //   truth: of a map with a world of its own, true objects (segment, landmark) and true poses of
-  //   the selected frames (segment, pose), moved to that; null where the truth is in the map's
-  //   world points: by selected detection the image points of the object's points, [x, y,
-  //   responsibility
+  //   truth: in the map's world true objects (segment, landmark), and true poses of the selected
+  //     frames (segment, pose); null where that is the true one
+  //   points: by selected detection the image points of the object's points, [x, y, responsibility
   //     in %, ...], or null; null without any. Of objects that have some: their count, and
   //     of_object, the sum of their responsibilities
   nlohmann::json data = {};
