@@ -6,9 +6,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "geometry/angles.h"
-#include "model/segments.h"
 
 namespace soslam {
 namespace {
@@ -110,13 +110,27 @@ std::optional<Eigen::Vector3d> TrueUp(const Sequence& sequence, int segment) {
   });
 }
 
+// The normal of the support plane of most detections in a segment, however the cameras are held.
+// None without one.
+std::optional<Eigen::Vector3d> EstimatedUp(const Sequence& sequence, int segment) {
+  std::map<int, int> detections;  // number by plane
+  for (const Detection& detection : sequence.detections) {
+    const int plane = sequence.ObjectOf(detection).plane_index;
+    if (plane != kNoPlane && sequence.FrameOf(detection).segment == segment) ++detections[plane];
+  }
+  if (detections.empty()) return std::nullopt;
+  const auto most =
+      std::ranges::max_element(detections, {}, [](const auto& entry) { return entry.second; });
+  return sequence.planes[most->first].plane_in_world.normal;
+}
+
 std::optional<double> UpErrorDeg(const Sequence& sequence, int segment,
                                  const std::vector<PosePair>& pairs) {
-  const bool has_own_up =
-      sequence.odometry_world != OdometryWorld::kOfTruth && sequence.HasSupports();
+  if (sequence.odometry_world == OdometryWorld::kOfTruth || pairs.empty()) return std::nullopt;
+  const auto estimated_up = EstimatedUp(sequence, segment);
   const auto true_up = TrueUp(sequence, segment);
-  if (!has_own_up || !true_up || pairs.empty()) return std::nullopt;
-  return AngleBetweenDeg(MeanRotation(pairs) * UpOfSegment(sequence, segment), *true_up);
+  if (!estimated_up || !true_up) return std::nullopt;
+  return AngleBetweenDeg(MeanRotation(pairs) * *estimated_up, *true_up);
 }
 
 }  // namespace
