@@ -155,6 +155,7 @@ Associations ReportOf(const Sequence& sequence, const Association& association,
     row.feet_are_hidden = track.fit && track.fit->feet_are_hidden;
     row.detections = static_cast<int>(track.detections.size());
     row.frames_in_sight = track.frames_in_sight;
+    row.overlap_by_boxes = track.overlap_by_boxes;
     report.tracks.push_back(row);
   }
   for (size_t i = 0; i < association.objects.size(); ++i) {

@@ -57,6 +57,8 @@ struct Track {
   TrackFate fate = TrackFate::kObject;
   // Number of frames that should show the object; none when it was not needed to decide the fate.
   std::optional<int> frames_in_sight;
+  // OverlapByBoxes; none where an image shows it whole, or it was not needed to decide the fate.
+  std::optional<double> overlap_by_boxes;
   // None: no edit names it. Otherwise its boxes stay with it, whether its body explains them or
   // not, and it is an object, however rarely it is seen, unless it is deleted.
   std::optional<ByHand> by_hand;

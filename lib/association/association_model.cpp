@@ -258,6 +258,11 @@ std::vector<std::optional<BoxMatch>> AssociationModel::Explain(const Track& trac
   return matches;
 }
 
+double AssociationModel::OverlapByBoxes(const Track& track) const {
+  return soslam::OverlapByBoxes(sequence_, track.detections, PriorOf(track, track.fit_label),
+                                options_, *track.fit);
+}
+
 bool AssociationModel::Moves(const Track& track) const {
   return moving_labels_.contains(NormalisedLabel(soslam::LabelOf(track)));
 }

@@ -68,6 +68,8 @@ class AssociationModel {
   // True if the segment of two tracks is the same and the detector may give the labels of the other
   // track to an object like the first.
   bool MayBeOneObject(const Track& one, const Track& other) const;
+  // OverlapByBoxes of a track that has a landmark.
+  double OverlapByBoxes(const Track& track) const;
   // True if the label of a track is one of things that move.
   bool Moves(const Track& track) const;
   // Cost of assigning the detection to an unseen object, comparable to BoxMatch::cost.

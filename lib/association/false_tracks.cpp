@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <vector>
 
@@ -50,21 +51,19 @@ void DropFalseTracks(const AssociationModel& model, int threads, Association* as
   const double border_px = SmallestDistanceToBorder(model.sequence());
   ParallelFor("tracks", association->tracks.size(), threads, [&](size_t i) {
     Track& track = association->tracks[i];
-    int three_edges = 0;  // detections that show at least three of its edges
     bool is_whole = false;
     double best_score = 0.0;
     double smallest_height = std::numeric_limits<double>::infinity();
     for (const int index : track.detections) {
       const Detection& detection = model.DetectionAt(index);
-      const auto hidden_edges = std::ranges::count(detection.is_one_sided, true);
-      if (hidden_edges <= 1) ++three_edges;
-      if (hidden_edges == 0) is_whole = true;
+      if (std::ranges::count(detection.is_one_sided, true) == 0) is_whole = true;
       best_score = std::max(best_score, detection.score);
       smallest_height = std::min(smallest_height, detection.box.Height());
     }
     const AssociateOptions& options = model.options();
-    const bool has_detections = three_edges >= options.min_observations;
+    const bool has_detections = std::ssize(track.detections) >= options.min_observations;
     if (track.fit && has_detections) {
+      if (!is_whole) track.overlap_by_boxes = model.OverlapByBoxes(track);
       track.frames_in_sight = static_cast<int>(
           track.detections.size() +
           std::ranges::count_if(MissesOf(model, track), [&](const Miss& miss) {
@@ -75,8 +74,10 @@ void DropFalseTracks(const AssociationModel& model, int threads, Association* as
       if (track.by_hand && track.by_hand->is_deleted) return TrackFate::kDeleted;
       if (track.by_hand) return track.fit ? TrackFate::kObject : TrackFate::kNoLandmark;
       if (!has_detections) return TrackFate::kTooFewDetections;
-      if (!is_whole) return TrackFate::kNeverWhole;
       if (!track.fit) return TrackFate::kNoLandmark;
+      if (track.overlap_by_boxes && *track.overlap_by_boxes < options.min_overlap_by_boxes) {
+        return TrackFate::kUndetermined;
+      }
       if (!track.has_support) return TrackFate::kNoSupport;
       if (model.Moves(track)) return TrackFate::kMoves;
       if (best_score < options.min_best_score) return TrackFate::kLowScores;

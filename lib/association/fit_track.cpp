@@ -3,8 +3,11 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <random>
 
+#include "geometry/iou.h"
 #include "initialisation/fit_object.h"
 #include "initialisation/upright.h"
 
@@ -18,6 +21,14 @@ using Information =
 using ParameterJacobian =
     Eigen::Matrix<double, kLandmarkDof, Eigen::Dynamic, 0, kLandmarkDof, kMaxParameters>;
 
+// Information of a weak prior that keeps that of boxes regular, as standard deviations: yaw uniform
+// over half a turn, foot anywhere (m), log half axes 1, height anywhere (m).
+Information WeakInformation(Eigen::Index parameters) {
+  Eigen::Matrix<double, kMaxParameters, 1> sigmas;
+  sigmas << std::numbers::pi / std::sqrt(12.0), 1e3, 1e3, 1.0, 1.0, 1.0, 1e3;
+  return sigmas.head(parameters).array().square().inverse().matrix().asDiagonal();
+}
+
 // The landmark with its marginal covariance, including that of `up`: the landmark tilts with `up`,
 // and its other parameters adapt so that it still fits the boxes.
 FittedObject FittedAt(const ObjectEvidence& evidence, const Landmark& landmark,
@@ -26,14 +37,8 @@ FittedObject FittedAt(const ObjectEvidence& evidence, const Landmark& landmark,
                                              .ParameterJacobian(landmark)
                                              .leftCols(evidence.height_is_free ? 7 : 6);
   const LandmarkModel model = ModelOf(CostsAt(evidence, landmark), landmark);
-  // Weak prior that keeps the information regular, as standard deviations: yaw uniform over half a
-  // turn, foot anywhere (m), log half axes 1.
-  Eigen::Matrix<double, kMaxParameters, 1> sigmas;
-  sigmas << std::numbers::pi / std::sqrt(12.0), 1e3, 1e3, 1.0, 1.0, 1.0, 1e3;
-  const Information prior_information =
-      sigmas.head(d_parameters.cols()).array().square().inverse().matrix().asDiagonal();
-  const Information information =
-      prior_information + d_parameters.transpose() * model.information * d_parameters;
+  const Information information = WeakInformation(d_parameters.cols()) +
+                                  d_parameters.transpose() * model.information * d_parameters;
   const Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kMaxParameters, 3> mixed =
       d_parameters.transpose() * model.information.leftCols<3>();
   const Eigen::LDLT<Information> solver(information);
@@ -124,6 +129,44 @@ std::optional<FittedObject> FitTrack(const Sequence& sequence, const std::vector
   hidden->prior_cost -= std::log(kHiddenFeet);
   hidden->feet_are_hidden = true;
   return hidden->cost < best->cost ? hidden : best;
+}
+
+double OverlapByBoxes(const Sequence& sequence, const std::vector<int>& detections,
+                      const ShapePrior& prior, const AssociateOptions& options,
+                      const FittedObject& object) {
+  constexpr int kSamples = 500;
+  const Landmark& landmark = object.landmark_in_world;
+  ObjectEvidence evidence =
+      EvidenceInWorld(sequence, SpreadOver(detections, static_cast<size_t>(options.max_views)),
+                      prior, options.upright);
+  evidence.prior.reset();
+  evidence.plane = SupportPlaneOf(landmark);
+  WeighViews(options.upright.ViewCorrelation(), &evidence);
+  for (BoxView& view : evidence.views) {
+    if (object.feet_are_hidden) view.edges[3].is_one_sided = true;
+    for (BoxEdge& edge : view.edges) {
+      if (edge.is_one_sided) edge.sigma_px = std::numeric_limits<double>::infinity();
+    }
+  }
+  const UprightGround ground(evidence.plane);
+  const ParameterJacobian d_parameters = ground.ParameterJacobian(landmark).leftCols<6>();
+  const Information information =
+      WeakInformation(6) + d_parameters.transpose() *
+                               ModelOf(CostsAt(evidence, landmark), landmark).information *
+                               d_parameters;
+  const Eigen::LLT<Information> root(information);
+  std::mt19937 random;
+  std::normal_distribution<double> normal;
+  double sum = 0.0;
+  for (int i = 0; i < kSamples; ++i) {
+    Eigen::Matrix<double, 6, 1> draw;
+    for (double& value : draw) value = normal(random);
+    UprightVector parameters = ground.ParametersOf(landmark);
+    parameters.head<6>() += root.matrixU().solve(draw);
+    sum += BoxIou(landmark,
+                  ground.LandmarkAt(parameters, landmark.shape_exponents, landmark.rests_on));
+  }
+  return sum / kSamples;
 }
 
 }  // namespace soslam

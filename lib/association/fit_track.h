@@ -57,4 +57,12 @@ std::optional<FittedObject> FitTrack(const Sequence& sequence, const std::vector
                                      const std::variant<Plane, UpEstimate>& support_in_world,
                                      const TrackFitOptions& how = {});
 
+// How well an object's boxes alone determine its body, on a support plane through its foot: the
+// expected intersection over union of the body with one drawn from what the boxes leave possible.
+// The sizes of its label do not count, and neither do one-sided edges, which limit a body but do
+// not measure it. `prior` gives the bias of box edges. Random numbers are the same in each call.
+double OverlapByBoxes(const Sequence& sequence, const std::vector<int>& detections,
+                      const ShapePrior& prior, const AssociateOptions& options,
+                      const FittedObject& object);
+
 }  // namespace soslam

@@ -54,6 +54,7 @@ struct AssociateOptions {
   double duplicate_overlap = 0.85;
   double same_place_overlap = 0.5;
   int min_observations = 3;
+  double min_overlap_by_boxes = 0.25;
   double min_detection_share = 0.1;
   double min_best_score = 0.35;
   int max_views = 16;
@@ -122,9 +123,12 @@ struct AssociateOptions {
     visit.Real("same_place_overlap", &same_place_overlap, {0.0, 1.0},
                "two bodies that share at least this fraction of the smaller one's volume are at "
                "one place, where two objects of like labels hardly are");
-    visit.Integer(
-        "min_observations", &min_observations, {1, 1000000},
-        "objects with fewer detections that show at least three of their edges are false");
+    visit.Integer("min_observations", &min_observations, {1, 1000000},
+                  "objects with fewer detections are false");
+    visit.Real("min_overlap_by_boxes", &min_overlap_by_boxes, {0.0, 1.0},
+               "objects that no image shows whole are false if their boxes alone, without the "
+               "sizes of a label, determine less of their body: expected intersection over union "
+               "of the body with one that the boxes allow");
     visit.Real("min_detection_share", &min_detection_share, {0.0, 1.0},
                "objects that are detected in a smaller share of the frames that should show them "
                "are false");

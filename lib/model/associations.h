@@ -40,12 +40,12 @@ enum class TrackFate {
   kNoSupport,         // its boxes fit better at a free height than on any support plane
   kMoves,             // its label is one of things that move
   kLowScores,         // false: none of its detections has min_best_score
-  kNeverWhole,        // false: none of its detections shows all edges
+  kUndetermined,      // false: its boxes determine its body less than min_overlap_by_boxes asks
   kDeleted,           // an edit deletes it
 };
 inline constexpr std::array kTrackFateNames = {
     "object", "too_few_detections", "rarely_detected", "no_landmark", "no_support",
-    "moves",  "low_scores",         "never_whole",     "deleted"};
+    "moves",  "low_scores",         "undetermined",    "deleted"};
 inline constexpr const auto& NamesOf(TrackFate) { return kTrackFateNames; }
 
 struct Associations {
@@ -74,6 +74,7 @@ struct Associations {
     int detections = 0;
     bool feet_are_hidden = false;
     std::optional<int> frames_in_sight = {};
+    std::optional<double> overlap_by_boxes = {};
   };
   struct ObjectRow {
     int object = 0;
@@ -163,13 +164,14 @@ void Describe(Visitor& visit, Associations::DetectionRow& row) {
 template <typename Visitor>
 void Describe(Visitor& visit, Associations::TrackRow& row) {
   visit.Field("track", &row.track, "position in this list, from 0", kNotNegative);
-  visit.Field("fate", &row.fate,
-              "object: it is one; the others are false: too_few_detections; rarely_detected, for "
-              "the frames that should show it; "
-              "no_landmark: its boxes determine no body; no_support: they fit better at a free "
-              "height than on any support plane; moves: its label is one of moving_labels; "
-              "low_scores: none of its detections has min_best_score; never_whole: none of its "
-              "detections shows all edges; deleted: by an edit");
+  visit.Field(
+      "fate", &row.fate,
+      "object: it is one; the others are false: too_few_detections; rarely_detected, for "
+      "the frames that should show it; "
+      "no_landmark: its boxes determine no body; no_support: they fit better at a free "
+      "height than on any support plane; moves: its label is one of moving_labels; "
+      "low_scores: none of its detections has min_best_score; undetermined: no image shows it "
+      "whole, and overlap_by_boxes is below min_overlap_by_boxes; deleted: by an edit");
   visit.Field("boxes", &row.boxes, "all that are of it", kAtLeastOne);
   visit.Field("detections", &row.detections, "those that are used, one per frame", kAtLeastOne);
   visit.Field("feet_are_hidden", &row.feet_are_hidden,
@@ -178,6 +180,11 @@ void Describe(Visitor& visit, Associations::TrackRow& row) {
               "frames that should show it: in the image, near enough and not hidden; null where "
               "its fate was decided without",
               kNotNegative);
+  visit.OrAbsent("overlap_by_boxes", &row.overlap_by_boxes,
+                 "how well its boxes alone determine its body: expected intersection over union "
+                 "with one that they allow, whatever the sizes of its label; absent where an image "
+                 "shows it whole, or its fate was decided without",
+                 kShare);
 }
 
 template <typename Visitor>

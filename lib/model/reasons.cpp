@@ -42,8 +42,8 @@ const Reason kReasons[] = {
     {"without_object_id", "without object id", "a tracker that finds few tracks",
      "no object_id and estimated association"},
     // Tracks that are no objects, and objects without a landmark.
-    {"too_few_detections", "seen too rarely with three of its edges"},
-    {"never_whole", "shown whole by no image"},
+    {"too_few_detections", "seen too rarely"},
+    {"undetermined", "seen too little of to tell its size and place"},
     {"no_support", "off all support planes: it may hang on a wall"},
     {"moves", "of a kind that moves"},
     {"deleted", "deleted by hand"},

@@ -80,13 +80,22 @@ TEST_F(TrackTest, WhatIsRarelyDetectedThoughInSightIsFalse) {
   EXPECT_EQ(FateOf(track), TrackFate::kObject);
 }
 
-TEST_F(TrackTest, WhatIsNeverSeenWholeIsNoObject) {
+TEST_F(TrackTest, WhatItsBoxesDoNotDetermineIsNoObject) {
   const int track = AddTrack(of_objects_[0]);
   for (const int index : of_objects_[0]) {
-    sequence_.detections[index].is_one_sided = {true, false, false, false};
+    sequence_.detections[index].is_one_sided = {true, false, false, true};
   }
-  EXPECT_EQ(FateOf(track), TrackFate::kNeverWhole);
-  sequence_.detections[of_objects_[0][2]].is_one_sided = {};
+  EXPECT_EQ(FateOf(track), TrackFate::kUndetermined);
+  EXPECT_LT(TrackAt(track).overlap_by_boxes.value(), options_.min_overlap_by_boxes);
+  options_.min_overlap_by_boxes = 0.0;
+  EXPECT_EQ(FateOf(track), TrackFate::kObject);
+}
+
+TEST_F(TrackTest, WhatImagesShowTogetherIsAnObjectThoughNoneShowsItWhole) {
+  const int track = AddTrack(of_objects_[0]);
+  for (size_t i = 0; i < of_objects_[0].size(); ++i) {
+    sequence_.detections[of_objects_[0][i]].is_one_sided[i % 4] = true;
+  }
   EXPECT_EQ(FateOf(track), TrackFate::kObject);
 }
 

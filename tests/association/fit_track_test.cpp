@@ -86,5 +86,60 @@ TEST(FitObjectTest, StartsReplaceTheProfile) {
   EXPECT_NEAR(again->prior_cost, fit->prior_cost, 1e-3);
 }
 
+// An object that is seen from many sides.
+class OverlapByBoxesTest : public testing::Test {
+ protected:
+  OverlapByBoxesTest() {
+    for (size_t i = 0; i < sequence_.detections.size(); ++i) all_.push_back(static_cast<int>(i));
+  }
+  double Overlap() const {
+    const auto object =
+        FitTrack(sequence_, all_, prior_, options_, sequence_.planes[0].plane_in_world);
+    return object ? OverlapByBoxes(sequence_, all_, prior_, options_, *object) : -1.0;
+  }
+
+  AssociateOptions options_ = EstimatedAssociation();
+  ShapePrior prior_ = *UnknowingTable().default_prior;
+  Sequence sequence_ = SyntheticSequence(LabelledScene(4, 1, 40, {"box"}), false);
+  std::vector<int> all_;
+};
+
+TEST_F(OverlapByBoxesTest, GrowsToOneWithBetterBoxes) {
+  const double before = Overlap();
+  EXPECT_GT(before, 0.25);
+  options_.upright.detection_sigma_fraction = 1e-3;  // with a floor of 1 px
+  EXPECT_GT(Overlap(), before);
+  EXPECT_LE(Overlap(), 1.0);
+}
+
+TEST_F(OverlapByBoxesTest, IsNearZeroWhereAllEdgesAreCutOff) {
+  const auto object =
+      FitTrack(sequence_, all_, prior_, options_, sequence_.planes[0].plane_in_world);
+  ASSERT_TRUE(object);
+  for (Detection& detection : sequence_.detections) {
+    detection.is_one_sided = {true, true, true, true};
+  }
+  EXPECT_LT(OverlapByBoxes(sequence_, all_, prior_, options_, *object), 0.01);
+}
+
+// Every edge is seen in some images, none in all.
+TEST_F(OverlapByBoxesTest, NeedsNoWholeBox) {
+  for (size_t i = 0; i < sequence_.detections.size(); ++i) {
+    sequence_.detections[i].is_one_sided[i % 4] = true;
+  }
+  EXPECT_GT(Overlap(), 0.25);
+}
+
+TEST_F(OverlapByBoxesTest, DoesNotCountWhatTheLabelTells) {
+  const auto object =
+      FitTrack(sequence_, all_, prior_, options_, sequence_.planes[0].plane_in_world);
+  ASSERT_TRUE(object);
+  ShapePrior sure = prior_;
+  sure.log_sigma.setConstant(1e-3);
+  sure.height_m = LogNormal{1.0, 1e-3};
+  EXPECT_EQ(OverlapByBoxes(sequence_, all_, sure, options_, *object),
+            OverlapByBoxes(sequence_, all_, prior_, options_, *object));
+}
+
 }  // namespace
 }  // namespace soslam

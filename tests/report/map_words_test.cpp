@@ -176,7 +176,7 @@ Associations::TrackRow Track(TrackFate fate) {
 class TracksLeftOutTest : public testing::Test {
  protected:
   TracksLeftOutTest() {
-    associations_.tracks = {Track(TrackFate::kObject), Track(TrackFate::kNeverWhole),
+    associations_.tracks = {Track(TrackFate::kObject), Track(TrackFate::kUndetermined),
                             Track(TrackFate::kMoves)};
     Add(0, 1, "chair");  // used
     Add(1, {}, "cup");   // of a track that was left out
@@ -203,7 +203,7 @@ TEST_F(TracksLeftOutTest, HaveAllTheirBoxes) {
   const std::vector<NotPlaced> things = TracksLeftOut(associations_, sequence_);
   ASSERT_EQ(things.size(), 2u);
   EXPECT_EQ(things[0].label, "mug");  // two of three boxes
-  EXPECT_EQ(things[0].reason, "shown whole by no image");
+  EXPECT_EQ(things[0].reason, "seen too little of to tell its size and place");
   ASSERT_EQ(things[0].boxes.size(), 3u);
   EXPECT_EQ(things[0].boxes[1].frame_index, 2);
   EXPECT_EQ(things[0].boxes[1].box, (Box{20.0, 10.0, 40.0, 40.0}));
