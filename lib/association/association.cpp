@@ -79,7 +79,7 @@ Track Finished(const AssociationModel& model, const Cluster& cluster,
       if (track.by_hand->named.contains(boxes[i])) {
         candidates[i].emplace().cost = (matches[i] ? matches[i]->cost : 0.0) - kMostCost;
       } else if (track.by_hand->grouped.contains(boxes[i]) && !matches[i]) {
-        candidates[i].emplace().cost = kMostCost;
+        candidates[i] = BoxMatch{0.0, 0.0, BoxSide::kLeft, kMostCost};  // after all matches
       }
     }
     const std::vector<bool> used_before =

@@ -63,7 +63,7 @@ void DropFalseTracks(const AssociationModel& model, int threads, Association* as
     const AssociateOptions& options = model.options();
     const bool has_detections = std::ssize(track.detections) >= options.min_observations;
     if (track.fit && has_detections) {
-      if (!is_whole) track.overlap_by_boxes = model.OverlapByBoxes(track);
+      if (!is_whole && !track.by_hand) track.overlap_by_boxes = model.OverlapByBoxes(track);
       track.frames_in_sight = static_cast<int>(
           track.detections.size() +
           std::ranges::count_if(MissesOf(model, track), [&](const Miss& miss) {

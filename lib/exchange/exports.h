@@ -95,7 +95,7 @@ struct ColmapTexts {
 // ToColmap.
 ColmapTexts ColmapModelTexts(const World& world, const std::filesystem::path& images);
 
-// transforms.json of nerfstudio: frames that have an image, sorted by id, with the camera's axes as
+// transforms.json of nerfstudio: frames that have an image, with the camera's axes as
 // OpenGL has them (x right, y up, z backward), the lens of the image files, and pixels that count
 // from the outer corner of the top-left one. Paths of images begin with `dataset`, the dataset
 // folder as seen from the file. The world has an image at least. Throws InputError for a lens that

@@ -283,8 +283,10 @@ double CostOfSupport(double standing, double objects) {
     return log_beta(standing + stands, objects - standing + does_not) - log_beta(stands, does_not);
   };
   const auto mixed = [&](double stands, double does_not) {
-    return std::log((1.0 - kUnlikeRooms) * std::exp(log_probability(stands, does_not)) +
-                    kUnlikeRooms * std::exp(log_probability(1.0, 1.0)));
+    const double like_rooms = log_probability(stands, does_not), even = log_probability(1.0, 1.0);
+    const double most = std::max(like_rooms, even);
+    return most + std::log((1.0 - kUnlikeRooms) * std::exp(like_rooms - most) +
+                           kUnlikeRooms * std::exp(even - most));
   };
   return mixed(5.3, 23.7) - mixed(125.6, 17.0);
 }

@@ -11,8 +11,8 @@
 
 namespace soslam {
 
-// Checks whose findings mean that up may be quite wrong: few objects stand on planes; planes say
-// another way to hold the cameras than boxes; only planes tell up.
+// Checks whose findings mean that up may be quite wrong: few objects stand on planes; only
+// planes tell up.
 inline constexpr const char* kFewObjectsOnPlanesCheck = "few_objects_on_planes";
 inline constexpr const char* kCamerasTurnedCheck = "cameras_turned";
 

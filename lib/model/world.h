@@ -306,7 +306,8 @@ void Describe(Visitor& visit, WorldReport::Up& up) {
               "between up without the points and up", kNotNegative);
   visit.OrDefault("tried", &up.tried, {},
                   "ways to hold the cameras, but for those that are 10000 times less probable "
-                  "before planes are looked for");
+                  "before planes are looked for; without turned, which is tried where fewer than "
+                  "half of the objects stand on planes");
 }
 template <typename Visitor>
 void Describe(Visitor& visit, WorldReport::SupportRow& row) {

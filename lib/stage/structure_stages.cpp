@@ -317,10 +317,13 @@ void RunPlanes(const PlanesOptions& options, const StageFiles& files, int thread
 
 namespace {
 
-// What turns.json of the dataset folder has of the frames; empty where there is none.
+// What turns.json of the dataset folder has of the frames; empty where there is none, or it is of
+// upright images and the cameras are of stored ones.
 std::vector<TurnedImage> TurnedImages(const Sequence& sequence, const StageFiles& files,
                                       std::vector<std::filesystem::path>* inputs) {
-  if (!files.contains("dataset")) return {};
+  if (!files.contains("dataset") || sequence.image_orientation == ImageOrientation::kStored) {
+    return {};
+  }
   const std::filesystem::path path = files.at("dataset") / "turns.json";
   if (!std::filesystem::exists(path)) return {};
   inputs->push_back(path);
@@ -351,9 +354,11 @@ void RunGround(const GroundOptions& options, const StageFiles& files, int thread
                      TurnedImages(sequence, files, &info.inputs),
                      ReadSemanticTable(files.at("table")), options, threads);
   info.findings = CheckGround(estimate, options);
-  std::ranges::move(CheckUp(estimate.up_of_cameras.holding, estimate.up_of_cameras.holdings,
-                            estimate.up_of_cameras.holding_tilt_variance),
-                    std::back_inserter(info.findings));
+  if (!estimate.cameras_are_turned) {
+    std::ranges::move(CheckUp(estimate.up_of_cameras.holding, estimate.up_of_cameras.holdings,
+                              estimate.up_of_cameras.holding_tilt_variance),
+                      std::back_inserter(info.findings));
+  }
   ReportFindings("ground", info.findings);
   WriteWorld(files.at("world"), ReportOf(estimate, sequence, info.findings), info);
   Sequence grounded = WithGround(sequence, estimate);

@@ -58,8 +58,6 @@ TEST(ScaleFromWorld, SaysWhatContradictsScaleAndUp) {
     return ScaleFromWorld(world, {}).warning;
   };
   EXPECT_THAT(warning_of("up_direction"), HasSubstr("objects look alike in other ways to hold"));
-  EXPECT_THAT(warning_of("camera_holding_of_planes"),
-              HasSubstr("flat surfaces contradict each other"));
   EXPECT_EQ(warning_of("cameras_turned"),
             "The scale may be wrong by more than that: the heights of objects contradict one "
             "another. Up may be wrong by more than that: the photos are turned in many ways.");
