@@ -8,7 +8,6 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
-#include <iterator>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -283,8 +282,9 @@ std::vector<Cluster> WithEdits(const AssociationModel& model, const FoundEdits& 
     by_hand.grouped = std::move(grouped);
     for (const int e : named_by->second) {
       if (edits[e].kind == EditKind::kJoin || edits[e].kind == EditKind::kSplit) {
-        std::ranges::copy_if(found.boxes[e], std::inserter(by_hand.named, by_hand.named.end()),
-                             [&](int box) { return object_of(box) == object; });
+        for (const int box : found.boxes[e]) {
+          if (object_of(box) == object) by_hand.named.insert(box);
+        }
       }
       if (edits[e].kind == EditKind::kDelete) by_hand.is_deleted = true;
       if (edits[e].kind == EditKind::kRename) by_hand.label = edits[e].label;

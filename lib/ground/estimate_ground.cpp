@@ -128,18 +128,15 @@ struct UpHypothesis {
   }
 };
 
-// Cameras that all look in one direction do not tell vertical edges from others. Where more points
-// lie on planes without them, they are ignored; where nearly as many do, up is ambiguous.
+// Edges that are taken for vertical need not be: those of flat things, seen from above, or any
+// where all cameras look in one direction. Where more points lie on planes without them, they are
+// ignored; where nearly as many do, up is ambiguous.
 void CheckVerticals(const std::vector<GroundPoint>& points, UpHypothesis* hypothesis) {
-  constexpr double kRoughly = 10.0 * kRadPerDeg;
   constexpr double kSameUp = 3.0 * kRadPerDeg;
   constexpr double kShare = 0.1;  // as many fewer points make a direction e times less probable
+  if (!hypothesis->result.verticals) return;
   HorizontalPlanes& planes = hypothesis->planes;
   const UpPrior& without_verticals = hypothesis->without_verticals;
-  if (!hypothesis->result.verticals ||
-      std::sqrt(TiltCovariance(without_verticals).trace()) < kRoughly) {
-    return;
-  }
   HorizontalPlanes other = FindHorizontalPlanes(points, without_verticals);
   const double angle = AngleBetween(planes.up_in_world, other.up_in_world);
   if (angle < kSameUp || other.planes.empty()) return;
@@ -296,6 +293,7 @@ double CostOfSupport(double standing, double objects) {
 // than half of the objects stand in the best other one.
 UpHypothesis BestHypothesis(const NormalisedInput& input, const UpEstimate& of_boxes,
                             const std::vector<SegmentView>& views) {
+  constexpr double kClear = 0.1;  // high because level cameras are usual
   const double kWorthFollowing = std::log(1e4);
   std::vector<UpHypothesis> hypotheses;
   for (const CameraHolding holding : kCameraHoldings) {
@@ -316,7 +314,6 @@ UpHypothesis BestHypothesis(const NormalisedInput& input, const UpEstimate& of_b
   for (const UpHypothesis& one : hypotheses) least = std::min(least, with_prior(one));
   std::erase_if(hypotheses,
                 [&](const auto& one) { return with_prior(one) > least + kWorthFollowing; });
-  std::vector<HoldingEvidence> evidence;
   const auto follow = [&](UpHypothesis* hypothesis) {
     Follow(input, hypothesis);
     hypothesis->cost = hypothesis->cost_of_boxes +
@@ -324,37 +321,52 @@ UpHypothesis BestHypothesis(const NormalisedInput& input, const UpEstimate& of_b
                        CostOfSupport(hypothesis->StandingObjects(),
                                      static_cast<double>(hypothesis->objects.size()));
     if (hypothesis->result.cameras_are_turned) hypothesis->cost += kNotLevelCost;
-    evidence.push_back({.holding = hypothesis->holding,
-                        .ignores_verticals = false,
-                        .up_in_world = hypothesis->planes.up_in_world,
-                        .object_costs = {},
-                        .other_cost = hypothesis->cost,
-                        .share_from_below = 0.0,
-                        .can_be_chosen = true});
   };
-  for (UpHypothesis& hypothesis : hypotheses) follow(&hypothesis);
-  HoldingChoice choice = ChooseHolding(evidence, 0.0);
-  const UpHypothesis& held = hypotheses[choice.best];
-  if (2.0 * held.StandingObjects() < static_cast<double>(held.objects.size())) {
-    if (auto turned = Turned(input, held.cost_of_boxes)) {
-      hypotheses.push_back(std::move(*turned));
-      follow(&hypotheses.back());
-      choice = ChooseHolding(evidence, 0.0);
+  // Ways that lead to one up are one: the more probable of them.
+  std::vector<UpHypothesis> followed;
+  for (UpHypothesis& hypothesis : hypotheses) {
+    follow(&hypothesis);
+    const auto same = std::ranges::find_if(followed, [&](const UpHypothesis& other) {
+      return IsSameUp(other.planes.up_in_world, hypothesis.planes.up_in_world);
+    });
+    if (same == followed.end()) {
+      followed.push_back(std::move(hypothesis));
+    } else if (with_prior(hypothesis) < with_prior(*same)) {
+      *same = std::move(hypothesis);
     }
   }
-  UpHypothesis best = hypotheses[choice.best];
+  const auto choose = [&] {
+    std::vector<HoldingEvidence> evidence;
+    for (const UpHypothesis& hypothesis : followed) {
+      HoldingEvidence& one = evidence.emplace_back();
+      one.holding = hypothesis.holding;
+      one.up_in_world = hypothesis.planes.up_in_world;
+      one.other_cost = hypothesis.cost;
+    }
+    return ChooseHolding(evidence, 0.0, kClear);
+  };
+  HoldingChoice choice = choose();
+  const UpHypothesis& held = followed[choice.best];
+  if (2.0 * held.StandingObjects() < static_cast<double>(held.objects.size())) {
+    if (auto turned = Turned(input, held.cost_of_boxes)) {
+      follow(&*turned);
+      followed.push_back(std::move(*turned));
+      choice = choose();
+    }
+  }
+  UpHypothesis best = followed[choice.best];
   best.result.up_of_cameras = of_boxes;
   best.result.up_of_cameras.holding = best.holding;
   best.result.up_of_cameras.holding_tilt_variance = choice.tilt_variance;
   best.result.up_of_cameras.holdings.clear();
-  for (size_t i = 0; i < hypotheses.size(); ++i) {
-    if (hypotheses[i].result.cameras_are_turned) continue;  // no way to hold them
+  for (size_t i = 0; i < followed.size(); ++i) {
+    if (followed[i].result.cameras_are_turned) continue;  // no way to hold them
     best.result.up_of_cameras.holdings.push_back(
-        {.holding = hypotheses[i].holding,
-         .verticals = hypotheses[i].result.verticals,
+        {.holding = followed[i].holding,
+         .verticals = followed[i].result.verticals,
          .cost = choice.costs[i],
          .probability = choice.probabilities[i],
-         .planes = static_cast<int>(hypotheses[i].planes.planes.size())});
+         .planes = static_cast<int>(followed[i].planes.planes.size())});
   }
   return best;
 }
