@@ -59,8 +59,8 @@ struct Track {
   std::optional<int> frames_in_sight;
   // OverlapByBoxes; none where an image shows it whole, or it was not needed to decide the fate.
   std::optional<double> overlap_by_boxes;
-  // None: no edit names it. Otherwise its boxes stay with it, whether its body explains them or
-  // not, and it is an object, however rarely it is seen, unless it is deleted.
+  // None: no edit names it. Otherwise it is an object, however rarely it is seen, unless it is
+  // deleted or has no body.
   std::optional<ByHand> by_hand;
 };
 

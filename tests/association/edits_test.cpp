@@ -150,11 +150,14 @@ TEST_F(EditsTest, AJoinUsesTheBoxesThatItNames) {
   }
 }
 
-// A size says nothing of which boxes are of the object.
+// A size says nothing of which boxes are of the object: no body of this height explains them.
 TEST_F(EditsTest, ASizeHoldsNoBoxes) {
-  seen_.detections[Box(1, 3)].box = {1.0, 1.0, 9.0, 9.0};
-  const Association association = Run({Size(Box(1, 0), {{}, {}, 0.6})});
-  EXPECT_NE(association.detections[Box(1, 3)].fate, BoxFate::kByHand);
+  const Association association = Run({Size(Box(1, 0), {{}, {}, 50.0})});
+  for (const int box : BoxesOf(1)) {
+    EXPECT_NE(association.detections[box].fate, BoxFate::kByHand);
+    EXPECT_NE(association.detections[box].fate, BoxFate::kExplained);
+  }
+  EXPECT_EQ(TrackOf(association, Box(1, 0)).fate, TrackFate::kNoLandmark);
 }
 
 TEST_F(EditsTest, ASplitAndAJoinMoveABoxToAnotherObject) {
