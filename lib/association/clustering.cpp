@@ -487,4 +487,28 @@ Clusters ClusterDetections(const AssociationModel& model, const PairEvidence& pa
   return result;
 }
 
+double CostOfGroups(const AssociationModel& model, const PairEvidence& pairs,
+                    const std::vector<std::vector<int>>& groups, int threads) {
+  Clustering all{model, pairs, threads};
+  all.singles.resize(model.sequence().detections.size());
+  ParallelFor(all.singles.size(), threads,
+              [&](size_t i) { all.singles[i] = Evaluate(all, {static_cast<int>(i)}, 0.0, {}); });
+  std::vector<Cluster> clusters(groups.size());
+  ParallelFor(groups.size(), threads, [&](size_t i) {
+    double log_ratio = 0.0;
+    for (const int detection : groups[i]) {
+      log_ratio += 0.5 * pairs.LogRatio({detection}, groups[i]);
+    }
+    clusters[i] = Evaluate(all, groups[i], log_ratio, {});
+  });
+  double cost = 0.0;
+  for (auto one = clusters.begin(); one != clusters.end(); ++one) {
+    cost += one->cost;
+    for (auto other = one + 1; other != clusters.end(); ++other) {
+      cost += OnePlaceCost(model, *one, *other);
+    }
+  }
+  return cost;
+}
+
 }  // namespace soslam

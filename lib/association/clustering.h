@@ -38,4 +38,9 @@ struct Clusters {
 Clusters ClusterDetections(const AssociationModel& model, const PairEvidence& pairs,
                            const std::vector<int>& detections, int threads);
 
+// The sum that ClusterDetections lowers, of groups of detections that are given: the costs of
+// clusters, each with the body of the label that fits best, and of bodies in one place.
+double CostOfGroups(const AssociationModel& model, const PairEvidence& pairs,
+                    const std::vector<std::vector<int>>& groups, int threads);
+
 }  // namespace soslam

@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <numeric>
 #include <set>
 #include <utility>
 
+#include "association/association_model.h"
+#include "association/clustering.h"
 #include "support/association_scenes.h"
 
 namespace soslam {
@@ -64,6 +67,29 @@ TEST(AssociateTest, NoisyBoxesAreNearlyAllTheirObjects) {
     const Sequence sequence = NoisySequence(seed, {"thing", "other"});
     return std::pair(sequence, WithoutIds(sequence));
   });
+}
+
+// But for steps that none of the single ones leads to: as much as one second box.
+TEST(ClusterDetectionsTest, FoundGroupsCostNoMoreThanTrueOnes) {
+  constexpr double kMissed = 8.0;
+  for (int seed = 0; seed < kScenes; ++seed) {
+    const Sequence given = NoisySequence(seed, {"thing", "other"});
+    const Sequence seen = WithoutIds(given);
+    const SemanticTable table = UnknowingTable();
+    const AssociateOptions options = EstimatedAssociation();
+    const AssociationModel model(seen, table, options);
+    std::vector<int> all(seen.detections.size());
+    std::iota(all.begin(), all.end(), 0);
+    std::vector<std::vector<int>> found, split = DetectionsByObject(given);
+    for (const Cluster& cluster : ClusterDetections(model, PairEvidence(), all, 2).all) {
+      found.push_back(cluster.track.detections);
+    }
+    const double of_truth = CostOfGroups(model, PairEvidence(), DetectionsByObject(given), 2);
+    EXPECT_LE(CostOfGroups(model, PairEvidence(), found, 2), of_truth + kMissed) << seed;
+    split.push_back({split.front().back()});
+    split.front().pop_back();
+    EXPECT_GT(CostOfGroups(model, PairEvidence(), split, 2), of_truth + kMissed) << seed;
+  }
 }
 
 TEST(AssociateTest, FlickeringLabelsMakeNoObjects) {

@@ -4,7 +4,8 @@
 //
 //     soslam-pair-curves TABLE SEQUENCE.JSON MATCHES.H5 [SEQUENCE.JSON MATCHES.H5 ...]
 //
-// prints the rows of a Markdown table, and their means over sequences. Pairs are of boxes in
+// prints the rows of a Markdown table, and their means over sequences, after the costs of the true
+// groups of boxes and of those that ClusterDetections finds. Pairs are of boxes in
 // different frames. Points and colours are those of PairEvidence for the pair alone, without the
 // weight that it has among all pairs of a box; colours alone also join. Bodies are those of single
 // boxes, and predict the other box of a pair, with its label; the better one of the two counts.
@@ -14,10 +15,12 @@
 #include <array>
 #include <cstdio>
 #include <map>
+#include <numeric>
 #include <vector>
 
 #include "artefact/files.h"
 #include "association/association_model.h"
+#include "association/clustering.h"
 #include "association/pair_evidence.h"
 #include "base/parallel.h"
 #include "support/association_scenes.h"
@@ -54,6 +57,27 @@ std::array<double, 1 + kPrecisions.size()> Curve(std::vector<Pair> pairs, size_t
     }
   }
   return curve;
+}
+
+// Costs of the groups by ids, and of those found, bodies of both fitted alike.
+void PrintCosts(const Sequence& given, const ImageMatches& matches, const SemanticTable& table) {
+  const Sequence sequence = WithoutIds(given);
+  AssociateOptions options;
+  options.association = AssociationSource::kEstimated;
+  options.shared_points = true;
+  const AssociationModel model(sequence, table, options);
+  const PairEvidence pairs(sequence, matches);
+  std::vector<int> all(sequence.detections.size());
+  std::iota(all.begin(), all.end(), 0);
+  std::vector<std::vector<int>> found;
+  for (const Cluster& cluster : ClusterDetections(model, pairs, all, 0).all) {
+    found.push_back(cluster.track.detections);
+  }
+  std::vector<std::vector<int>> by_ids = DetectionsByObject(given);
+  std::erase_if(by_ids, [](const std::vector<int>& boxes) { return boxes.empty(); });
+  fmt::print("{}: {} groups by ids cost {:.1f}, {} found cost {:.1f}\n", given.name, by_ids.size(),
+             CostOfGroups(model, pairs, by_ids, 0), found.size(),
+             CostOfGroups(model, pairs, found, 0));
 }
 
 std::vector<Pair> PairsOf(const Sequence& given, const ImageMatches& matches,
@@ -114,7 +138,9 @@ int Main(int argc, char** argv) {
   };
   for (int k = 0; k < sequences; ++k) {
     const Sequence sequence = ReadSequence(argv[2 + 2 * k], PlaneNeed::kNotNeeded);
-    const std::vector<Pair> pairs = PairsOf(sequence, ReadMatches(argv[3 + 2 * k]), table);
+    const ImageMatches matches = ReadMatches(argv[3 + 2 * k]);
+    PrintCosts(sequence, matches, table);
+    const std::vector<Pair> pairs = PairsOf(sequence, matches, table);
     for (size_t evidence = 0; evidence < kEvidence.size(); ++evidence) {
       const auto curve = Curve(pairs, evidence);
       print(sequence.name, evidence, curve);
