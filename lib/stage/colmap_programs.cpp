@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 #include <fstream>
 #include <functional>
@@ -28,7 +29,6 @@ namespace {
 namespace fs = std::filesystem;
 
 // Files in a workspace.
-constexpr const char* kDatabase = "database.db";
 constexpr const char* kImageList = "images.txt";
 constexpr const char* kLog = "log.txt";
 constexpr const char* kMasks = "masks";
@@ -39,6 +39,9 @@ constexpr int kBlockSize = 10;  // images per block of exhaustive matching
 // Observations of a point with a larger error are left out. With COLMAP's own bound, 4, enough
 // wrong matches remain to bend an estimated focal length by more than 1 %.
 constexpr const char* kMaxReprojectionErrorPx = "1.5";
+
+// Least contrast of faint features (difference of Gaussians); a third of COLMAP's own bound.
+constexpr const char* kFaintPeak = "0.0022";
 
 // Last number in a line; 0 without one.
 int LastNumber(const std::string& line) {
@@ -78,6 +81,19 @@ std::string StampOf(const ColmapJob& job, const std::string& version) {
                         fmt::join(job.poses[i]->rotation.coeffs(), " "));
   }
   return text;
+}
+
+// Number of images in a model that may still be moved: its files are not inputs yet.
+int CountOfImagesIn(const fs::path& model) {
+  std::uint64_t count = 0;
+  if (std::ifstream binary(model / "images.bin", std::ios::binary); binary) {
+    binary.read(reinterpret_cast<char*>(&count), sizeof(count));
+  } else {
+    std::ifstream text(model / "images.txt");
+    for (std::string line; std::getline(text, line);) count += line.starts_with('#') ? 0 : 1;
+    count /= 2;  // lines of an image
+  }
+  return static_cast<int>(count);
 }
 
 // Progress up to a count that lines state.
@@ -164,21 +180,34 @@ class Programs {
   Programs(const ColmapJob& job, const fs::path& workspace, const Installation& colmap)
       : job_(job), workspace_(workspace), colmap_(colmap), log_(workspace / kLog) {}
 
+  // Where not all images find a place in one model, once more with fainter features, which small or
+  // smooth images have. The models of the run that places more are kept.
   void MakeModels() {
-    Extract();
-    Match();
-    const fs::path unfinished = workspace_ / "sparse.unfinished";
-    fs::remove_all(unfinished);
-    fs::create_directories(unfinished);
-    Map(unfinished);
-    if (ColmapModelsIn(unfinished).empty()) {
+    fs::path best;
+    int placed = 0;
+    for (const bool with_faint : {false, true}) {
+      with_faint_features_ = with_faint;
+      const fs::path models = workspace_ / (with_faint ? "sparse.faint" : "sparse.usual");
+      fs::remove_all(models);
+      fs::create_directories(models);
+      Extract();
+      Match();
+      Map(models);
+      int in_one = 0;
+      for (const fs::path& model : ColmapModelsIn(models)) {
+        in_one = std::max(in_one, CountOfImagesIn(model));
+      }
+      if (in_one > placed) best = models, placed = in_one;
+      if (placed == CountOfImages() || !job_.poses.empty()) break;
+    }
+    if (best.empty()) {
       throw NumericalError(fmt::format(
           "{}: COLMAP found no two images to begin a model with; expected images that overlap, "
           "from places apart: where the camera only turns there is no baseline, and poses have to "
           "be given (--poses given); see {}",
           job_.dataset.string(), LogPath()));
     }
-    fs::rename(unfinished, workspace_ / kModels);
+    fs::rename(best, workspace_ / kModels);
   }
 
  private:
@@ -186,7 +215,9 @@ class Programs {
   using UseLine = std::function<void(const std::string&)>;
 
   std::string LogPath() const { return (workspace_ / kLog).string(); }
-  std::string DatabasePath() const { return (workspace_ / kDatabase).string(); }
+  std::string DatabasePath() const {
+    return (workspace_ / (with_faint_features_ ? "database_faint.db" : "database.db")).string();
+  }
   int CountOfImages() const { return static_cast<int>(job_.images.size()); }
 
   // Returns the exit code. `use_line` gets each line that the program prints.
@@ -228,6 +259,9 @@ class Programs {
     if (job_.camera) {
       options.emplace_back("--ImageReader.camera_params", ToColmap(*job_.camera).parameters);
     }
+    if (with_faint_features_) {
+      options.emplace_back("--SiftExtraction.peak_threshold", kFaintPeak);
+    }
     if (!job_.masked.empty()) {
       WriteMasks(job_, workspace_ / kMasks);
       options.emplace_back("--ImageReader.mask_path", (workspace_ / kMasks).string());
@@ -254,6 +288,9 @@ class Programs {
         {"--database_path", DatabasePath()},
         {fmt::format("--{}.use_gpu", colmap_.matching), "0"},
         {fmt::format("--{}.num_threads", colmap_.matching), std::to_string(job_.threads)}};
+    if (with_faint_features_) {
+      options.emplace_back(fmt::format("--{}.guided_matching", colmap_.matching), "1");
+    }
     const char* program = "sequential_matcher";
     const char* what = "images matched";
     int count = CountOfImages();
@@ -312,6 +349,7 @@ class Programs {
   const fs::path& workspace_;
   const Installation& colmap_;
   std::ofstream log_;
+  bool with_faint_features_ = false;
   std::string last_line_, error_;
 };
 

@@ -29,6 +29,7 @@ namespace soslam {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -54,8 +55,8 @@ class RunReconstructTest : public FolderTest {
 
   std::string camera_ = "SIMPLE_RADIAL 64 48 50 32 24 0.01";  // of the models
   // A model of so many images with one point (1, 0, 5).
-  void WriteModel(const std::string& name, int images) const {
-    const std::string model = "bin/models/" + name;
+  void WriteModel(const std::string& name, int images, const char* models = "models") const {
+    const std::string model = fmt::format("bin/{}/{}", models, name);
     std::string lines, track;
     for (int i = 0; i < images; ++i) {
       lines += fmt::format("{} 1 0 0 0 {} 0 0 1 rgb/{}.png\n{} 24.5 1\n", i + 1, -i, i, 10 + i);
@@ -314,6 +315,23 @@ TEST_F(RunReconstructTest, GivenPosesAreTriangulated) {
   ExpectError<InputError>([&] { Run("data"); }, {"odometry.txt", "1 of 3 images"});
   options_.calibration = CalibrationChoice::kEstimated;
   ExpectError<SettingsError>([&] { Run("data"); }, {"given camera"});
+}
+
+TEST_F(RunReconstructTest, FaintFeaturesAreSoughtWhereImagesFindNoPlace) {
+  Run();
+  EXPECT_THAT(Calls(), Not(HasSubstr("peak_threshold")));
+  fs::remove_all(Output(""));
+  WriteModel("0", 2);
+  WriteModel("0", 3, "models_of_faint");
+  Run();
+  EXPECT_THAT(Calls(), AllOf(HasSubstr("peak_threshold"), HasSubstr("guided_matching 1")));
+  EXPECT_THAT(printed_.output, HasSubstr("registered 3 of 3 images"));
+  // Those that place no more images are not used.
+  fs::remove_all(Output(""));
+  WriteModel("1", 2, "models_of_faint");
+  WriteModel("0", 1, "models_of_faint");
+  Run();
+  EXPECT_EQ(ReadReconstruction(Output("reconstruction.json")).body.components.size(), 1u);
 }
 
 TEST_F(RunReconstructTest, FindingsAreReported) {
