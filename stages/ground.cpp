@@ -15,6 +15,8 @@ int main(int argc, char** argv) {
                   {"dataset",
                    "dataset folder with the images, where verticals are looked for, and turns.json "
                    "of soslam-detect, if there is one",
+                   false},
+                  {"edits", "edits.json, as soslam-associate reads it: sizes in it tell the scale",
                    false}},
        .outputs = {{"output", "sequence.json to write: z up, in metres, with support planes"},
                    {"world", "world.json to write: what was found, how sure it is, and why"}},

@@ -16,40 +16,6 @@
 namespace soslam {
 namespace {
 
-// The detections without those of lower score that nearly coincide with another one in their frame.
-std::vector<int> WithoutDuplicates(const AssociationModel& model,
-                                   std::vector<DetectionDecision>* decisions) {
-  std::vector<int> kept;
-  for (int frame = 0; frame < static_cast<int>(model.sequence().frames.size()); ++frame) {
-    std::vector<int> detections;
-    for (const Detection& detection : DetectionsIn(model.sequence(), frame)) {
-      detections.push_back(static_cast<int>(&detection - model.sequence().detections.data()));
-    }
-    // Ties are ordered by box and label, so that the order and ids of the input do not matter.
-    std::ranges::stable_sort(detections, {}, [&](int index) {
-      const Detection& detection = model.DetectionAt(index);
-      const Box& box = detection.box;
-      return std::tuple(-detection.score, box.x_min, box.y_min, box.x_max, box.y_max,
-                        model.LabelOf(detection));
-    });
-    const size_t first = kept.size();
-    for (const int index : detections) {
-      const auto same = std::find_if(
-          kept.begin() + static_cast<std::ptrdiff_t>(first), kept.end(), [&](int other) {
-            return BoxOverlap(model.DetectionAt(index).box, model.DetectionAt(other).box) >=
-                   model.options().duplicate_overlap;
-          });
-      if (same == kept.end()) {
-        kept.push_back(index);
-      } else {
-        (*decisions)[index].fate = BoxFate::kDuplicate;
-        (*decisions)[index].duplicate_of = *same;
-      }
-    }
-  }
-  return kept;
-}
-
 // The track of a cluster. If its body explains enough boxes for an object, it is fitted once more
 // to these, as any label that it may have; then all boxes are explained by this body.
 Track Finished(const AssociationModel& model, const Cluster& cluster,
@@ -105,6 +71,39 @@ Track Finished(const AssociationModel& model, const Cluster& cluster,
 
 }  // namespace
 
+std::vector<int> WithoutDuplicates(const Sequence& sequence, double duplicate_overlap,
+                                   std::vector<DetectionDecision>* decisions) {
+  std::vector<int> kept;
+  for (int frame = 0; frame < static_cast<int>(sequence.frames.size()); ++frame) {
+    std::vector<int> detections;
+    for (const Detection& detection : DetectionsIn(sequence, frame)) {
+      detections.push_back(static_cast<int>(&detection - sequence.detections.data()));
+    }
+    // Ties are ordered by box and label, so that the order and ids of the input do not matter.
+    std::ranges::stable_sort(detections, {}, [&](int index) {
+      const Detection& detection = sequence.detections[index];
+      const Box& box = detection.box;
+      return std::tuple(-detection.score, box.x_min, box.y_min, box.x_max, box.y_max,
+                        sequence.ObjectOf(detection).label);
+    });
+    const size_t first = kept.size();
+    for (const int index : detections) {
+      const auto same = std::find_if(
+          kept.begin() + static_cast<std::ptrdiff_t>(first), kept.end(), [&](int other) {
+            return BoxOverlap(sequence.detections[index].box, sequence.detections[other].box) >=
+                   duplicate_overlap;
+          });
+      if (same == kept.end()) {
+        kept.push_back(index);
+      } else {
+        (*decisions)[index].fate = BoxFate::kDuplicate;
+        (*decisions)[index].duplicate_of = *same;
+      }
+    }
+  }
+  return kept;
+}
+
 Sequence WithoutPlanes(Sequence sequence) {
   sequence.planes.clear();
   for (Object& object : sequence.objects) object.plane_index = kNoPlane;
@@ -117,7 +116,8 @@ Association Associate(const Sequence& sequence, const SemanticTable& table,
   const AssociationModel model(sequence, table, options);
   Association association;
   association.detections.resize(sequence.detections.size());
-  std::vector<int> kept = WithoutDuplicates(model, &association.detections);
+  std::vector<int> kept =
+      WithoutDuplicates(sequence, options.duplicate_overlap, &association.detections);
   const FoundEdits found = FindBoxes(edits, sequence, association.detections);
   std::erase_if(kept, [&](int detection) { return found.deleted.contains(detection); });
   for (const auto& [detection, edit] : found.deleted) {

@@ -89,6 +89,11 @@ struct Association {
   std::vector<Associations::KeptOutRow> kept_out;
 };
 
+// The detections without those of lower score that nearly coincide with another one in their frame.
+// `decisions` has one entry for each detection; those of duplicates are set.
+std::vector<int> WithoutDuplicates(const Sequence& sequence, double duplicate_overlap,
+                                   std::vector<DetectionDecision>* decisions);
+
 // The sequence without support planes.
 Sequence WithoutPlanes(Sequence sequence);
 

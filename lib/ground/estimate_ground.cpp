@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "association/association.h"
 #include "base/upper_median.h"
 #include "geometry/angles.h"
 #include "ground/horizontal_planes.h"
@@ -37,8 +38,8 @@ std::vector<MapPoint> Transformed(const Similarity& target_from_source,
 
 namespace {
 
-// Leaves out the boxes of some frames if very many have boxes.
-Sequence WithFewerBoxes(Sequence sequence) {
+// Leaves out the boxes of some frames if very many have boxes, but none that edits name.
+Sequence WithFewerBoxes(const FoundEdits& edits, Sequence sequence) {
   constexpr size_t kMaxFrames = 200;
   std::vector<int> frames;  // with boxes, ascending
   for (const Detection& detection : sequence.detections) {
@@ -46,7 +47,11 @@ Sequence WithFewerBoxes(Sequence sequence) {
       frames.push_back(detection.frame_index);
     }
   }
-  const std::vector<int> kept = SpreadOver(frames, kMaxFrames);
+  std::vector<int> kept = SpreadOver(frames, kMaxFrames);
+  for (const std::vector<int>& boxes : edits.boxes) {
+    for (const int box : boxes) kept.push_back(sequence.detections[box].frame_index);
+  }
+  std::ranges::sort(kept);
   std::erase_if(sequence.detections, [&](const Detection& detection) {
     return !std::ranges::binary_search(kept, detection.frame_index);
   });
@@ -90,6 +95,7 @@ struct NormalisedInput {
   const Sequence& sequence;
   const std::vector<GroundPoint>& points;
   const std::vector<TurnedImage>& turned_images;
+  const FoundEdits& edits;
   const SemanticTable& table;
   const GroundOptions& options;
   double units_per_input;  // units of the input in a normalised one
@@ -184,6 +190,35 @@ double CostOfTurns(const NormalisedInput& input, const Eigen::Vector3d& up_in_wo
   return images.empty() ? 0.0 : -LogLikelihoodOfTurns(images);
 }
 
+// The scale by objects and the scales that are known already, to which those of measured objects
+// are added.
+void TellScale(double same_label_correlation, UpHypothesis* hypothesis) {
+  GroundEstimate& result = hypothesis->result;
+  std::vector<MeasuredObject*> objects;
+  for (MeasuredObject& object : hypothesis->objects) {
+    if (!object.evidence.hypotheses.empty()) objects.push_back(&object);
+  }
+  const auto measured = std::ranges::stable_partition(
+      objects, [](const MeasuredObject* object) { return !object->size.Any(); });
+  std::vector<ScaleEvidence> evidence;
+  for (auto object = objects.begin(); object != measured.begin(); ++object) {
+    evidence.push_back((*object)->evidence);
+  }
+  WeightSameLabels(same_label_correlation, &evidence);
+  result.scale_of_objects = EstimateScale(evidence, {});
+  for (const MeasuredObject* object : measured) evidence.push_back(object->evidence);
+  result.scale = EstimateScale(evidence, result.known_scales);
+  for (size_t i = 0; i < objects.size(); ++i) {
+    objects[i]->evidence.weight = evidence[i].weight;
+    objects[i]->pull = result.scale->pull[i];
+    if (!objects[i]->size.Any()) continue;
+    const auto shares = HypothesisProbabilities(evidence[i], result.scale->log_scale);
+    const auto best = std::ranges::max_element(shares) - shares.begin();
+    const ScaleHypothesis& taken = evidence[i].hypotheses[best];
+    result.known_scales.push_back({taken.log_scale, taken.log_sigma, kSizeByHand});
+  }
+}
+
 // Finds planes, objects and scale of a hypothesis of which cameras and up priors are known.
 void Follow(const NormalisedInput& input, UpHypothesis* hypothesis) {
   HorizontalPlanes& planes = hypothesis->planes;
@@ -193,7 +228,8 @@ void Follow(const NormalisedInput& input, UpHypothesis* hypothesis) {
   result.planes_of_points = static_cast<int>(planes.planes.size());
   std::optional<Eigen::Vector3d> on_lowest_plane;
   if (!planes.planes.empty()) on_lowest_plane = planes.planes.front().centre_in_world;
-  const auto groups = GroupBoxes(input.sequence, input.points, planes, input.threads);
+  const std::vector<BoxGroup> groups =
+      WithSizes(input.edits, GroupBoxes(input.sequence, input.points, planes, input.threads));
   const auto measure = [&] {
     UpEstimate up;
     up.up_in_world = planes.up_in_world;
@@ -201,16 +237,8 @@ void Follow(const NormalisedInput& input, UpHypothesis* hypothesis) {
     up.covariance = level.leftCols<2>() * planes.tilt_covariance * level.leftCols<2>().transpose();
     hypothesis->objects = MeasureObjects(input.sequence, groups, input.table, planes, up,
                                          input.options, input.threads);
-    std::vector<ScaleEvidence> evidence;
-    for (const MeasuredObject& object : hypothesis->objects) evidence.push_back(object.evidence);
-    WeightSameLabels(input.options.same_label_correlation, &evidence);
-    for (size_t i = 0; i < evidence.size(); ++i) {
-      hypothesis->objects[i].evidence.weight = evidence[i].weight;
-    }
-    std::erase_if(evidence, [](const ScaleEvidence& one) { return one.hypotheses.empty(); });
-    result.scale_of_objects = EstimateScale(evidence, {});
     result.known_scales = KnownScales(input, planes.up_in_world, on_lowest_plane);
-    result.scale = EstimateScale(evidence, result.known_scales);
+    TellScale(input.options.same_label_correlation, hypothesis);
   };
   measure();
   constexpr double kLeastObjects = 0.5;
@@ -397,6 +425,8 @@ GroundObject OutputObject(const Similarity& output_from_normalised, const Measur
   result.log_scale = hypothesis.log_scale - log_units;
   result.log_sigma = hypothesis.log_sigma;
   result.weight = object.evidence.weight;
+  result.is_measured = object.size.Any();
+  result.pull = object.pull;
   for (const double share : shares) result.agreement += share;
   return result;
 }
@@ -405,17 +435,24 @@ GroundObject OutputObject(const Similarity& output_from_normalised, const Measur
 
 GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoint>& points,
                               const std::vector<SegmentView>& views,
-                              const std::vector<TurnedImage>& turned_images,
+                              const std::vector<TurnedImage>& turned_images, const Edits& edits,
                               const SemanticTable& table, const GroundOptions& options,
                               int threads) {
   const Similarity normalised_from_input =
       NormalisedFromInput(sequence, GroundPoints(sequence, points));
-  const Sequence normalised = WithFewerBoxes(Transformed(normalised_from_input, sequence));
+  const auto find_boxes = [&](const Sequence& of) {
+    std::vector<DetectionDecision> decisions(of.detections.size());
+    WithoutDuplicates(of, FitOptions(options).duplicate_overlap, &decisions);
+    return FindBoxes(edits, of, decisions);
+  };
+  const Sequence normalised =
+      WithFewerBoxes(find_boxes(sequence), Transformed(normalised_from_input, sequence));
+  const FoundEdits found = find_boxes(normalised);
   const auto ground_points = GroundPoints(normalised, Transformed(normalised_from_input, points));
   // The scale is that of the normalised world until the end.
   const double log_units = -std::log(normalised_from_input.scale);
-  const NormalisedInput input{normalised, ground_points,       turned_images, table,
-                              options,    std::exp(log_units), threads};
+  const NormalisedInput input{normalised, ground_points, turned_images,       found,
+                              table,      options,       std::exp(log_units), threads};
   const UpEstimate of_boxes = UpOfSegments(normalised, table, FitOptions(options)).begin()->second;
   const UpHypothesis best = BestHypothesis(input, of_boxes, views);
 

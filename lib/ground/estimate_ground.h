@@ -48,8 +48,10 @@ struct GroundObject {
   std::optional<double> height_m;
   std::optional<double> log_scale;  // by its label's height, of metres per unit of the input
   std::optional<double> log_sigma;
-  double weight = 0.0;     // below 1 where its height is correlated with that of others
-  double agreement = 0.0;  // probability that its height is right
+  double weight = 0.0;         // below 1 where its height is correlated with that of others
+  double agreement = 0.0;      // probability that its height is right
+  bool is_measured = false;    // edits give a size
+  std::optional<double> pull;  // see ScalePosterior
 
   bool AgreesWithScale() const { return agreement >= 0.5; }
 };
@@ -65,7 +67,7 @@ struct GroundEstimate {
   bool cameras_are_turned = false;       // in many ways: only planes tell up
   bool verticals = false;                // vertical edges were used
   std::optional<ScalePosterior> scale;   // of metres per unit of the input
-  std::vector<KnownScale> known_scales;  // by two options, of the same unit
+  std::vector<KnownScale> known_scales;  // by two options and measured objects, of the same unit
   std::optional<ScalePosterior> scale_of_objects;  // without `scale` and `camera_height_m`
   std::vector<EstimatedPlane> planes;              // of the output
   std::vector<int> points_on_planes;
@@ -80,14 +82,16 @@ struct GroundEstimate {
 
   // How many objects have the height of their label at the scale, which rests on them.
   int AgreeingObjects() const {
-    return static_cast<int>(std::ranges::count_if(objects, &GroundObject::AgreesWithScale));
+    return static_cast<int>(std::ranges::count_if(objects, [](const GroundObject& object) {
+      return object.AgreesWithScale() && !object.is_measured;
+    }));
   }
 
   // The sum of the weights of these.
   double IndependentObjects() const {
     double sum = 0.0;
     for (const GroundObject& object : objects) {
-      if (object.AgreesWithScale()) sum += object.weight;
+      if (object.AgreesWithScale() && !object.is_measured) sum += object.weight;
     }
     return sum;
   }
@@ -99,12 +103,16 @@ struct TurnedImage {
   std::array<double, kQuarterTurns> scores;
 };
 
+// KnownScale::setting of an object whose size edits give.
+inline constexpr const char* kSizeByHand = "edits";
+
 // Estimates up, scale and support planes from sparse points, boxes and the way cameras are held.
 // The result does not depend on the frame and unit of the input. `views`: line segments per frame;
-// empty to not use vertical edges. At least one frame, all of one segment.
+// empty to not use vertical edges. Of edits, sizes tell the scale. At least one frame, all of one
+// segment. Throws InputError for edits that fit no box.
 GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoint>& points,
                               const std::vector<SegmentView>& views,
-                              const std::vector<TurnedImage>& turned_images,
+                              const std::vector<TurnedImage>& turned_images, const Edits& edits,
                               const SemanticTable& table, const GroundOptions& options,
                               int threads);
 

@@ -16,8 +16,8 @@ namespace soslam {
 namespace {
 
 constexpr const char* kGiveScale =
-    "give scale or camera_height_m (SCALE or CAMERA_HEIGHT of make map); lengths are only as good "
-    "as the scale";
+    "give scale or camera_height_m (SCALE or CAMERA_HEIGHT of make map), or the size of a thing "
+    "(EDITS); lengths are only as good as the scale";
 
 void CheckScale(const GroundEstimate& estimate, std::vector<Finding>* findings) {
   constexpr double kUncertain = 0.25;  // of the logarithm
@@ -72,6 +72,11 @@ void CheckContradictions(const GroundEstimate& estimate, std::vector<Finding>* f
        "wrong labels, poses that drift, or objects of unusual size (a toy car)", kGiveScale});
 }
 
+// A value that gives the scale, as a file or setting has it.
+std::string NameOfKnown(const KnownScale& known) {
+  return known.setting == kSizeByHand ? "a size in edits.json" : known.setting;
+}
+
 // Two values of the scale may differ by this many standard deviations.
 constexpr double kContradictionSigmas = 3.0;
 
@@ -85,7 +90,7 @@ void CheckObjectsAgainstSettings(const GroundEstimate& estimate, std::vector<Fin
     const double sigma = std::hypot(known.log_sigma, objects.log_sigma);
     if (std::abs(difference) < kContradictionSigmas * sigma) continue;
     contradicted.push_back(fmt::format("{} makes objects {:.2f} times as high as their labels",
-                                       known.setting, std::exp(difference)));
+                                       NameOfKnown(known), std::exp(difference)));
   }
   if (contradicted.empty()) return;
   findings->push_back(
@@ -97,25 +102,37 @@ void CheckObjectsAgainstSettings(const GroundEstimate& estimate, std::vector<Fin
                    kContradictionSigmas, 100.0 * objects.log_sigma),
        "a value in another unit; a floor that is not seen, so that camera_height_m was measured "
        "from the floor, and the lowest plane of points is a table top; or wrong labels",
-       "check scale and camera_height_m (SCALE and CAMERA_HEIGHT of make map), or leave them out"});
+       "check scale and camera_height_m (SCALE and CAMERA_HEIGHT of make map) and sizes in edits, "
+       "or leave them out"});
 }
 
-// The two settings against each other, whether or not objects tell the scale.
+// The two that differ most of what gives the scale, whether or not labels tell it.
 void CheckSettingsAgainstEachOther(const GroundEstimate& estimate, std::vector<Finding>* findings) {
-  if (estimate.known_scales.size() < 2) return;
-  const KnownScale &one = estimate.known_scales[0], &other = estimate.known_scales[1];
-  const double sigma = std::hypot(one.log_sigma, other.log_sigma);
-  if (std::abs(other.log_scale - one.log_scale) < kContradictionSigmas * sigma) return;
-  findings->push_back(
-      {kSettingsAgainstEachOtherCheck, Severity::kWarning,
-       fmt::format("1 unit of the input's world is {:.4g} m by {}, and {:.4g} m by {}",
-                   std::exp(one.log_scale), one.setting, std::exp(other.log_scale), other.setting),
-       fmt::format("values that differ by less than {} of their standard deviations, {:.0f} %",
-                   kContradictionSigmas, 100.0 * sigma),
-       "a scale of a model in another unit, or a camera height above another plane than the "
-       "lowest one of points (a table top where no floor is seen)",
-       "check scale and camera_height_m (SCALE and CAMERA_HEIGHT of make map), or leave one of "
-       "them out"});
+  const std::vector<KnownScale>& known = estimate.known_scales;
+  double most = kContradictionSigmas;
+  std::optional<Finding> finding;
+  for (auto one = known.begin(); one != known.end(); ++one) {
+    for (auto other = one + 1; other != known.end(); ++other) {
+      const double sigma = std::hypot(one->log_sigma, other->log_sigma);
+      const double sigmas = std::abs(other->log_scale - one->log_scale) / sigma;
+      if (sigmas < most) continue;
+      most = sigmas;
+      finding = {kSettingsAgainstEachOtherCheck,
+                 Severity::kWarning,
+                 fmt::format("1 unit of the input's world is {:.4g} m by {}, and {:.4g} m by {}",
+                             std::exp(one->log_scale), NameOfKnown(*one),
+                             std::exp(other->log_scale), NameOfKnown(*other)),
+                 fmt::format("values that differ by less than {} of their standard deviations, "
+                             "{:.0f} %",
+                             kContradictionSigmas, 100.0 * sigma),
+                 "a scale of a model in another unit, a size of another thing, or a camera height "
+                 "above another plane than the lowest one of points (a table top where no floor is "
+                 "seen)",
+                 "check scale and camera_height_m (SCALE and CAMERA_HEIGHT of make map) and sizes "
+                 "in edits, or leave one of them out"};
+    }
+  }
+  if (finding) findings->push_back(*finding);
 }
 
 // A wrong up direction has few objects on its planes.
@@ -208,7 +225,9 @@ std::vector<std::string> GivenInWords(const WorldScale& scale) {
   std::vector<std::string> words;
   for (const std::string& source : scale.found_by) {
     if (source == kObjects) continue;
-    words.emplace_back(source == "scale" ? "the scale given" : "the camera's height given");
+    words.emplace_back(source == "scale"       ? "the scale given"
+                       : source == kSizeByHand ? "sizes measured by hand"
+                                               : "the camera's height given");
   }
   return words;
 }
@@ -235,7 +254,10 @@ std::optional<WorldScale> WorldScaleOf(const GroundEstimate& estimate,
   }
   scale.labels.assign(labels.begin(), labels.end());
   if (scale.objects > 0) scale.found_by.emplace_back(kObjects);
-  for (const KnownScale& known : estimate.known_scales) scale.found_by.push_back(known.setting);
+  for (const KnownScale& known : estimate.known_scales) {
+    if (std::ranges::count(scale.found_by, known.setting) > 0) continue;
+    scale.found_by.push_back(known.setting);
+  }
   // A scale that settings alone give does not rest on objects that contradict one another.
   const bool rests_on_objects = scale.objects > 0 || estimate.known_scales.empty();
   for (const Finding& finding : findings) {
@@ -275,7 +297,8 @@ WorldReport ReportOf(const GroundEstimate& estimate, const Sequence& input,
     report.objects.push_back({object.label, object.boxes,
                               object.plane == kNoPlane ? std::nullopt : std::optional(object.plane),
                               object.centre_in_world, object.height_m, object.log_scale,
-                              object.log_sigma, object.weight, object.agreement});
+                              object.log_sigma, object.weight, object.agreement, object.is_measured,
+                              object.pull});
   }
   return report;
 }

@@ -60,10 +60,13 @@ bool IsOverSurface(const PlaneOfPoints& plane, const Eigen::Vector3d& up,
 }
 
 // Probability that an object is a false one or not what its boxes say: those that are detected in
-// few of the frames that show their place are seldom right.
+// few of the frames that show their place are seldom right. One that a person measured is right but
+// for mistakes.
 double WrongProbability(const Sequence& sequence, const MeasuredObject& object,
                         const GroundOptions& options) {
   constexpr double kUsualShare = 0.2;
+  constexpr double kMistake = 0.001;
+  if (object.size.Any()) return kMistake;
   const auto& hypotheses = object.evidence.hypotheses;
   const auto best = std::ranges::max_element(hypotheses, {}, &ScaleHypothesis::probability);
   const Landmark& landmark = object.landmarks[best - hypotheses.begin()];
@@ -99,10 +102,13 @@ void Measure(const Sequence& sequence, const SemanticTable& table, const Horizon
         !table.Contains(label)) {
       continue;
     }
-    ShapePrior prior = *table.Find(label);
-    if (!prior.height_m || prior.attitude != Attitude::kStanding) continue;
-    const LogNormal height_m = *prior.height_m;
+    ShapePrior prior = WithKnownSize(*table.Find(label), object->size);
+    const auto length = prior.Length();
+    if (!length || prior.attitude != Attitude::kStanding) continue;
+    // The world is not in metres yet.
+    const Eigen::Index axis = length->axis;
     prior.height_m.reset();
+    prior.known_length.reset();
     const auto add = [&, label = label](int plane, double probability,
                                         const std::variant<Plane, UpEstimate>& support) {
       const auto fit = FitTrack(sequence, object->detections, prior, fit_options, support);
@@ -112,8 +118,9 @@ void Measure(const Sequence& sequence, const SemanticTable& table, const Horizon
         probability *= kBesidePlane;
       }
       hypotheses.push_back(
-          {label, plane, std::log(height_m.median / (2.0 * landmark.half_axes.z())),
-           std::hypot(height_m.log_sigma, std::sqrt(fit->covariance(8, 8))), probability});
+          {label, plane, std::log(length->length_m.median / (2.0 * landmark.half_axes[axis])),
+           std::hypot(length->length_m.log_sigma, std::sqrt(fit->covariance(6 + axis, 6 + axis))),
+           probability});
       object->landmarks.push_back(landmark);
       costs.push_back(fit->cost);
     };
@@ -145,16 +152,45 @@ AssociateOptions FitOptions(const GroundOptions& options) {
   return fit;
 }
 
+std::vector<BoxGroup> WithSizes(const FoundEdits& edits,
+                                const std::vector<std::vector<int>>& groups) {
+  std::vector<BoxGroup> result;
+  for (const std::vector<int>& group : groups) result.push_back({group, {}});
+  for (size_t e = 0; e < edits.boxes.size(); ++e) {
+    const KnownSize& size = edits.edits.edits[e].size;
+    if (!size.Any()) continue;
+    std::vector<int> named = edits.boxes[e];
+    std::ranges::sort(named);
+    const auto count = [&](const BoxGroup& group) {
+      return std::ranges::count_if(
+          named, [&](int box) { return std::ranges::binary_search(group.detections, box); });
+    };
+    auto most = std::ranges::max_element(result, {}, count);
+    if (most == result.end() || count(*most) == 0) {
+      result.push_back({named, {}});
+      most = result.end() - 1;
+    }
+    if (size.depth_m) most->size.depth_m = size.depth_m;
+    if (size.width_m) most->size.width_m = size.width_m;
+    if (size.height_m) most->size.height_m = size.height_m;
+  }
+  return result;
+}
+
 std::vector<MeasuredObject> MeasureObjects(const Sequence& sequence,
-                                           const std::vector<std::vector<int>>& groups,
+                                           const std::vector<BoxGroup>& groups,
                                            const SemanticTable& table,
                                            const HorizontalPlanes& planes, const UpEstimate& up,
                                            const GroundOptions& options, int threads) {
   const std::set<std::string> moving = NormalisedLabels("moving_labels", sequence.moving_labels);
   std::vector<MeasuredObject> objects;
-  for (const std::vector<int>& group : groups) {
-    if (static_cast<int>(group.size()) < options.min_boxes) continue;
-    objects.push_back({group, VotesOf(sequence, group), {}, {}});
+  for (const BoxGroup& group : groups) {
+    const auto count = static_cast<int>(group.detections.size());
+    if (count < options.min_boxes && !group.size.Any()) continue;
+    MeasuredObject& object = objects.emplace_back();
+    object.detections = group.detections;
+    object.size = group.size;
+    object.votes = VotesOf(sequence, group.detections);
   }
   ParallelFor("objects", objects.size(), threads, [&](size_t i) {
     Measure(sequence, table, planes, up, moving, options, &objects[i]);

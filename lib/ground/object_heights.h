@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "association/edits.h"
 #include "association/up_estimate.h"
 #include "ground/horizontal_planes.h"
 #include "ground/options.h"
@@ -23,18 +24,32 @@ std::vector<std::vector<int>> GroupBoxes(const Sequence& sequence,
                                          const std::vector<GroundPoint>& points,
                                          const HorizontalPlanes& planes, int threads);
 
+// Boxes of one object.
+struct BoxGroup {
+  std::vector<int> detections;  // indices in Sequence::detections, ascending
+  KnownSize size = {};          // what a person measured
+};
+
+// The groups with the sizes of edits: each has that of an edit that names most of its boxes. Boxes
+// of edits that are in no group are a group of their own.
+std::vector<BoxGroup> WithSizes(const FoundEdits& edits,
+                                const std::vector<std::vector<int>>& groups);
+
 // An object of one group of boxes, with the scale by its heights on each of the planes, and at a
-// free height, under each of its labels that has a height in the table.
+// free height, under each of its labels that has a height in the table. The known length of an
+// object that a person measured takes the place of its height.
 struct MeasuredObject {
-  std::vector<int> detections;          // indices in Sequence::detections
+  std::vector<int> detections;  // indices in Sequence::detections
+  KnownSize size;
   std::map<std::string, double> votes;  // share of each label in the scores
   ScaleEvidence evidence;               // no hypotheses where no body fits the boxes
   std::vector<Landmark> landmarks;      // in the world, one per hypothesis
+  std::optional<double> pull = {};      // see ScalePosterior
 };
 
 // Fits an upright body to the boxes of each group, on each plane and at a free height.
 std::vector<MeasuredObject> MeasureObjects(const Sequence& sequence,
-                                           const std::vector<std::vector<int>>& groups,
+                                           const std::vector<BoxGroup>& groups,
                                            const SemanticTable& table,
                                            const HorizontalPlanes& planes, const UpEstimate& up,
                                            const GroundOptions& options, int threads);

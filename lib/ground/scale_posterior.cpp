@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -123,10 +124,13 @@ std::optional<ScalePosterior> EstimateScale(const std::vector<ScaleEvidence>& ob
   for (const KnownScale& one : known) extend(one.log_scale, one.log_sigma);
   if (!(high > low)) return std::nullopt;
   std::vector<double> logs(static_cast<size_t>((high - low) / kGridStep) + 1);
+  std::vector<std::vector<double>> logs_of_objects(objects.size(),
+                                                   std::vector<double>(logs.size()));
   for (size_t i = 0; i < logs.size(); ++i) {
     const double x = low + kGridStep * static_cast<double>(i);
-    for (const ScaleEvidence& object : objects) {
-      logs[i] += object.weight * std::log(Density(object, x));
+    for (size_t k = 0; k < objects.size(); ++k) {
+      logs_of_objects[k][i] = objects[k].weight * std::log(Density(objects[k], x));
+      logs[i] += logs_of_objects[k][i];
     }
     for (const KnownScale& one : known) {
       const double z = (x - one.log_scale) / one.log_sigma;
@@ -136,14 +140,24 @@ std::optional<ScalePosterior> EstimateScale(const std::vector<ScaleEvidence>& ob
   const double mode =
       low + kGridStep * static_cast<double>(std::ranges::max_element(logs) - logs.begin());
   const double misfit = MisfitOf(objects, mode);
-  const double highest = std::ranges::max(logs) / misfit;
-  std::vector<double> probabilities;
-  for (const double value : logs) probabilities.push_back(std::exp(value / misfit - highest));
-  const double sum = std::accumulate(probabilities.begin(), probabilities.end(), 0.0);
-  for (double& probability : probabilities) probability /= sum;
+  const auto normalise = [&](std::vector<double> values) {
+    const double highest = std::ranges::max(values);
+    for (double& value : values) value = std::exp((value - highest) / misfit);
+    const double sum = std::accumulate(values.begin(), values.end(), 0.0);
+    for (double& value : values) value /= sum;
+    return values;
+  };
+  const std::vector<double> probabilities = normalise(logs);
   ScalePosterior posterior = Summary(low, probabilities);
   posterior.misfit = misfit;
   posterior.second_mode_share = ShareOfOtherModes(probabilities);
+  for (const std::vector<double>& own : logs_of_objects) {
+    std::vector<double> others(logs.size());
+    std::ranges::transform(logs, own, others.begin(), std::minus());
+    posterior.pull.emplace_back();
+    if (objects.size() + known.size() == 1) continue;
+    posterior.pull.back() = posterior.log_scale - Summary(low, normalise(others)).log_scale;
+  }
   for (const ScaleEvidence& object : objects) {
     const auto shares = HypothesisProbabilities(object, posterior.log_scale);
     posterior.agreement.push_back(std::accumulate(shares.begin(), shares.end(), 0.0));

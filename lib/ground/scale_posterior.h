@@ -27,7 +27,7 @@ struct ScaleEvidence {
 struct KnownScale {
   double log_scale;
   double log_sigma;
-  std::string setting = {};  // the option that gives it
+  std::string setting = {};  // the option that gives it, or kSizeByHand
 };
 
 // Probability distribution of the logarithm of the scale.
@@ -38,6 +38,8 @@ struct ScalePosterior {
   double misfit = 1.0;             // factor by which the objects' spread widens the distribution
   double second_mode_share = 0.0;  // probability of scales that differ by more than a mode's width
   std::vector<double> agreement = {};  // per object, the probability that its height is right
+  // Per object, by how much it raises log_scale; none where nothing else tells the scale.
+  std::vector<std::optional<double>> pull = {};
 };
 
 // Bayesian estimate: the height of each object is right under one of its hypotheses, or it says

@@ -206,7 +206,8 @@ void Describe(Visitor& visit, WorldScale& scale) {
   visit.Field("interval_95", &interval, "has the true one with a probability of 95 %", kPositive);
   visit.AfterReading([&] { scale.low = interval[0], scale.high = interval[1]; });
   visit.Field("found_by", &scale.found_by,
-              "what it rests on: heights of objects, the settings scale and camera_height_m");
+              "what it rests on: heights of objects, the settings scale and camera_height_m, edits "
+              "that give sizes of objects");
   visit.Field("objects", &scale.objects, "whose height agrees with it", kNotNegative);
   visit.OrDefault(
       "contradicted_by", &scale.contradicted_by, {},
@@ -265,6 +266,8 @@ struct WorldReport {
     std::optional<double> height_m = {}, log_scale = {}, log_sigma = {};
     double weight = 0.0;
     double agreement = 0.0;
+    bool is_measured = false;
+    std::optional<double> pull = {};
   };
   std::string dataset;
   Up up;
@@ -325,11 +328,17 @@ void Describe(Visitor& visit, WorldReport::ObjectRow& row) {
               "in the output's world; null where no body fits the boxes");
   visit.Field("height_m", &row.height_m, "by its boxes, in the output's world");
   visit.Field("log_scale", &row.log_scale,
-              "logarithm of metres per unit of the input, by the height of its label");
+              "logarithm of metres per unit of the input, by the height of its label, or the size "
+              "that edits give");
   visit.Field("log_sigma", &row.log_sigma, "standard deviation of that");
   visit.Field("weight", &row.weight, "below 1 where other objects have the same label", kShare);
   visit.Field("agreement", &row.agreement, "probability that its height is right",
               kShareAfterRounding);
+  visit.OrDefault("is_measured", &row.is_measured, false,
+                  "edits give a size, which tells the scale in place of the height of the label");
+  visit.OrAbsent("pull", &row.pull,
+                 "by how much it raises the logarithm of the scale; absent where nothing else "
+                 "tells the scale");
 }
 
 template <typename Visitor>

@@ -176,7 +176,10 @@ void RunPlan(const PlanOptions& options, const StageFiles& files, int /*threads*
   const Plan plan = MakePlan(folders.pipelines, name, variants, gives_edits || Exists(edits));
   if (gives_edits) {
     ReadEdits(given_edits->second);
-    if (std::ranges::none_of(plan.instances, &StageInstance::reads_edits)) {
+    const auto is_corrected = [](const StageInstance& instance) {
+      return instance.reads_edits && instance.stage == "associate";
+    };
+    if (std::ranges::none_of(plan.instances, is_corrected)) {
       throw SettingsError(fmt::format(
           "{}: corrects which boxes are of one object, which ids of the dataset give here; "
           "expected "

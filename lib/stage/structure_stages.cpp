@@ -336,6 +336,27 @@ std::vector<TurnedImage> TurnedImages(const Sequence& sequence, const StageFiles
   return images;
 }
 
+// What told the scale, in the order of how much it pulls at it.
+void PrintPulls(const GroundEstimate& estimate) {
+  constexpr double kLeastPull = 0.01;
+  std::vector<const GroundObject*> pulling;
+  for (const GroundObject& object : estimate.objects) {
+    if (object.pull && std::abs(*object.pull) >= kLeastPull) pulling.push_back(&object);
+  }
+  std::ranges::stable_sort(pulling, std::greater(),
+                           [](const GroundObject* object) { return std::abs(*object->pull); });
+  for (const GroundObject* object : pulling) {
+    fmt::print("  {:+.0f} % by a {} of {} boxes, {:.2f} m high{}\n",
+               100.0 * std::expm1(*object->pull), object->label, object->boxes, *object->height_m,
+               object->is_measured ? ", its size given"
+               : object->AgreesWithScale()
+                   ? ""
+                   : fmt::format(", {:.2f} m by its label",
+                                 *object->height_m *
+                                     std::exp(*object->log_scale - estimate.scale->log_scale)));
+  }
+}
+
 }  // namespace
 
 void RunGround(const GroundOptions& options, const StageFiles& files, int threads) {
@@ -347,11 +368,13 @@ void RunGround(const GroundOptions& options, const StageFiles& files, int thread
   ArtefactInfo info = {.settings = OptionsToJson(options),
                        .inputs = {files.at("sequence"), files.at("points"), files.at("table")},
                        .stage = "ground"};
+  const Edits edits = files.contains("edits") ? ReadEdits(files.at("edits")) : Edits();
+  if (files.contains("edits")) info.inputs.push_back(files.at("edits"));
   std::vector<SegmentView> views =
       ViewsOfSegments(sequence, options.verticals, files, threads, &info.inputs);
   const GroundEstimate estimate =
       EstimateGround(sequence, WithoutMovingThings(sequence, ReadPoints(files.at("points"))), views,
-                     TurnedImages(sequence, files, &info.inputs),
+                     TurnedImages(sequence, files, &info.inputs), edits,
                      ReadSemanticTable(files.at("table")), options, threads);
   info.findings = CheckGround(estimate, options);
   if (!estimate.cameras_are_turned) {
@@ -374,6 +397,7 @@ void RunGround(const GroundOptions& options, const StageFiles& files, int thread
                                  HalfIntervalPercent(*scale), SourcesInWords(*scale),
                                  contradictions.empty() ? "" : ", uncertain: ", contradictions);
   }
+  PrintPulls(estimate);
   fmt::print("{}: up +- {:.1f} degrees (one standard deviation), {}, {}\n", sequence.name,
              kDegPerRad * estimate.tilt_sigma, scale_in_words,
              Counted(estimate.planes.size(), "support plane"));

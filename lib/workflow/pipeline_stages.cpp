@@ -66,7 +66,8 @@ std::vector<PipelineStage> MakeStages() {
       Stage<ImportOptions>("import", {}, {dataset}, {sequence_file}),
       Stage<GroundOptions>("ground", {sequence},
                            {dataset, {"points", "$(dataset)/points.h5"}, table},
-                           {sequence_file, {"world", "world.json"}}, "ground"),
+                           {sequence_file, {"world", "world.json"}}, "ground",
+                           /*takes_edits=*/true),
       // Neither matches nor points nor edge maps depend on the world or its unit.
       Stage<MatchOptions>("match", {imported}, {dataset}, {{"output", "matches.h5"}}),
       Stage<AssociateOptions>("associate", {sequence, matches}, {table},

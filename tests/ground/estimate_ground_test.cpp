@@ -31,17 +31,37 @@ const SemanticTable& ShippedTable() {
 }
 
 // A room with 4 to 14 objects, and in three of four rooms a table.
-PriorScene SceneOf(unsigned seed) {
+PriorScene SceneOf(unsigned seed, double wrong_label_probability = 0.0) {
   std::mt19937 random(seed);
   PriorSceneOptions options;
+  options.wrong_label_probability = wrong_label_probability;
   options.objects = std::uniform_int_distribution<int>(4, 14)(random);
   options.has_table = std::uniform_int_distribution<int>(0, 3)(random) != 0;
   return PriorSceneBuilder(ShippedTable(), seed, options).Build();
 }
 
 GroundEstimate Estimate(const Sequence& sequence, const std::vector<MapPoint>& points,
-                        const GroundOptions& options = {}) {
-  return EstimateGround(sequence, points, {}, {}, ShippedTable(), options, 2);
+                        const GroundOptions& options = {}, const Edits& edits = {}) {
+  return EstimateGround(sequence, points, {}, {}, edits, ShippedTable(), options, 2);
+}
+
+// The height, or width, of the object with most boxes, `factor` times the true one.
+Edits KnownSizeOf(const PriorScene& scene, bool is_width = false, double factor = 1.0) {
+  std::map<int, std::vector<const Detection*>> boxes;
+  for (const Detection& detection : scene.sequence.detections) {
+    boxes[*detection.true_object_id].push_back(&detection);
+  }
+  const auto most = std::ranges::max_element(
+      boxes, {}, [](const auto& id_and_boxes) { return id_and_boxes.second.size(); });
+  Edit edit;
+  edit.kind = EditKind::kSize;
+  const Eigen::Vector3d& size_m = scene.sizes_m.at(static_cast<size_t>(most->first));
+  (is_width ? edit.size.width_m : edit.size.height_m) =
+      factor * (is_width ? size_m.y() : size_m.z());
+  for (const Detection* detection : most->second) {
+    edit.boxes.push_back({scene.sequence.FrameOf(*detection).image, detection->box});
+  }
+  return {.edits = {edit}};
 }
 
 // How many findings are of this check.
@@ -139,6 +159,39 @@ TEST(EstimateGroundTest, KnownValuesNarrowTheScale) {
   with_height.camera_height_m = scene.median_camera_height_m;
   with_height.camera_height_log_sigma = 0.03;
   expect_known(with_height, 0.03);
+}
+
+TEST(EstimateGroundTest, TheSizeOfOneThingTellsTheScale) {
+  const PriorScene scene = SceneOf(3);
+  const GroundEstimate without = Estimate(scene.sequence, scene.points);
+  const GroundEstimate with = Estimate(scene.sequence, scene.points, {}, KnownSizeOf(scene));
+  EXPECT_NEAR(with.scale->log_scale, std::log(scene.metres_per_unit), 0.03);
+  EXPECT_LT(with.scale->log_sigma, 0.5 * without.scale->log_sigma);
+  const auto pull = [](const GroundObject& object) {
+    return object.pull ? std::abs(*object.pull) : 0.0;
+  };
+  EXPECT_TRUE(std::ranges::max_element(with.objects, {}, pull)->is_measured);
+  const auto findings = CheckGround(with, {});
+  EXPECT_EQ(CountOf(kObjectsAgainstSettingsCheck, findings), 0);
+  EXPECT_THAT(WorldScaleOf(with, findings)->found_by, testing::ElementsAre("objects", "edits"));
+  // Boxes determine widths less than heights.
+  const GroundEstimate width = Estimate(scene.sequence, scene.points, {}, KnownSizeOf(scene, true));
+  EXPECT_NEAR(width.scale->log_scale, std::log(scene.metres_per_unit),
+              2.0 * width.scale->log_sigma);
+  EXPECT_LT(width.scale->log_sigma, 0.9 * without.scale->log_sigma);
+  const GroundEstimate in_feet =
+      Estimate(scene.sequence, scene.points, {}, KnownSizeOf(scene, false, 3.28));
+  EXPECT_EQ(CountOf(kObjectsAgainstSettingsCheck, CheckGround(in_feet, {})), 1);
+}
+
+TEST(EstimateGroundTest, PullsAreWhatTheScaleLosesWithoutAnObject) {
+  ScaleEvidence low, high;
+  low.hypotheses = {{"chair", kNoPlane, 0.0, 0.2}};
+  high.hypotheses = {{"sofa", kNoPlane, 0.1, 0.1}};
+  const auto both = EstimateScale({low, high}, {});
+  EXPECT_NEAR(*both->pull[0], both->log_scale - EstimateScale({high}, {})->log_scale, 0.01);
+  EXPECT_NEAR(*both->pull[1], both->log_scale - EstimateScale({low}, {})->log_scale, 0.01);
+  EXPECT_EQ(EstimateScale({low}, {})->pull[0], std::nullopt);
 }
 
 // Whether the objects overrule it or not.
@@ -278,7 +331,7 @@ TEST(EstimateGroundTest, TurnedImagesTellUpFromDown) {
   EXPECT_EQ(Estimate(scene.sequence, {}).up_of_cameras.holding, CameraHolding::kLevel);
   const std::vector<TurnedImage> upside_down = {{0, {3.0, 2.0, 20.0, 2.0}}};
   const GroundEstimate estimate =
-      EstimateGround(scene.sequence, {}, {}, upside_down, ShippedTable(), {}, 2);
+      EstimateGround(scene.sequence, {}, {}, upside_down, {}, ShippedTable(), {}, 2);
   EXPECT_EQ(estimate.up_of_cameras.holding, CameraHolding::kRolled180);
   EXPECT_GT(AngleBetweenDeg(estimate.up_in_input, scene.up_in_world), 170.0);
 }
@@ -326,7 +379,8 @@ TEST(SlowGroundTest, TrueScalesAreWithinTheirIntervals) {
   const char* count = std::getenv("SOSLAM_SCENES");
   const int scenes = count ? std::atoi(count) : 40;
   int within = 0, planes = 0, missed = 0, wrong = 0, narrow = 0, tried = 0;
-  double largest_up_error = 0.0, squared_errors = 0.0, width = 0.0;
+  int within_with_size = 0, within_with_wrong_labels = 0;
+  double largest_up_error = 0.0, squared_errors = 0.0, width = 0.0, ratio_with_size = 0.0;
   for (int seed = 1; seed <= scenes; ++seed) {
     const PriorScene scene = SceneOf(static_cast<unsigned>(seed));
     const GroundEstimate estimate = Estimate(scene.sequence, scene.points);
@@ -342,15 +396,25 @@ TEST(SlowGroundTest, TrueScalesAreWithinTheirIntervals) {
     missed += outcome.missed_planes;
     wrong += outcome.wrong_planes;
     if (scene.objects >= 5) largest_up_error = std::max(largest_up_error, outcome.up_error_deg);
+    const Outcome with_size =
+        Compare(scene, Estimate(scene.sequence, scene.points, {}, KnownSizeOf(scene)));
+    within_with_size += with_size.is_within ? 1 : 0;
+    ratio_with_size += with_size.relative_width / outcome.relative_width;
+    const PriorScene mislabelled = SceneOf(static_cast<unsigned>(seed), 0.2);
+    const GroundEstimate by_wrong = Estimate(mislabelled.sequence, mislabelled.points);
+    within_with_wrong_labels += by_wrong.scale && Compare(mislabelled, by_wrong).is_within ? 1 : 0;
   }
   const std::string summary = fmt::format(
       "{} scenes: {} within, mean width {:.2f}, {} at most 1.3, rms error {:.2f} sigma, up off by "
-      "at most {:.2f} degrees, {} planes, {} missed, {} wrong",
+      "at most {:.2f} degrees, {} planes, {} missed, {} wrong; with one height {} within, {:.2f} "
+      "times as wide; with a fifth of the labels wrong {} within",
       tried, within, width / tried, narrow, std::sqrt(squared_errors / tried), largest_up_error,
-      planes, missed, wrong);
+      planes, missed, wrong, within_with_size, ratio_with_size / tried, within_with_wrong_labels);
   if (count) fmt::print("{}\n", summary);
   EXPECT_GE(within, 0.9 * tried) << summary;
   EXPECT_LE(width, 1.3 * tried) << summary;
+  EXPECT_GE(within_with_size, 0.9 * tried) << summary;
+  EXPECT_LE(ratio_with_size, 0.5 * tried) << summary;
   EXPECT_LT(largest_up_error, 1.5) << summary;
   EXPECT_LE(missed, 0.05 * planes) << summary;
   EXPECT_LE(wrong, 0.05 * planes) << summary;

@@ -28,6 +28,7 @@ namespace soslam {
 struct PriorScene {
   Sequence sequence;  // each box is of an object of its own; in a world of any frame and unit
   std::vector<MapPoint> points;
+  std::vector<Eigen::Vector3d> sizes_m;  // depth, width, height, by true_object_id
   double metres_per_unit = 1.0;
   Eigen::Vector3d up_in_world;
   std::vector<double> plane_heights_m;  // of planes with such objects, ascending
@@ -40,6 +41,7 @@ struct PriorSceneOptions {
   int objects = 8;  // in addition to the table
   bool has_table = true;
   double roll_sigma_deg = 2.0;
+  double wrong_label_probability = 0.0;  // of an object, in all of its boxes
 };
 
 // Furniture and things of rooms.
@@ -88,6 +90,12 @@ class PriorSceneBuilder {
     return exponents.vertical < 1.7 ? Shape::kCylinder : Shape::kEllipsoid;
   }
 
+  const std::string& DrawLabel() {
+    const auto index =
+        static_cast<size_t>(Uniform(0.0, static_cast<double>(kPriorSceneLabels.size())));
+    return kPriorSceneLabels[std::min(index, kPriorSceneLabels.size() - 1)];
+  }
+
   // False if there is no room.
   bool Place(const std::string& label, const Eigen::Vector3d& half_axes, double plane_height,
              double min_radius, double max_radius) {
@@ -109,7 +117,10 @@ class PriorSceneBuilder {
       landmark.half_axes = half_axes;
       landmark.shape_exponents = ExponentsOf(ShapeOf(table_.Find(label)->shape_exponents));
       bodies_.push_back(landmark);
-      body_labels_.push_back(label);
+      scene_.sizes_m.push_back(2.0 * half_axes);
+      const bool is_wrong = options_.wrong_label_probability > 0.0 &&
+                            Uniform(0.0, 1.0) < options_.wrong_label_probability;
+      body_labels_.push_back(is_wrong ? DrawLabel() : label);
       return true;
     }
     return false;
@@ -123,9 +134,7 @@ class PriorSceneBuilder {
       table_radius_ = std::min(half_axes.x(), half_axes.y());
     }
     for (int i = 0; i < options_.objects; ++i) {
-      const auto index =
-          static_cast<size_t>(Uniform(0.0, static_cast<double>(kPriorSceneLabels.size())));
-      const std::string& label = kPriorSceneLabels[std::min(index, kPriorSceneLabels.size() - 1)];
+      const std::string& label = DrawLabel();
       const Eigen::Vector3d half_axes = DrawHalfAxes(*table_.Find(label));
       const bool is_small = options_.has_table && half_axes.maxCoeff() < 0.25;
       if (is_small) {
@@ -152,6 +161,7 @@ class PriorSceneBuilder {
       Frame frame;
       frame.id = i;
       frame.timestamp = 0.1 * i;
+      frame.image = std::to_string(i) + ".png";
       frame.world_from_camera = {
           (level.rotation * Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ())).normalized(),
           position};
