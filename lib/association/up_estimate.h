@@ -13,7 +13,8 @@
 
 namespace soslam {
 
-// Up direction of a world without support planes, from the way the cameras are held.
+// Up direction of a world without support planes, from the way the cameras are held, or as the
+// sequence's ground has it.
 struct UpEstimate {
   Eigen::Vector3d up_in_world;
   // Covariance (rad^2, world axes) of the rotation vector from the estimated to the true up; zero
@@ -29,8 +30,9 @@ struct UpEstimate {
 ShapePrior PriorOfLabel(const SemanticTable& table, const std::string& label,
                         const AssociateOptions& options);
 
-// Up direction per segment, as each segment has a world of its own. The way the cameras are held
-// follows from the cost of fitting upright bodies of the label's shape to single boxes.
+// Up direction per segment, as each segment has a world of its own: that of the sequence's ground
+// or, where there is none, from the way the cameras are held, which follows from the cost of
+// fitting upright bodies of the label's shape to single boxes.
 std::map<int, UpEstimate> UpOfSegments(const Sequence& sequence, const SemanticTable& table,
                                        const AssociateOptions& options);
 

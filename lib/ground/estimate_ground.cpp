@@ -23,6 +23,7 @@ Sequence Transformed(const Similarity& target_from_source, Sequence sequence) {
             target_from_source * pose.translation};
   }
   sequence.planes.clear();
+  sequence.ground.reset();
   for (Object& object : sequence.objects) object.plane_index = kNoPlane;
   for (Detection& detection : sequence.detections) detection.plane_in_camera = Plane();
   return sequence;
@@ -467,8 +468,9 @@ GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoi
   }
   result.output_from_input = output * normalised_from_input;
   result.up_in_input = normalised_from_input.rigid.rotation.conjugate() * best.planes.up_in_world;
-  result.tilt_sigma =
-      std::sqrt(best.planes.tilt_covariance.trace() + result.up_of_cameras.holding_tilt_variance);
+  result.tilt_covariance = best.planes.tilt_covariance;
+  result.tilt_covariance.diagonal().array() += 0.5 * result.up_of_cameras.holding_tilt_variance;
+  result.tilt_sigma = std::sqrt(result.tilt_covariance.trace());
   result.cameras_tilt_sigma = std::sqrt(TiltCovariance(best.up_prior).trace());
   result.tilt_to_cameras = AngleBetween(best.up_prior.up_in_world, best.planes.up_in_world);
   Shift(-log_units, &result.scale);
@@ -497,13 +499,10 @@ Sequence WithGround(const Sequence& sequence, const GroundEstimate& estimate) {
   Sequence result = Transformed(estimate.output_from_input, sequence);
   result.odometry_world = OdometryWorld::kOwnWithScale;
   const Eigen::Matrix<double, 3, 2> d_turns = UpByTurns(Eigen::Vector3d::UnitZ());
+  PointGround& ground = result.ground.emplace();
+  ground.up_information = d_turns * estimate.tilt_covariance.inverse() * d_turns.transpose();
   for (const EstimatedPlane& plane : estimate.planes) {
-    const Eigen::Matrix2d information = plane.covariance->topLeftCorner<2, 2>().inverse();
-    result.planes.push_back(
-        {.id = static_cast<int>(result.planes.size()),
-         .plane_in_world = plane.plane_in_world,
-         .attitude_information = d_turns * information * d_turns.transpose(),
-         .height_prior = HeightPrior{plane.point_in_world, std::sqrt((*plane.covariance)(2, 2))}});
+    ground.planes.push_back({plane.point_in_world, std::sqrt((*plane.covariance)(2, 2))});
   }
   return result;
 }

@@ -60,7 +60,8 @@ struct GroundObject {
 struct GroundEstimate {
   Similarity output_from_input;  // the output's world has z up, in metres
   Eigen::Vector3d up_in_input = Eigen::Vector3d::UnitZ();
-  double tilt_sigma = 0.0;               // of up, both tilts together (rad)
+  Eigen::Matrix2d tilt_covariance = Eigen::Matrix2d::Zero();  // of up, by UpByTurns (rad^2)
+  double tilt_sigma = 0.0;                                    // of up, both tilts together (rad)
   double cameras_tilt_sigma = 0.0;       // of up from the cameras and vertical edges alone (rad)
   double tilt_to_cameras = 0.0;          // from that up to the final one (rad)
   UpEstimate up_of_cameras;              // how they are held, and how probable other ways are
@@ -116,8 +117,8 @@ GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoi
                               const SemanticTable& table, const GroundOptions& options,
                               int threads);
 
-// The sequence in the output's world, with its planes. On which of them an object stands is not
-// known yet. Its scale is an estimate, so that evaluation finds the true one apart from other
+// The sequence in the output's world, with what was found as Sequence::ground; support planes are
+// not known yet. Its scale is an estimate, so that evaluation finds the true one apart from other
 // errors.
 Sequence WithGround(const Sequence& sequence, const GroundEstimate& estimate);
 

@@ -102,6 +102,14 @@ void Describe(Visitor& visit, HeightPrior& prior) {
 }
 
 template <typename Visitor>
+void Describe(Visitor& visit, PointGround& ground) {
+  visit.Field("up_in_world", &ground.up_in_world, "unit vector");
+  visit.Field("up_information", &ground.up_information,
+              "what is known of up n, as a cost half n^T information n (1 / rad^2)");
+  visit.Field("planes", &ground.planes, "horizontal planes of points on which objects stand");
+}
+
+template <typename Visitor>
 void Describe(Visitor& visit, SupportPlane& plane) {
   visit.Field("plane", &plane.id, "id");
   visit.Field("plane_in_world", &plane.plane_in_world, "where it is");
@@ -304,6 +312,9 @@ void Describe(Visitor& visit, Sequence& sequence) {
   visit.Check([&] { return FramesViolation(sequence.frames); });
   visit.Field("planes", &sequence.planes, "support planes, by ascending id; empty: unknown");
   visit.Check([&] { return AscendingIdsViolation("plane", sequence.planes); });
+  visit.OrAbsent("ground", &sequence.ground,
+                 "what soslam-ground found of up and horizontal planes of points; not all that "
+                 "objects stand on has points");
   visit.Field("objects", &sequence.objects, "by ascending id");
   visit.Check([&] { return AscendingIdsViolation("object", sequence.objects); });
   visit.Check([&] { return SupportsViolation(sequence); });

@@ -135,6 +135,14 @@ struct SupportPlane {
   std::optional<Eigen::Vector3d> scene_axis_in_world = std::nullopt;
 };
 
+// What points and photos tell of a world, without what stands in it.
+struct PointGround {
+  Eigen::Vector3d up_in_world = Eigen::Vector3d::UnitZ();
+  // On up (1 / rad^2), as SupportPlane::attitude_information.
+  Eigen::Matrix3d up_information = Eigen::Matrix3d::Zero();
+  std::vector<HeightPrior> planes = {};  // horizontal ones
+};
+
 // Object::plane_index while the support plane is unknown.
 inline constexpr int kNoPlane = -1;
 
@@ -204,8 +212,9 @@ struct Sequence {
   // Orientation that cameras and boxes refer to.
   ImageOrientation image_orientation = ImageOrientation::kUpright;
   std::vector<Frame> frames;
-  std::vector<SupportPlane> planes;  // empty: unknown
-  std::vector<Object> objects;       // all detected ones have a support plane, or none has
+  std::vector<SupportPlane> planes;                  // empty: unknown
+  std::optional<PointGround> ground = std::nullopt;  // none: points are not known, or not asked
+  std::vector<Object> objects;  // all detected ones have a support plane, or none has
   std::vector<Detection> detections;
   std::vector<HeldOutFrame> held_out;              // sorted by frame id; none of them in `frames`
   std::map<std::string, int> rejected_detections;  // reason -> number of detections

@@ -86,11 +86,12 @@ std::map<size_t, StandingBody> FindOwnHeights(const Observations& observations,
   return own;
 }
 
-// Assigns bodies, each on a plane of its own, to shared planes.
+// Assigns bodies, each on a plane of its own, to shared planes, some of which points tell.
 StandingBodies OnSharedPlanes(const std::map<size_t, StandingBody>& own,
+                              const std::vector<HeightPrior>& of_points,
                               const Eigen::Vector3d& normal, const UpPrior& up_prior,
                               const PlanesOptions& options) {
-  StandingBodies standing{{}, {}, {}, up_prior, options.height_sigma_fraction};
+  StandingBodies standing{{}, {}, {}, up_prior, options.height_sigma_fraction, of_points};
   for (const auto& [index, body] : own) standing.bodies.push_back(body);
   const Eigen::Vector3d pivot = MeanBasePoint(standing.bodies);
   const Plane reference{normal, -normal.dot(pivot)};
@@ -101,9 +102,17 @@ StandingBodies OnSharedPlanes(const std::map<size_t, StandingBody>& own,
         WithHeightNoise(EvidenceOf(body, pivot), HeightSigma(body, options.height_sigma_fraction)));
     heights.push_back(-body.evidence.plane.SignedDistance(pivot));
   }
+  for (const HeightPrior& prior : of_points) {
+    const Plane level{normal, -normal.dot(prior.point_in_world)};
+    evidence.push_back(EvidenceOf(prior, level, pivot));
+    heights.push_back(-level.SignedDistance(pivot));
+  }
   const PlaneHeights levels = ClusterPlaneHeights(
       evidence, heights, EvidenceOf(up_prior, reference), kMaxTilt, options.new_plane_cost);
-  standing.plane_of = levels.level_of;
+  const auto bodies_end =
+      levels.level_of.begin() + static_cast<std::ptrdiff_t>(standing.bodies.size());
+  standing.plane_of.assign(levels.level_of.begin(), bodies_end);
+  standing.plane_of_height.assign(bodies_end, levels.level_of.end());
   const Eigen::Vector2d& tilt = levels.tilt;
   for (const double height : levels.heights) {
     standing.planes.push_back(Moved(reference, pivot, {tilt.x(), tilt.y(), height}));
@@ -129,6 +138,11 @@ std::vector<RefinedPlanes> RefineAll(bool parallel, int threads, StandingBodies*
   for (size_t plane = 0; plane < standing->planes.size(); ++plane) {
     StandingBodies alone{
         {}, {}, {standing->planes[plane]}, standing->up_prior, standing->height_sigma_fraction};
+    for (size_t i = 0; i < standing->heights.size(); ++i) {
+      if (standing->plane_of_height[i] != static_cast<int>(plane)) continue;
+      alone.heights.push_back(standing->heights[i]);
+      alone.plane_of_height.push_back(0);
+    }
     for (size_t i = 0; i < standing->bodies.size(); ++i) {
       if (standing->plane_of[i] != static_cast<int>(plane)) continue;
       alone.bodies.push_back(standing->bodies[i]);
@@ -150,7 +164,11 @@ EstimatedPlane EstimatedPlaneOf(const StandingBodies& standing,
   for (size_t i = 0; i < standing.bodies.size(); ++i) {
     if (standing.plane_of[i] == static_cast<int>(index)) bodies.push_back(standing.bodies[i]);
   }
-  const Eigen::Vector3d feet = MeanBasePoint(bodies);
+  std::optional<HeightPrior> of_points;
+  for (size_t i = 0; i < standing.heights.size(); ++i) {
+    if (standing.plane_of_height[i] == static_cast<int>(index)) of_points = standing.heights[i];
+  }
+  const Eigen::Vector3d feet = bodies.empty() ? of_points->point_in_world : MeanBasePoint(bodies);
   const Eigen::Vector3d point = feet - plane.SignedDistance(feet) * plane.normal;
   const Eigen::Matrix3d level = UprightRotation(plane.normal, 0.0).toRotationMatrix();
   const RefinedPlanes& refined = parallel ? all_refined.front() : all_refined[index];
@@ -162,7 +180,26 @@ EstimatedPlane EstimatedPlaneOf(const StandingBodies& standing,
   const Eigen::Vector3d arm = point - refined.pivot;
   at_point(2, 0) = level.col(1).dot(arm);
   at_point(2, 1) = -level.col(0).dot(arm);
-  return {plane, point, level.col(0), at_point * covariance * at_point.transpose()};
+  return {plane, point, level.col(0), at_point * covariance * at_point.transpose(), of_points};
+}
+
+// Leaves out the planes on which no object stands, but for one.
+void LeaveOutBarePlanes(PlanesEstimate* estimate) {
+  std::vector<int> new_index(estimate->planes.size(), kNoPlane);
+  std::vector<EstimatedPlane> kept;
+  for (size_t i = 0; i < estimate->planes.size(); ++i) {
+    const auto stands = [i](const ObjectSupport& support) {
+      return support.plane_index == static_cast<int>(i);
+    };
+    if (std::ranges::none_of(estimate->objects, stands)) continue;
+    new_index[i] = static_cast<int>(kept.size());
+    kept.push_back(estimate->planes[i]);
+  }
+  if (kept.empty()) return;
+  estimate->planes = std::move(kept);
+  for (ObjectSupport& support : estimate->objects) {
+    support.plane_index = new_index[support.plane_index];
+  }
 }
 
 // What an object stands on: the plane that it decided about, if any, or that of lowest cost.
@@ -193,9 +230,22 @@ ObjectSupport FindSupport(const ObjectEvidence& evidence, const std::optional<in
   return support;
 }
 
-// The planes near an up direction. None when no body's views determine the height of its base, or a
-// fit fails.
+EstimatedPlane OfPoints(const HeightPrior& prior, const UpPrior& up_prior) {
+  const Eigen::Vector3d& up = up_prior.up_in_world;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  covariance.topLeftCorner<2, 2>() = TiltCovariance(up_prior);
+  covariance(2, 2) = prior.sigma_m * prior.sigma_m;
+  return {{up, -up.dot(prior.point_in_world)},
+          prior.point_in_world,
+          UprightRotation(up, 0.0) * Eigen::Vector3d::UnitX(),
+          covariance,
+          prior};
+}
+
+// The planes near an up direction; those of points where no body's views determine the height of
+// its base. None when there are none, or a fit fails.
 std::optional<PlanesEstimate> EstimateFrom(const Eigen::Vector3d& up, const UpPrior& up_prior,
+                                           const std::vector<HeightPrior>& of_points,
                                            const Observations& observations,
                                            const Sequence& sequence, const PlanesOptions& options,
                                            int threads) {
@@ -208,8 +258,9 @@ std::optional<PlanesEstimate> EstimateFrom(const Eigen::Vector3d& up, const UpPr
   Eigen::Vector3d normal = up;
   for (; estimate.rounds < kMaxRounds && !estimate.settled; ++estimate.rounds) {
     const std::map<size_t, StandingBody> own = FindOwnHeights(observations, normal, threads);
-    if (own.empty()) return std::nullopt;
-    standing = OnSharedPlanes(own, normal, up_prior, options);
+    if (own.empty() && of_points.empty()) return std::nullopt;
+    if (own.empty()) break;
+    standing = OnSharedPlanes(own, of_points, normal, up_prior, options);
     all_refined = RefineAll(options.parallel, threads, &standing);
     if (all_refined.empty()) return std::nullopt;
     before = std::exchange(plane_of, {});
@@ -226,7 +277,13 @@ std::optional<PlanesEstimate> EstimateFrom(const Eigen::Vector3d& up, const UpPr
   for (size_t i = 0; i < standing.planes.size(); ++i) {
     estimate.planes.push_back(EstimatedPlaneOf(standing, all_refined, options.parallel, i));
   }
-  std::vector<int> objects_on(standing.planes.size(), 0);
+  if (standing.planes.empty()) {
+    estimate.settled = true;
+    for (const HeightPrior& prior : of_points) {
+      estimate.planes.push_back(OfPoints(prior, up_prior));
+    }
+  }
+  std::vector<int> objects_on(estimate.planes.size(), 0);
   for (const auto& [object, plane] : plane_of) ++objects_on[plane];
   const auto most = std::ranges::max_element(objects_on) - objects_on.begin();
   estimate.objects.resize(observations.size());
@@ -244,6 +301,7 @@ std::optional<PlanesEstimate> EstimateFrom(const Eigen::Vector3d& up, const UpPr
     const bool is_known = observations[i] && support.reason != SupportReason::kNoBody;
     if (!is_known) support.plane_index = static_cast<int>(most);
   });
+  LeaveOutBarePlanes(&estimate);
   return estimate;
 }
 
@@ -255,10 +313,14 @@ std::optional<PlanesEstimate> EstimatePlanes(const Sequence& sequence,
                                              const PlanesOptions& options, int threads) {
   const Observations all = Observe(sequence, priors, mount, options, kAllViews);
   const Observations sparse = Observe(sequence, priors, mount, options, kViewsOfSearch);
+  std::vector<HeightPrior> of_points;
+  if (sequence.ground && mount == Mount::kStanding && options.parallel) {
+    of_points = sequence.ground->planes;
+  }
   std::optional<PlanesEstimate> best;
   double lowest = 0.0;
   for (const Eigen::Vector3d& up : SearchUp(up_prior, sparse, threads)) {
-    auto estimate = EstimateFrom(up, up_prior, all, sequence, options, threads);
+    auto estimate = EstimateFrom(up, up_prior, of_points, all, sequence, options, threads);
     if (!estimate) continue;
     // The cost of all objects' boxes (including objects that do not decide about planes), of the
     // cameras' up prior, and of the number of planes.

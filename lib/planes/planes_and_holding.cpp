@@ -189,6 +189,13 @@ PlanesAndHolding MostProbable(std::vector<TriedHolding> tried,
 
 }  // namespace
 
+void ThrowNoPlane(const std::string& sequence) {
+  throw NothingUsableError(fmt::format(
+      "{}: no object's boxes determine the height of the plane that it stands on or hangs from; "
+      "expected an object seen from several places, or planes = given",
+      sequence));
+}
+
 LevelTrajectory Level(const std::vector<SegmentView>& views, CameraHolding holding,
                       const PlanesOptions& options) {
   const double correlation = options.upright.ViewCorrelation();
@@ -280,10 +287,7 @@ PlanesAndHolding EstimatePlanesAndHolding(const Sequence& sequence,
   const bool has_planes = std::ranges::any_of(
       followed, [](const Hypothesis& hypothesis) { return hypothesis.planes.has_value(); });
   if (!has_planes) {
-    throw NothingUsableError(fmt::format(
-        "{}: no object's boxes determine the height of the plane that it stands on or hangs from; "
-        "expected an object seen from several places, or planes = given",
-        sequence.name));
+    ThrowNoPlane(sequence.name);
   }
   return MostProbable(std::move(tried), place_in_tried, followed);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "geometry/rigid3.h"
@@ -33,6 +34,9 @@ struct PlanesAndHolding {
   PlanesEstimate estimate;
   Sequence level;  // the sequence with poses that have the same up everywhere
 };
+
+// Throws NothingUsableError: nothing tells where a plane is.
+[[noreturn]] void ThrowNoPlane(const std::string& sequence);
 
 // Finds the planes for each camera holding in kCameraHoldings; returns the most probable result.
 // `views`: per frame, with the segments among which vertical edges are searched; empty to not use

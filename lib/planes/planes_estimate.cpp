@@ -14,7 +14,7 @@ Sequence WithPlanes(Sequence sequence, const PlanesEstimate& estimate) {
   sequence.planes.clear();
   for (const EstimatedPlane& plane : estimate.planes) {
     sequence.planes.push_back({static_cast<int>(sequence.planes.size()), plane.plane_in_world,
-                               estimate.attitude_information});
+                               estimate.attitude_information, plane.height_prior});
   }
   for (size_t i = 0; i < sequence.objects.size(); ++i) {
     sequence.objects[i].plane_index = estimate.objects[i].plane_index;

@@ -21,6 +21,7 @@ struct EstimatedPlane {
   // Covariance of the plane's rotations (rad) about x_axis_in_world and normal x x_axis_in_world
   // through the point, and of its translation (m) along the normal; none where unknown.
   std::optional<Eigen::Matrix3d> covariance;
+  std::optional<HeightPrior> height_prior = {};  // of points
 };
 
 struct ObjectSupport {

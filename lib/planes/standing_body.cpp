@@ -51,6 +51,10 @@ QuadraticModel<Eigen::Dynamic> ModelOf(const StandingBodies& standing,
     const double sigma = HeightSigma(body, standing.height_sigma_fraction);
     add(WithHeightNoise(EvidenceOf(body, pivot), sigma), standing.plane_of[i]);
   }
+  for (size_t i = 0; i < standing.heights.size(); ++i) {
+    const int plane = standing.plane_of_height[i];
+    add(EvidenceOf(standing.heights[i], standing.planes[plane], pivot), plane);
+  }
   return sum;
 }
 
@@ -146,6 +150,18 @@ PlaneEvidence EvidenceOf(const UpPrior& up_prior, const Plane& plane) {
   evidence.cost = 0.5 * plane.normal.dot(d_normal);
   evidence.gradient.head<2>() = d_turns.transpose() * d_normal;
   evidence.information.topLeftCorner<2, 2>() = d_turns.transpose() * up_prior.information * d_turns;
+  return evidence;
+}
+
+PlaneEvidence EvidenceOf(const HeightPrior& prior, const Plane& plane,
+                         const Eigen::Vector3d& pivot) {
+  const Eigen::Matrix3d level = UprightRotation(plane.normal, 0.0).toRotationMatrix();
+  const Eigen::Vector3d arm = prior.point_in_world - pivot;
+  // Rotations about the pivot raise the plane at the point.
+  const Eigen::Vector3d d_motion(-level.col(1).dot(arm), level.col(0).dot(arm), -1.0);
+  PlaneEvidence evidence;
+  evidence.Add(plane.SignedDistance(prior.point_in_world) / prior.sigma_m,
+               d_motion / prior.sigma_m);
   return evidence;
 }
 

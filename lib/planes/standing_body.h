@@ -9,6 +9,7 @@
 #include "geometry/landmark.h"
 #include "geometry/plane.h"
 #include "initialisation/object_evidence.h"
+#include "model/sequence.h"
 #include "planes/up_prior.h"
 
 namespace soslam {
@@ -43,13 +44,19 @@ std::optional<StandingBody> FitBodyAtFreeHeight(ObjectEvidence observation,
                                                 const Eigen::Vector3d& normal_in_world,
                                                 double step);
 
-// Parallel planes, the bodies that stand on them, and the prior on up.
+// The cost of a height prior as a function of a plane's motion.
+PlaneEvidence EvidenceOf(const HeightPrior& prior, const Plane& plane,
+                         const Eigen::Vector3d& pivot);
+
+// Parallel planes, the bodies that stand on them, what points tell of them, and the prior on up.
 struct StandingBodies {
   std::vector<StandingBody> bodies;
   std::vector<int> plane_of;  // for each body, an index into planes
   std::vector<Plane> planes;  // all with the same normal
   UpPrior up_prior;
-  double height_sigma_fraction = 0.0;  // see PlanesOptions
+  double height_sigma_fraction = 0.0;     // see PlanesOptions
+  std::vector<HeightPrior> heights = {};  // of planes of points
+  std::vector<int> plane_of_height = {};  // for each of them, an index into planes
 };
 
 // The up prior's cost as a function of a plane's motion.

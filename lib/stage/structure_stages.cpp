@@ -29,6 +29,7 @@
 #include "model/label_groups.h"
 #include "model/moving_things.h"
 #include "model/reasons.h"
+#include "planes/estimate_planes.h"
 #include "planes/options.h"
 #include "planes/planes_and_holding.h"
 #include "planes/planes_estimate.h"
@@ -193,29 +194,14 @@ void RefineWithPoses(const std::vector<std::optional<ShapePrior>>& priors,
   estimate->cost = map.solver.final_cost;
 }
 
-// What the priors of a plane say of it.
-EstimatedPlane FromPriors(const SupportPlane& support) {
-  const Plane& plane = support.plane_in_world;
-  EstimatedPlane estimated{plane, -plane.offset * plane.normal, plane.normal.unitOrthogonal(), {}};
-  if (!support.attitude_information || !support.height_prior) return estimated;
-  estimated.point_in_world = support.height_prior->point_in_world;
-  const Eigen::Vector3d& x = estimated.x_axis_in_world;
-  Eigen::Matrix<double, 3, 2> d_turns;  // turns about x and y move the normal by -y and x
-  d_turns << -plane.normal.cross(x), x;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  covariance.topLeftCorner<2, 2>() =
-      (d_turns.transpose() * *support.attitude_information * d_turns).inverse();
-  covariance(2, 2) = std::pow(support.height_prior->sigma_m, 2.0);
-  estimated.covariance = covariance;
-  return estimated;
-}
-
 // The sequence's own planes.
 Result FromSequence(const Sequence& sequence) {
   Result result{{}, sequence, {}};
   result.estimate.settled = true;
   for (const SupportPlane& support : sequence.planes) {
-    result.estimate.planes.push_back(FromPriors(support));
+    const Plane& plane = support.plane_in_world;
+    result.estimate.planes.push_back(
+        {plane, -plane.offset * plane.normal, plane.normal.unitOrthogonal(), {}});
   }
   for (const Object& object : sequence.objects) {
     ObjectSupport& given = result.estimate.objects.emplace_back();
@@ -238,7 +224,15 @@ Result FromBoxes(const Sequence& sequence, const PlanesOptions& options, const S
   const std::vector<SegmentView> views =
       ViewsOfSegments(sequence, options.verticals, files, threads, &result.inputs);
   const auto priors = ObjectPriors(sequence, table, RatioPrior::kTable);
-  PlanesAndHolding held = EstimatePlanesAndHolding(sequence, views, priors, options, threads);
+  PlanesAndHolding held;
+  if (sequence.ground) {  // up is known
+    const UpPrior up_prior = {sequence.ground->up_information, sequence.ground->up_in_world};
+    auto estimate = FindPlanes(sequence, priors, up_prior, options, threads);
+    if (!estimate) ThrowNoPlane(sequence.name);
+    held = {std::move(*estimate), sequence};
+  } else {
+    held = EstimatePlanesAndHolding(sequence, views, priors, options, threads);
+  }
   if (options.refine_poses) {
     RefineWithPoses(priors, options, threads, &held.estimate, &held.level);
   }

@@ -195,6 +195,20 @@ TEST(UpEstimateTest, OtherWaysToHoldCamerasAreNamedWithTheirProbabilities) {
   EXPECT_NEAR(sum, 1.0, 1e-9);
 }
 
+TEST(UpEstimateTest, AGroundThatIsKnownIsNotGuessed) {
+  Sequence sequence = Rolled(PostsAndMats(), 1);
+  PointGround& ground = sequence.ground.emplace();
+  ground.up_in_world = {0.0, 0.6, 0.8};
+  const Eigen::Matrix3d across =
+      Eigen::Matrix3d::Identity() - ground.up_in_world * ground.up_in_world.transpose();
+  ground.up_information = 1e4 * across;
+  const UpEstimate up =
+      UpOfSegments(sequence, TableOfPostsAndMats(), AssociateOptions()).begin()->second;
+  EXPECT_EQ(up.up_in_world, ground.up_in_world);
+  EXPECT_LT((up.covariance - 1e-4 * across).norm(), 1e-9);
+  EXPECT_TRUE(up.holdings.empty());
+}
+
 // A table that says nothing leaves cameras level, and no surer of it.
 TEST(UpEstimateTest, BoxesThatSayNothingMakeNothingSurer) {
   const Sequence sequence = PostsAndMats();

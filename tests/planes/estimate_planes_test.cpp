@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "geometry/angles.h"
+#include "planes/standing_body.h"
 #include "planes/up_prior.h"
 #include "support/random.h"
 #include "support/scene.h"
@@ -35,9 +36,10 @@ UpPrior CamerasUp(const Sequence& sequence) {
 }
 
 PlanesEstimate Estimate(const Sequence& sequence, const PlanesOptions& options = ModelOptions()) {
-  return FindPlanes(sequence, TrueCuboidPriors(sequence, kLogSigma), CamerasUp(sequence), options,
-                    2)
-      .value();
+  const UpPrior up_prior =
+      sequence.ground ? UpPrior{sequence.ground->up_information, sequence.ground->up_in_world}
+                      : CamerasUp(sequence);
+  return FindPlanes(sequence, TrueCuboidPriors(sequence, kLogSigma), up_prior, options, 2).value();
 }
 
 // Removes all detections of an object but the first.
@@ -231,6 +233,71 @@ TEST(EstimatePlanes, AnObjectSeenOnceNeedsItsHeight) {
     EXPECT_EQ(without.objects[once].reason, SupportReason::kLowestCost);
     EXPECT_FALSE(without.objects[once].height);
     EXPECT_EQ(with.objects[once].plane_index, static_cast<int>(once));
+  }
+}
+
+// Ground of points: up and the true planes, `offset` too high.
+PointGround GroundOf(const Sequence& sequence, double offset, double sigma_m) {
+  PointGround ground;
+  ground.up_in_world = sequence.planes[0].plane_in_world.normal;
+  const Eigen::Matrix<double, 3, 2> d_turns = UpByTurns(ground.up_in_world);
+  ground.up_information = 1e10 * d_turns * d_turns.transpose();
+  for (const SupportPlane& plane : sequence.planes) {
+    const Plane& truth = plane.plane_in_world;
+    ground.planes.push_back({(offset - truth.offset) * truth.normal, sigma_m});
+  }
+  return ground;
+}
+
+TEST(EstimatePlanes, PlanesOfPointsAreWeighedWithBoxes) {
+  Sequence sequence = SyntheticSequence(WithShelf(CuboidScene(1, 4), 0.25), true);
+  const auto offset_by = [&](double sigma_m) {
+    sequence.ground = GroundOf(sequence, 0.02, sigma_m);
+    const PlanesEstimate estimate = Estimate(sequence);
+    EXPECT_EQ(estimate.planes.size(), 2u);
+    ExpectInTurn(estimate);
+    EXPECT_TRUE(estimate.planes[0].height_prior && estimate.planes[1].height_prior);
+    return CompareWithGiven(sequence, estimate, 0)->offset;
+  };
+  EXPECT_NEAR(offset_by(1e-5), 0.02, 1e-3);
+  EXPECT_NEAR(offset_by(1.0), 0.0, 0.005);
+}
+
+TEST(EstimatePlanes, BoxesHavePlanesWherePointsHaveNone) {
+  Sequence sequence = SyntheticSequence(WithShelf(CuboidScene(1, 4), 0.25), false);
+  sequence.ground = GroundOf(sequence, 0.0, 0.001);
+  sequence.ground->planes.pop_back();  // the shelf's
+  sequence.ground->planes.push_back(
+      {sequence.ground->planes[0].point_in_world + 1.5 * sequence.ground->up_in_world, 0.001});
+  const PlanesEstimate estimate = Estimate(sequence);
+  ASSERT_EQ(estimate.planes.size(), 2u) << "the bare one is left out";
+  EXPECT_TRUE(estimate.planes[0].height_prior);
+  EXPECT_FALSE(estimate.planes[1].height_prior);
+  ExpectInTurn(estimate);
+}
+
+TEST(EstimatePlanes, PlanesOfPointsHoldObjectsThatAreSeenOnce) {
+  Sequence sequence = SyntheticSequence(CuboidScene(2, 3), false);
+  for (int i = 0; i < 3; ++i) KeepOneDetectionOf(i, &sequence);
+  const auto priors = TrueCuboidPriors(sequence, kLogSigma);
+  EXPECT_FALSE(FindPlanes(sequence, priors, CamerasUp(sequence), ModelOptions(), 2));
+  sequence.ground = GroundOf(sequence, 0.0, 0.001);
+  const PlanesEstimate estimate = Estimate(sequence);
+  ASSERT_EQ(estimate.planes.size(), 1u);
+  EXPECT_EQ(estimate.objects[0].reason, SupportReason::kLowestCost);
+}
+
+TEST(HeightPriorTest, ItsEvidenceIsItsCostInMovedPlanes) {
+  for (int i = 0; i < 20; ++i) {
+    const HeightPrior prior = {RandomVector(-2, 2), 0.1};
+    const Plane plane = RandomPlane();
+    const Eigen::Vector3d pivot = RandomVector(-1, 1);
+    const PlaneEvidence evidence = EvidenceOf(prior, plane, pivot);
+    const PlaneMotion motion = 1e-5 * RandomVector(-1, 1);
+    const double at_moved = EvidenceOf(prior, Moved(plane, pivot, motion), pivot).cost;
+    EXPECT_NEAR(at_moved - evidence.cost,
+                evidence.gradient.dot(motion) + 0.5 * motion.dot(evidence.information * motion),
+                1e-6 * (1.0 + evidence.cost));
   }
 }
 

@@ -209,15 +209,15 @@ TEST_F(RunGroundTest, WritesTheWorldAndTheSequenceInIt) {
   RunGround(options_, files_, 1);
   const Sequence output = ReadSequence(files_.at("output"), PlaneNeed::kNotNeeded);
   EXPECT_EQ(output.detections.size(), scene_.sequence.detections.size());
-  ASSERT_EQ(output.planes.size(), 2u);
-  for (const SupportPlane& plane : output.planes) {
-    ASSERT_TRUE(plane.attitude_information && plane.height_prior);
-    EXPECT_NEAR(plane.plane_in_world.SignedDistance(plane.height_prior->point_in_world), 0.0, 1e-9);
-    EXPECT_GT(plane.height_prior->sigma_m, 0.0);
-    const Eigen::Vector3d& normal = plane.plane_in_world.normal;
-    EXPECT_NEAR(normal.dot(*plane.attitude_information * normal), 0.0, 1e-9);
-    EXPECT_GT(plane.attitude_information->trace(), 0.0);
-  }
+  EXPECT_TRUE(output.planes.empty());
+  ASSERT_TRUE(output.ground);
+  EXPECT_EQ(output.ground->up_in_world, Eigen::Vector3d::UnitZ());
+  EXPECT_NEAR(output.ground->up_information(2, 2), 0.0, 1e-9);
+  EXPECT_GT(output.ground->up_information.trace(), 0.0);
+  ASSERT_EQ(output.ground->planes.size(), 2u);
+  EXPECT_EQ(output.ground->planes[0].point_in_world.z(), 0.0);
+  EXPECT_GT(output.ground->planes[1].point_in_world.z(), 0.2);
+  for (const HeightPrior& plane : output.ground->planes) EXPECT_GT(plane.sigma_m, 0.0);
   const json world = ReadArtefact(files_.at("world"), "world");
   EXPECT_EQ(world.at("planes").size(), 2u);
   EXPECT_GT(world.at("up").at("sigma_deg").get<double>(), 0.0);
