@@ -138,5 +138,6 @@ map=$RESULTS/$DATASET/${VARIANT%% *}/map.json
 [[ -e $map ]] || refuse "$makes_no_map" 4
 export_map "${map%/map.json}" "$MAP_ROOT/export" > /dev/null ||
   echo "map: not all files could be written to $MAP_ROOT/export" >&2
-headline=$("$BIN/soslam-inspect" "$map" --headline)
-echo "$headline, page: $RESULTS/$DATASET/report.html"
+mapfile -t headline < <("$BIN/soslam-inspect" "$map" --headline)
+echo "${headline[0]}, page: $RESULTS/$DATASET/report.html"
+[[ ${#headline[@]} -lt 2 ]] || echo "${headline[1]}"

@@ -401,7 +401,6 @@ std::vector<Finding> CheckPlaneCount(size_t planes, size_t objects) {
 std::string DoubtOfUp(const std::vector<Finding>& findings) {
   const std::map<std::string, std::string> doubts = {
       {kCamerasTurnedCheck, "the photos are turned in many ways"},
-      {kFewObjectsOnPlanesCheck, "few objects stand on flat surfaces"},
       {kUpDirectionCheck, "objects look alike in other ways to hold the camera"}};
   std::vector<std::string> words;
   for (const Finding& finding : findings) {

@@ -387,6 +387,14 @@ UpHypothesis BestHypothesis(const NormalisedInput& input, const UpEstimate& of_b
   best.result.up_of_cameras = of_boxes;
   best.result.up_of_cameras.holding = best.holding;
   best.result.up_of_cameras.holding_tilt_variance = choice.tilt_variance;
+  double alike = 0.0;  // probability of the ways with that up
+  for (size_t i = 0; i < followed.size(); ++i) {
+    const double angle = AngleBetween(followed[i].planes.up_in_world, best.planes.up_in_world);
+    alike += kDegPerRad * angle < kTrustedUpDeg ? choice.probabilities[i] : 0.0;
+  }
+  const double trusted = kTrustedUpDeg * kRadPerDeg;
+  best.result.up_probability =
+      alike * -std::expm1(-trusted * trusted / best.planes.tilt_covariance.trace());
   best.result.up_of_cameras.holdings.clear();
   for (size_t i = 0; i < followed.size(); ++i) {
     if (followed[i].result.cameras_are_turned) continue;  // no way to hold them
@@ -497,12 +505,14 @@ GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoi
 // is left, from points of different weights, is below 0.1.
 Sequence WithGround(const Sequence& sequence, const GroundEstimate& estimate) {
   Sequence result = Transformed(estimate.output_from_input, sequence);
+  constexpr double kClutter = 0.02;  // m: a plane's points are also of what lies on it (a guess)
   result.odometry_world = OdometryWorld::kOwnWithScale;
   const Eigen::Matrix<double, 3, 2> d_turns = UpByTurns(Eigen::Vector3d::UnitZ());
   PointGround& ground = result.ground.emplace();
   ground.up_information = d_turns * estimate.tilt_covariance.inverse() * d_turns.transpose();
   for (const EstimatedPlane& plane : estimate.planes) {
-    ground.planes.push_back({plane.point_in_world, std::sqrt((*plane.covariance)(2, 2))});
+    ground.planes.push_back(
+        {plane.point_in_world, std::hypot(kClutter, std::sqrt((*plane.covariance)(2, 2)))});
   }
   return result;
 }

@@ -62,6 +62,7 @@ struct GroundEstimate {
   Eigen::Vector3d up_in_input = Eigen::Vector3d::UnitZ();
   Eigen::Matrix2d tilt_covariance = Eigen::Matrix2d::Zero();  // of up, by UpByTurns (rad^2)
   double tilt_sigma = 0.0;                                    // of up, both tilts together (rad)
+  double up_probability = 1.0;           // that up is within kTrustedUpDeg of the true one
   double cameras_tilt_sigma = 0.0;       // of up from the cameras and vertical edges alone (rad)
   double tilt_to_cameras = 0.0;          // from that up to the final one (rad)
   UpEstimate up_of_cameras;              // how they are held, and how probable other ways are
@@ -75,11 +76,6 @@ struct GroundEstimate {
   int planes_of_points = 0;  // before planes without an object were dropped
   int points = 0;
   std::vector<GroundObject> objects;
-
-  std::ptrdiff_t StandingObjects() const {
-    return std::ranges::count_if(
-        objects, [](const GroundObject& object) { return object.plane != kNoPlane; });
-  }
 
   // How many objects have the height of their label at the scale, which rests on them.
   int AgreeingObjects() const {

@@ -135,24 +135,6 @@ void CheckSettingsAgainstEachOther(const GroundEstimate& estimate, std::vector<F
   if (finding) findings->push_back(*finding);
 }
 
-// A wrong up direction has few objects on its planes.
-void CheckSupport(const GroundEstimate& estimate, std::vector<Finding>* findings) {
-  constexpr size_t kFewest = 5;
-  constexpr double kFew = 0.25;
-  const auto on_planes = estimate.StandingObjects();
-  if (estimate.objects.size() < kFewest || estimate.planes.empty() ||
-      static_cast<double>(on_planes) >= kFew * static_cast<double>(estimate.objects.size())) {
-    return;
-  }
-  findings->push_back({kFewObjectsOnPlanesCheck, Severity::kWarning,
-                       fmt::format("{} of {} objects stand on the support planes that were found",
-                                   on_planes, estimate.objects.size()),
-                       fmt::format("at least {:.0f} %", 100.0 * kFew),
-                       "a wrong up direction, as of cameras that were turned in many ways, or "
-                       "surfaces without texture",
-                       "look at the map from the side; more images of the ground"});
-}
-
 constexpr const char* kSeeWhetherUpright =
     "see in the map from the side whether objects stand upright. If not, take photos with the "
     "camera always held level, looking ahead, with more of the floor or table and of upright "
@@ -195,7 +177,6 @@ std::vector<Finding> CheckGround(const GroundEstimate& estimate, const GroundOpt
   CheckSettingsAgainstEachOther(estimate, &findings);
   CheckCameraHeight(estimate, options, &findings);
   CheckTurned(estimate, &findings);
-  CheckSupport(estimate, &findings);
   if (estimate.planes.empty()) {
     findings.push_back({"no_support_plane", Severity::kWarning,
                         fmt::format("no object stands on any of {} horizontal planes in {} points",
@@ -241,6 +222,7 @@ std::optional<WorldScale> WorldScaleOf(const GroundEstimate& estimate,
                    estimate.scale->log_sigma,
                    std::exp(estimate.scale->low),
                    std::exp(estimate.scale->high),
+                   estimate.scale->trusted,
                    {},
                    estimate.AgreeingObjects(),
                    {},
@@ -281,6 +263,7 @@ WorldReport ReportOf(const GroundEstimate& estimate, const Sequence& input,
                estimate.verticals,
                kDegPerRad * estimate.cameras_tilt_sigma,
                kDegPerRad * estimate.tilt_to_cameras};
+  report.up.probability = std::min(1.0, estimate.up_probability);
   for (const TriedHolding& tried : estimate.up_of_cameras.holdings) {
     report.up.tried.push_back({tried.holding, tried.cost, tried.probability});
   }

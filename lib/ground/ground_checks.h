@@ -11,9 +11,7 @@
 
 namespace soslam {
 
-// Checks whose findings mean that up may be quite wrong: few objects stand on planes; only
-// planes tell up.
-inline constexpr const char* kFewObjectsOnPlanesCheck = "few_objects_on_planes";
+// The check whose finding means that up may be quite wrong: only planes tell it.
 inline constexpr const char* kCamerasTurnedCheck = "cameras_turned";
 
 // A scale that cannot be told or is uncertain, and what contradicts it; a camera height that says

@@ -70,6 +70,13 @@ ScalePosterior Summary(double low, const std::vector<double>& probabilities) {
     sum += probabilities[i];
   }
   posterior.log_sigma = std::sqrt(std::max(0.0, square - mean * mean));
+  posterior.trusted = 0.0;
+  for (size_t i = 0; i < probabilities.size(); ++i) {
+    const double x = low + kGridStep * static_cast<double>(i);
+    const bool is_near = std::abs(x - posterior.log_scale) < std::log(kTrustedScale);
+    posterior.trusted += is_near ? probabilities[i] : 0.0;
+  }
+  posterior.trusted = std::min(1.0, posterior.trusted);
   return posterior;
 }
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "model/world.h"
+
 namespace soslam {
 
 // Scale by one interpretation of an object: its label, and what it stands on.
@@ -37,6 +39,7 @@ struct ScalePosterior {
   double low = 0.0, high = 0.0;    // interval of 95 %
   double misfit = 1.0;             // factor by which the objects' spread widens the distribution
   double second_mode_share = 0.0;  // probability of scales that differ by more than a mode's width
+  double trusted = 1.0;            // probability that it is within a factor of kTrustedScale
   std::vector<double> agreement = {};  // per object, the probability that its height is right
   // Per object, by how much it raises log_scale; none where nothing else tells the scale.
   std::vector<std::optional<double>> pull = {};

@@ -105,4 +105,20 @@ std::vector<std::string> DoubtsOfMap(const fs::path& folder, const MapEstimate& 
   return doubts;
 }
 
+std::string DistrustOfMap(const WorldReport* world, const Sequence& sequence) {
+  constexpr double kLeast = 0.5;
+  std::vector<std::string> reasons;
+  const size_t placed = sequence.frames.size(), all = placed + sequence.images_without_pose.size();
+  if (2 * placed < all) reasons.push_back(fmt::format("{} of {} photos have a place", placed, all));
+  const double up = world == nullptr ? 1.0 : world->up.probability;
+  const double scale = world == nullptr || !world->scale ? 1.0 : world->scale->probability;
+  if (up * scale < kLeast) {
+    reasons.push_back(
+        fmt::format("up is right to {} degrees with a probability of {:.0f} %, the "
+                    "scale to a factor of {} with {:.0f} %",
+                    kTrustedUpDeg, 100.0 * up, kTrustedScale, 100.0 * scale));
+  }
+  return fmt::format("{}", fmt::join(reasons, ", "));
+}
+
 }  // namespace soslam

@@ -7,6 +7,7 @@
 
 #include "model/estimates.h"
 #include "model/sequence.h"
+#include "model/world.h"
 
 namespace soslam {
 
@@ -31,5 +32,9 @@ std::string DoubtsInWords(const ObjectEstimate& estimate, const Sightings& sight
 // if ids were estimated. Throws InputError.
 std::vector<std::string> DoubtsOfMap(const std::filesystem::path& folder, const MapEstimate& map,
                                      const Sequence& sequence);
+
+// Why a map of photos should not be trusted, in words: up or scale are wrong as probably as not, or
+// most of them have no place in it. Empty where nothing says so. `world`: null where it is given.
+std::string DistrustOfMap(const WorldReport* world, const Sequence& sequence);
 
 }  // namespace soslam

@@ -186,10 +186,15 @@ void Describe(Visitor& visit, PlanesReport& report) {
 }
 
 // The scale of a world, and what it rests on.
+// A map whose scale (a factor) or up is off by more is no use.
+inline constexpr double kTrustedScale = 1.5;
+inline constexpr double kTrustedUpDeg = 10.0;
+
 struct WorldScale {
   double metres_per_unit = 1.0;                   // of the input's world, median
   double log_sigma = 0.0;                         // standard deviation of its logarithm
   double low = 1.0, high = 1.0;                   // interval of 95 %
+  double probability = 1.0;                       // that it is within a factor of kTrustedScale
   std::vector<std::string> found_by = {};         // "objects", and the settings that give it
   int objects = 0;                                // those whose heights agree with it
   std::vector<std::string> contradicted_by = {};  // checks whose findings contradict it
@@ -205,6 +210,7 @@ void Describe(Visitor& visit, WorldScale& scale) {
   std::array<double, 2> interval = {scale.low, scale.high};
   visit.Field("interval_95", &interval, "has the true one with a probability of 95 %", kPositive);
   visit.AfterReading([&] { scale.low = interval[0], scale.high = interval[1]; });
+  visit.Field("probability", &scale.probability, "that it is right to a factor of 1.5", kShare);
   visit.Field("found_by", &scale.found_by,
               "what it rests on: heights of objects, the settings scale and camera_height_m, edits "
               "that give sizes of objects");
@@ -252,6 +258,7 @@ struct WorldReport {
     double sigma_of_cameras_deg = 0.0;
     double angle_to_cameras_deg = 0.0;
     std::vector<TriedRow> tried = {};
+    double probability = 1.0;
   };
   struct SupportRow {
     PlaneRow plane;
@@ -311,6 +318,7 @@ void Describe(Visitor& visit, WorldReport::Up& up) {
                   "ways to hold the cameras, but for those that are 10000 times less probable "
                   "before planes are looked for; without turned, which is tried where fewer than "
                   "half of the objects stand on planes");
+  visit.Field("probability", &up.probability, "that it is right to 10 degrees", kShare);
 }
 template <typename Visitor>
 void Describe(Visitor& visit, WorldReport::SupportRow& row) {

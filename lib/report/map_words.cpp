@@ -11,6 +11,7 @@
 #include "evaluation/result_checks.h"
 #include "evaluation/statistics.h"
 #include "ground/ground_checks.h"
+#include "inspection/doubts.h"
 #include "model/segments.h"
 #include "report/page_parts.h"
 #include "report/plan_view.h"
@@ -41,6 +42,11 @@ ScaleOfMap ScaleFromWorld(const std::optional<Artefact<WorldReport>>& world,
   }
   scale.sentence +=
       fmt::format(" Up ± {:.1f}° (one standard deviation).", world->body.up.sigma_deg);
+  const std::string distrust = DistrustOfMap(&world->body, sequence);
+  if (!distrust.empty()) {
+    const std::string separator = scale.warning.empty() ? "" : " ";
+    scale.warning.insert(0, fmt::format("Do not trust this map: {}.{}", distrust, separator));
+  }
   const std::string doubt = DoubtOfUp(world->findings);
   scale.up_is_in_doubt = !doubt.empty();
   if (scale.up_is_in_doubt) {

@@ -161,7 +161,7 @@ std::string WorldInHeadline(const fs::path& path, const Sequence& sequence) {
 
 // One line on a map.json, such as "9 objects, scale +- 18 %, 2 objects uncertain": how many objects
 // it has, and how well its scale is known by the world.json beside it, with the reason where
-// something contradicts that. Throws InputError.
+// something contradicts that; and one more where the map should not be trusted. Throws InputError.
 std::string Headline(const InspectRequest& request) {
   const std::string kind = ReadArtefactHeader(request.file).at("kind");
   if (kind != "map") {
@@ -182,6 +182,10 @@ std::string Headline(const InspectRequest& request) {
   }
   std::string line = Counted(placed, "object") + WorldInHeadline(folder / "world.json", sequence);
   if (uncertain > 0) line += fmt::format(", {} uncertain", Counted(uncertain, "object"));
+  std::optional<Artefact<WorldReport>> world;
+  if (Exists(folder / "world.json")) world = ReadWorld(folder / "world.json");
+  const std::string distrust = DistrustOfMap(world ? &world->body : nullptr, sequence);
+  if (!distrust.empty()) line += "\ndo not trust this map: " + distrust;
   return line + "\n";
 }
 

@@ -315,16 +315,6 @@ TEST(EstimateGroundTest, WithoutPointsThereAreNoPlanes) {
   EXPECT_EQ(CountOf("no_support_plane", CheckGround(estimate, {})), 1);
 }
 
-TEST(CheckGroundTest, FewObjectsOnPlanesAreAFinding) {
-  GroundEstimate estimate;
-  estimate.planes.resize(1);
-  estimate.objects.resize(8);
-  estimate.objects[0].plane = 0;
-  EXPECT_EQ(CountOf(kFewObjectsOnPlanesCheck, CheckGround(estimate, {})), 1);
-  estimate.objects[1].plane = 0;
-  EXPECT_EQ(CountOf(kFewObjectsOnPlanesCheck, CheckGround(estimate, {})), 0);
-}
-
 TEST(EstimateGroundTest, TurnedImagesTellUpFromDown) {
   const PriorScene scene = SceneOf(3);
   // Boxes alone do not.

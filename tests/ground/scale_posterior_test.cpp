@@ -34,6 +34,7 @@ TEST(ScalePosteriorTest, HasTheSpreadOfOneObject) {
   EXPECT_NEAR(posterior.log_sigma, 0.2, 0.003);
   EXPECT_NEAR(posterior.low, 0.7 - 1.96 * 0.2, 0.01);
   EXPECT_NEAR(posterior.high, 0.7 + 1.96 * 0.2, 0.01);
+  EXPECT_NEAR(posterior.trusted, std::erf(std::log(kTrustedScale) / 0.2 / std::sqrt(2.0)), 0.005);
 }
 
 TEST(ScalePosteriorTest, IndependentObjectsAddInformation) {
