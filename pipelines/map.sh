@@ -138,6 +138,7 @@ map=$RESULTS/$DATASET/${VARIANT%% *}/map.json
 [[ -e $map ]] || refuse "$makes_no_map" 4
 export_map "${map%/map.json}" "$MAP_ROOT/export" > /dev/null ||
   echo "map: not all files could be written to $MAP_ROOT/export" >&2
-mapfile -t headline < <("$BIN/soslam-inspect" "$map" --headline)
+headline=$("$BIN/soslam-inspect" "$map" --headline)
+mapfile -t headline <<< "$headline"
 echo "${headline[0]}, page: $RESULTS/$DATASET/report.html"
 [[ ${#headline[@]} -lt 2 ]] || echo "${headline[1]}"

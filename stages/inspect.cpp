@@ -61,11 +61,12 @@ CLI::Option* AddFiles(CLI::App* app, soslam::InspectRequest* request) {
   table->option_text("string")->group("Files");
   CLI::Option* csv = add("--csv", &request->csv,
                          "table to write as CSV, in full precision; - for standard output");
-  CLI::Option* headline =
-      app->add_flag("--headline", request->headline,
-                    "one line instead, of map.json, for scripts: how many objects\nit has, how "
-                    "well its scale\nis known, and whether up is in doubt; reads sequence.json,\n"
-                    "associations.json and world.json beside it");
+  CLI::Option* headline = app->add_flag(
+      "--headline", request->headline,
+      "one line instead, of map.json, for scripts: how many objects\nit has, how "
+      "well its scale is known, and whether up is in\ndoubt; and one more where the map "
+      "should not be trusted; reads\nsequence.json, "
+      "associations.json and world.json beside it");
   headline->option_text(" ")->group("Files");
   CLI::Option* image =
       add("--image", &request->image,

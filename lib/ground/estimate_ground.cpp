@@ -394,7 +394,7 @@ UpHypothesis BestHypothesis(const NormalisedInput& input, const UpEstimate& of_b
   }
   const double trusted = kTrustedUpDeg * kRadPerDeg;
   best.result.up_probability =
-      alike * -std::expm1(-trusted * trusted / best.planes.tilt_covariance.trace());
+      std::min(1.0, alike) * -std::expm1(-trusted * trusted / best.planes.tilt_covariance.trace());
   best.result.up_of_cameras.holdings.clear();
   for (size_t i = 0; i < followed.size(); ++i) {
     if (followed[i].result.cameras_are_turned) continue;  // no way to hold them
@@ -422,6 +422,7 @@ GroundObject OutputObject(const Similarity& output_from_normalised, const Measur
   result.label = std::ranges::max_element(object.votes, {}, [](const auto& vote) {
                    return vote.second;
                  })->first;
+  result.is_measured = object.size.Any();
   if (object.evidence.hypotheses.empty()) return result;
   const auto shares = HypothesisProbabilities(object.evidence, log_scale);
   const auto best = static_cast<size_t>(std::ranges::max_element(shares) - shares.begin());
@@ -434,7 +435,6 @@ GroundObject OutputObject(const Similarity& output_from_normalised, const Measur
   result.log_scale = hypothesis.log_scale - log_units;
   result.log_sigma = hypothesis.log_sigma;
   result.weight = object.evidence.weight;
-  result.is_measured = object.size.Any();
   result.pull = object.pull;
   for (const double share : shares) result.agreement += share;
   return result;

@@ -54,9 +54,10 @@ struct GroundObject {
   std::optional<double> pull;  // see ScalePosterior
 
   bool AgreesWithScale() const { return agreement >= 0.5; }
+  bool TellsByLabel() const { return AgreesWithScale() && !is_measured; }
 };
 
-// Up, scale and support planes of a world that has neither.
+// Up, scale and horizontal planes of points of a world that has neither up nor scale.
 struct GroundEstimate {
   Similarity output_from_input;  // the output's world has z up, in metres
   Eigen::Vector3d up_in_input = Eigen::Vector3d::UnitZ();
@@ -70,7 +71,7 @@ struct GroundEstimate {
   bool verticals = false;                // vertical edges were used
   std::optional<ScalePosterior> scale;   // of metres per unit of the input
   std::vector<KnownScale> known_scales;  // by two options and measured objects, of the same unit
-  std::optional<ScalePosterior> scale_of_objects;  // without `scale` and `camera_height_m`
+  std::optional<ScalePosterior> scale_of_objects;  // by labels alone
   std::vector<EstimatedPlane> planes;              // of the output
   std::vector<int> points_on_planes;
   int planes_of_points = 0;  // before planes without an object were dropped
@@ -79,16 +80,14 @@ struct GroundEstimate {
 
   // How many objects have the height of their label at the scale, which rests on them.
   int AgreeingObjects() const {
-    return static_cast<int>(std::ranges::count_if(objects, [](const GroundObject& object) {
-      return object.AgreesWithScale() && !object.is_measured;
-    }));
+    return static_cast<int>(std::ranges::count_if(objects, &GroundObject::TellsByLabel));
   }
 
   // The sum of the weights of these.
   double IndependentObjects() const {
     double sum = 0.0;
     for (const GroundObject& object : objects) {
-      if (object.AgreesWithScale() && !object.is_measured) sum += object.weight;
+      if (object.TellsByLabel()) sum += object.weight;
     }
     return sum;
   }
@@ -103,7 +102,7 @@ struct TurnedImage {
 // KnownScale::setting of an object whose size edits give.
 inline constexpr const char* kSizeByHand = "edits";
 
-// Estimates up, scale and support planes from sparse points, boxes and the way cameras are held.
+// Estimates up, scale and planes from sparse points, boxes and the way cameras are held.
 // The result does not depend on the frame and unit of the input. `views`: line segments per frame;
 // empty to not use vertical edges. Of edits, sizes tell the scale. At least one frame, all of one
 // segment. Throws InputError for edits that fit no box.

@@ -49,6 +49,20 @@ void CheckScale(const GroundEstimate& estimate, std::vector<Finding>* findings) 
        "too few objects whose labels have heights, or heights that vary much", kGiveScale});
 }
 
+void CheckSizesByHand(const GroundEstimate& estimate, std::vector<Finding>* findings) {
+  for (const GroundObject& object : estimate.objects) {
+    if (!object.is_measured || object.log_scale) continue;
+    findings->push_back(
+        {"size_tells_nothing", Severity::kWarning,
+         fmt::format("the size that edits give a {} ({} boxes) does not tell the scale",
+                     object.label, object.boxes),
+         "a thing that stands upright, with a label of the semantic table, whose body fits its "
+         "boxes",
+         "a label that is not in the table or may lie, or boxes of several things",
+         "measure another thing, one that many photos show whole"});
+  }
+}
+
 void CheckContradictions(const GroundEstimate& estimate, std::vector<Finding>* findings) {
   constexpr double kOtherScales = 0.05;  // probability
   constexpr double kMisfit = 2.0;        // variance of heights, relative to that of the table
@@ -172,6 +186,7 @@ std::vector<Finding> CheckGround(const GroundEstimate& estimate, const GroundOpt
   constexpr double kUncertainUpDeg = 2.0;
   std::vector<Finding> findings;
   CheckScale(estimate, &findings);
+  CheckSizesByHand(estimate, &findings);
   CheckContradictions(estimate, &findings);
   CheckObjectsAgainstSettings(estimate, &findings);
   CheckSettingsAgainstEachOther(estimate, &findings);
@@ -179,12 +194,12 @@ std::vector<Finding> CheckGround(const GroundEstimate& estimate, const GroundOpt
   CheckTurned(estimate, &findings);
   if (estimate.planes.empty()) {
     findings.push_back({"no_support_plane", Severity::kWarning,
-                        fmt::format("no object stands on any of {} horizontal planes in {} points",
+                        fmt::format("no object stands on any of {} horizontal planes in {} points; "
+                                    "support planes are those of boxes alone",
                                     estimate.planes_of_points, estimate.points),
                         "a floor or a table top with objects on it",
                         "surfaces without texture have no points",
-                        "take photos that show more of the floor or table around the objects, or "
-                        "let soslam-planes estimate the planes from boxes"});
+                        "take photos that show more of the floor or table around the objects"});
   }
   if (kDegPerRad * estimate.tilt_sigma > kUncertainUpDeg) {
     findings.push_back({"up_uncertain", Severity::kWarning,
@@ -232,7 +247,7 @@ std::optional<WorldScale> WorldScaleOf(const GroundEstimate& estimate,
                    estimate.scale->second_mode_share};
   std::set<std::string> labels;
   for (const GroundObject& object : estimate.objects) {
-    if (object.AgreesWithScale()) labels.insert(object.label);
+    if (object.TellsByLabel()) labels.insert(object.label);
   }
   scale.labels.assign(labels.begin(), labels.end());
   if (scale.objects > 0) scale.found_by.emplace_back(kObjects);
@@ -263,7 +278,7 @@ WorldReport ReportOf(const GroundEstimate& estimate, const Sequence& input,
                estimate.verticals,
                kDegPerRad * estimate.cameras_tilt_sigma,
                kDegPerRad * estimate.tilt_to_cameras};
-  report.up.probability = std::min(1.0, estimate.up_probability);
+  report.up.probability = estimate.up_probability;
   for (const TriedHolding& tried : estimate.up_of_cameras.holdings) {
     report.up.tried.push_back({tried.holding, tried.cost, tried.probability});
   }

@@ -161,18 +161,16 @@ std::vector<BoxGroup> WithSizes(const FoundEdits& edits,
     if (!size.Any()) continue;
     std::vector<int> named = edits.boxes[e];
     std::ranges::sort(named);
+    const auto is_named = [&](int box) { return std::ranges::binary_search(named, box); };
     const auto count = [&](const BoxGroup& group) {
-      return std::ranges::count_if(
-          named, [&](int box) { return std::ranges::binary_search(group.detections, box); });
+      return group.size.Any() ? 0 : std::ranges::count_if(group.detections, is_named);
     };
     auto most = std::ranges::max_element(result, {}, count);
-    if (most == result.end() || count(*most) == 0) {
-      result.push_back({named, {}});
-      most = result.end() - 1;
-    }
-    if (size.depth_m) most->size.depth_m = size.depth_m;
-    if (size.width_m) most->size.width_m = size.width_m;
-    if (size.height_m) most->size.height_m = size.height_m;
+    if (most == result.end() || count(*most) == 0) most = result.insert(most, BoxGroup());
+    for (BoxGroup& group : result) std::erase_if(group.detections, is_named);
+    most->detections.insert(most->detections.end(), named.begin(), named.end());
+    std::ranges::sort(most->detections);
+    most->size = size;
   }
   return result;
 }

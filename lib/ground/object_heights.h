@@ -30,8 +30,8 @@ struct BoxGroup {
   KnownSize size = {};          // what a person measured
 };
 
-// The groups with the sizes of edits: each has that of an edit that names most of its boxes. Boxes
-// of edits that are in no group are a group of their own.
+// The groups with the sizes of edits. The boxes that an edit names are of one object, with all that
+// the group with most of them has, unless that has a size by another edit.
 std::vector<BoxGroup> WithSizes(const FoundEdits& edits,
                                 const std::vector<std::vector<int>>& groups);
 

@@ -30,9 +30,10 @@ struct GroundOptions {
 
   void Describe(OptionVisitor& visit) {
     visit.Group("Ground");
-    visit.Choice("ground", &ground, kGroundSourceNames,
-                 "whether up, scale and support planes are those of the dataset, or this stage "
-                 "finds them out; the stage runs only in the latter case");
+    visit.Choice(
+        "ground", &ground, kGroundSourceNames,
+        "whether up and scale are those of the dataset, or this stage finds them out, with "
+        "planes of points; the stage runs only in the latter case");
     visit.Group("Scale");
     visit.Real("scale", &scale, {0.0, 1e9},
                "metres per unit of the input's world, where it is known; 0: unknown. It is "

@@ -107,6 +107,13 @@ void Describe(Visitor& visit, PointGround& ground) {
   visit.Field("up_information", &ground.up_information,
               "what is known of up n, as a cost half n^T information n (1 / rad^2)");
   visit.Field("planes", &ground.planes, "horizontal planes of points on which objects stand");
+  visit.Check([&] {
+    const Eigen::Vector3d& up = ground.up_in_world;
+    const Eigen::Matrix3d with_up = ground.up_information + up * up.transpose();
+    if (std::abs(up.norm() - 1.0) > 1e-6) return std::string("up_in_world has not the length 1");
+    return with_up.determinant() > 0.0 ? std::string()
+                                       : std::string("up_information says nothing of a direction");
+  });
 }
 
 template <typename Visitor>

@@ -174,8 +174,9 @@ void Describe(Visitor& visit, PlanesReport& report) {
   visit.Field("dataset", &report.dataset, "name of the dataset");
   visit.Field("planes", &report.planes, "as in the sequence written beside", {.least_items = 1});
   visit.Field("objects", &report.objects, "one row per object of the sequence");
-  visit.Field("up_of_cameras_in_world", &report.up_of_cameras_in_world,
-              "where the search for up began: as cameras are held and vertical edges say");
+  visit.Field(
+      "up_of_cameras_in_world", &report.up_of_cameras_in_world,
+      "where the search for up began: as cameras are held and vertical edges say, or points");
   visit.OrAbsent("camera_holding", &report.camera_holding, "where planes are estimated");
   visit.Field(
       "cost", &report.cost,
@@ -185,11 +186,11 @@ void Describe(Visitor& visit, PlanesReport& report) {
   visit.Field("settled", &report.settled, "the last round changed nothing");
 }
 
-// The scale of a world, and what it rests on.
 // A map whose scale (a factor) or up is off by more is no use.
 inline constexpr double kTrustedScale = 1.5;
 inline constexpr double kTrustedUpDeg = 10.0;
 
+// The scale of a world, and what it rests on.
 struct WorldScale {
   double metres_per_unit = 1.0;                   // of the input's world, median
   double log_sigma = 0.0;                         // standard deviation of its logarithm

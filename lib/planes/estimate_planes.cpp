@@ -138,11 +138,6 @@ std::vector<RefinedPlanes> RefineAll(bool parallel, int threads, StandingBodies*
   for (size_t plane = 0; plane < standing->planes.size(); ++plane) {
     StandingBodies alone{
         {}, {}, {standing->planes[plane]}, standing->up_prior, standing->height_sigma_fraction};
-    for (size_t i = 0; i < standing->heights.size(); ++i) {
-      if (standing->plane_of_height[i] != static_cast<int>(plane)) continue;
-      alone.heights.push_back(standing->heights[i]);
-      alone.plane_of_height.push_back(0);
-    }
     for (size_t i = 0; i < standing->bodies.size(); ++i) {
       if (standing->plane_of[i] != static_cast<int>(plane)) continue;
       alone.bodies.push_back(standing->bodies[i]);
@@ -166,7 +161,9 @@ EstimatedPlane EstimatedPlaneOf(const StandingBodies& standing,
   }
   std::optional<HeightPrior> of_points;
   for (size_t i = 0; i < standing.heights.size(); ++i) {
-    if (standing.plane_of_height[i] == static_cast<int>(index)) of_points = standing.heights[i];
+    if (standing.plane_of_height[i] != static_cast<int>(index)) continue;
+    const HeightPrior& prior = standing.heights[i];
+    if (!of_points || prior.sigma_m < of_points->sigma_m) of_points = prior;  // the surest
   }
   const Eigen::Vector3d feet = bodies.empty() ? of_points->point_in_world : MeanBasePoint(bodies);
   const Eigen::Vector3d point = feet - plane.SignedDistance(feet) * plane.normal;
@@ -181,25 +178,6 @@ EstimatedPlane EstimatedPlaneOf(const StandingBodies& standing,
   at_point(2, 0) = level.col(1).dot(arm);
   at_point(2, 1) = -level.col(0).dot(arm);
   return {plane, point, level.col(0), at_point * covariance * at_point.transpose(), of_points};
-}
-
-// Leaves out the planes on which no object stands, but for one.
-void LeaveOutBarePlanes(PlanesEstimate* estimate) {
-  std::vector<int> new_index(estimate->planes.size(), kNoPlane);
-  std::vector<EstimatedPlane> kept;
-  for (size_t i = 0; i < estimate->planes.size(); ++i) {
-    const auto stands = [i](const ObjectSupport& support) {
-      return support.plane_index == static_cast<int>(i);
-    };
-    if (std::ranges::none_of(estimate->objects, stands)) continue;
-    new_index[i] = static_cast<int>(kept.size());
-    kept.push_back(estimate->planes[i]);
-  }
-  if (kept.empty()) return;
-  estimate->planes = std::move(kept);
-  for (ObjectSupport& support : estimate->objects) {
-    support.plane_index = new_index[support.plane_index];
-  }
 }
 
 // What an object stands on: the plane that it decided about, if any, or that of lowest cost.
@@ -259,7 +237,10 @@ std::optional<PlanesEstimate> EstimateFrom(const Eigen::Vector3d& up, const UpPr
   for (; estimate.rounds < kMaxRounds && !estimate.settled; ++estimate.rounds) {
     const std::map<size_t, StandingBody> own = FindOwnHeights(observations, normal, threads);
     if (own.empty() && of_points.empty()) return std::nullopt;
-    if (own.empty()) break;
+    if (own.empty()) {
+      standing.planes.clear(), all_refined.clear(), plane_of.clear();
+      break;
+    }
     standing = OnSharedPlanes(own, of_points, normal, up_prior, options);
     all_refined = RefineAll(options.parallel, threads, &standing);
     if (all_refined.empty()) return std::nullopt;
@@ -283,10 +264,8 @@ std::optional<PlanesEstimate> EstimateFrom(const Eigen::Vector3d& up, const UpPr
       estimate.planes.push_back(OfPoints(prior, up_prior));
     }
   }
-  std::vector<int> objects_on(estimate.planes.size(), 0);
-  for (const auto& [object, plane] : plane_of) ++objects_on[plane];
-  const auto most = std::ranges::max_element(objects_on) - objects_on.begin();
   estimate.objects.resize(observations.size());
+  std::vector<char> is_known(observations.size(), 0);
   ParallelFor("objects", observations.size(), threads, [&](size_t i) {
     ObjectSupport& support = estimate.objects[i];
     if (observations[i]) {
@@ -298,10 +277,27 @@ std::optional<PlanesEstimate> EstimateFrom(const Eigen::Vector3d& up, const UpPr
     } else if (!sequence.objects[i].is_static) {
       support.reason = SupportReason::kMoving;
     }
-    const bool is_known = observations[i] && support.reason != SupportReason::kNoBody;
-    if (!is_known) support.plane_index = static_cast<int>(most);
+    is_known[i] = observations[i] && support.reason != SupportReason::kNoBody;
   });
-  LeaveOutBarePlanes(&estimate);
+  // Objects of which nothing is known are where most others are; planes of points without an object
+  // are left out.
+  std::vector<int> objects_on(estimate.planes.size(), 0);
+  for (size_t i = 0; i < is_known.size(); ++i) {
+    if (is_known[i]) ++objects_on[estimate.objects[i].plane_index];
+  }
+  const auto most = std::ranges::max_element(objects_on) - objects_on.begin();
+  std::vector<EstimatedPlane> all_planes = std::exchange(estimate.planes, {});
+  std::vector<int> new_index;
+  for (size_t plane = 0; plane < all_planes.size(); ++plane) {
+    new_index.push_back(static_cast<int>(estimate.planes.size()));
+    if (objects_on[plane] > 0 || static_cast<std::ptrdiff_t>(plane) == most) {
+      estimate.planes.push_back(all_planes[plane]);
+    }
+  }
+  for (size_t i = 0; i < is_known.size(); ++i) {
+    int& plane = estimate.objects[i].plane_index;
+    plane = new_index[is_known[i] ? plane : static_cast<int>(most)];
+  }
   return estimate;
 }
 
@@ -313,6 +309,8 @@ std::optional<PlanesEstimate> EstimatePlanes(const Sequence& sequence,
                                              const PlanesOptions& options, int threads) {
   const Observations all = Observe(sequence, priors, mount, options, kAllViews);
   const Observations sparse = Observe(sequence, priors, mount, options, kViewsOfSearch);
+  const auto is_observed = [](const auto& observation) { return observation.has_value(); };
+  if (std::ranges::none_of(all, is_observed)) return std::nullopt;
   std::vector<HeightPrior> of_points;
   if (sequence.ground && mount == Mount::kStanding && options.parallel) {
     of_points = sequence.ground->planes;

@@ -75,7 +75,8 @@ struct PlanesOptions {
     visit.Choice(
         "planes", &planes, kPlaneSourceNames,
         "where the support planes come from: the dataset (given: the stage does not run); "
-        "the boxes of the objects that stand on them or hang from them (estimated); these boxes "
+        "the boxes of the objects that stand on them or hang from them, with up and the planes of "
+        "points that soslam-ground found (estimated); these "
         "where the sequence has no planes (where_missing); a level camera at a known height above "
         "the ground (camera_height). What the table has on "
         "walls is left out");
@@ -86,7 +87,9 @@ struct PlanesOptions {
     });
     visit.OnlyWhere({{"planes", {"estimated", "where_missing"}}}, [&] {
       visit.Group("Estimated planes");
-      visit.Flag("parallel", &parallel, "all planes have the same normal, as horizontal ones do");
+      visit.Flag("parallel", &parallel,
+                 "all planes have the same normal, as horizontal ones do; otherwise planes of "
+                 "points are not used");
       upright.DescribeSigma(visit);
       upright.DescribeViewCorrelation(
           visit,

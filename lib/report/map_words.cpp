@@ -23,6 +23,11 @@ ScaleOfMap ScaleFromWorld(const std::optional<Artefact<WorldReport>>& world,
   constexpr const char* kNoUnit =
       "Nothing tells the scale of this map: lengths have no unit, only their proportions count.";
   ScaleOfMap scale;
+  const std::string distrust = DistrustOfMap(world ? &world->body : nullptr, sequence);
+  const auto add_warning = [&](const std::string& warning) {
+    scale.warning += (scale.warning.empty() ? "" : " ") + warning;
+  };
+  if (!distrust.empty()) add_warning(fmt::format("Do not trust this map: {}.", distrust));
   if (!world) {
     scale.in_metres = IsInMetresWithoutWorld(sequence);
     if (!scale.in_metres) scale.sentence = kNoUnit;
@@ -37,21 +42,15 @@ ScaleOfMap ScaleFromWorld(const std::optional<Artefact<WorldReport>>& world,
                                  SourcesInWords(*found));
     const std::string contradictions = ContradictionsInWords(*found);
     if (!contradictions.empty()) {
-      scale.warning = fmt::format("The scale may be wrong by more than that: {}.", contradictions);
+      add_warning(fmt::format("The scale may be wrong by more than that: {}.", contradictions));
     }
   }
   scale.sentence +=
       fmt::format(" Up ± {:.1f}° (one standard deviation).", world->body.up.sigma_deg);
-  const std::string distrust = DistrustOfMap(&world->body, sequence);
-  if (!distrust.empty()) {
-    const std::string separator = scale.warning.empty() ? "" : " ";
-    scale.warning.insert(0, fmt::format("Do not trust this map: {}.{}", distrust, separator));
-  }
   const std::string doubt = DoubtOfUp(world->findings);
   scale.up_is_in_doubt = !doubt.empty();
   if (scale.up_is_in_doubt) {
-    if (!scale.warning.empty()) scale.warning += " ";
-    scale.warning += fmt::format("Up may be wrong by more than that: {}.", doubt);
+    add_warning(fmt::format("Up may be wrong by more than that: {}.", doubt));
   }
   return scale;
 }

@@ -65,6 +65,7 @@ std::string StampOf(const ColmapJob& job, const std::string& version) {
   std::string text = fmt::format("COLMAP {}\nexhaustive {}\nfixed camera {}\n", version,
                                  job.exhaustive, job.camera_is_fixed);
   if (!job.camera_is_fixed) text += fmt::format("at most {} px\n", kMaxReprojectionErrorPx);
+  if (job.poses.empty()) text += fmt::format("or features down to {}\n", kFaintPeak);
   if (job.camera) {
     const ColmapCameraText camera = ToColmap(*job.camera);
     text += fmt::format("{} {}\n", camera.model, camera.parameters);
@@ -181,36 +182,53 @@ class Programs {
       : job_(job), workspace_(workspace), colmap_(colmap), log_(workspace / kLog) {}
 
   // Where not all images find a place in one model, once more with fainter features, which small or
-  // smooth images have. The models of the run that places more are kept.
+  // smooth images have. The run whose largest model has more images is kept; what fails in the
+  // second one costs nothing.
   void MakeModels() {
-    fs::path best;
-    int placed = 0;
-    for (const bool with_faint : {false, true}) {
-      with_faint_features_ = with_faint;
-      const fs::path models = workspace_ / (with_faint ? "sparse.faint" : "sparse.usual");
-      fs::remove_all(models);
-      fs::create_directories(models);
-      Extract();
-      Match();
-      Map(models);
-      int in_one = 0;
-      for (const fs::path& model : ColmapModelsIn(models)) {
-        in_one = std::max(in_one, CountOfImagesIn(model));
-      }
-      if (in_one > placed) best = models, placed = in_one;
-      if (placed == CountOfImages() || !job_.poses.empty()) break;
+    const fs::path usual = workspace_ / "sparse.usual", faint = workspace_ / "sparse.faint";
+    const bool may_be_faint = job_.poses.empty();
+    int by_usual = 0, by_faint = 0;
+    try {
+      by_usual = Place(usual);
+    } catch (const NothingUsableError&) {
+      if (!may_be_faint || !has_no_features_) throw;
     }
-    if (best.empty()) {
+    if (by_usual < CountOfImages() && may_be_faint) {
+      with_faint_features_ = true;
+      try {
+        by_faint = Place(faint);
+      } catch (const NothingUsableError&) {
+        if (by_usual == 0) throw;
+        log_ << "with fainter features: " << error_ << ' ' << last_line_ << std::endl;
+      }
+    }
+    if (by_usual == 0 && by_faint == 0) {
       throw NumericalError(fmt::format(
           "{}: COLMAP found no two images to begin a model with; expected images that overlap, "
           "from places apart: where the camera only turns there is no baseline, and poses have to "
           "be given (--poses given); see {}",
           job_.dataset.string(), LogPath()));
     }
-    fs::rename(best, workspace_ / kModels);
+    fs::rename(by_faint > by_usual ? faint : usual, workspace_ / kModels);
+    fs::remove_all(by_faint > by_usual ? usual : faint);
   }
 
  private:
+  // Features, matches, and models in the folder `models`. Returns the number of images in the
+  // largest one.
+  int Place(const fs::path& models) {
+    fs::remove_all(models);
+    fs::create_directories(models);
+    Extract();
+    Match();
+    Map(models);
+    int placed = 0;
+    for (const fs::path& model : ColmapModelsIn(models)) {
+      placed = std::max(placed, CountOfImagesIn(model));
+    }
+    return placed;
+  }
+
   using Options = std::vector<std::pair<std::string, std::string>>;  // names and values
   using UseLine = std::function<void(const std::string&)>;
 
@@ -276,7 +294,8 @@ class Programs {
       if (LastNumber(line) > 0) ++with_features;
     });
     Require("feature_extractor", exit_code);
-    if (counted == 0 || with_features > 0) return;
+    has_no_features_ = counted > 0 && with_features == 0;
+    if (!has_no_features_) return;
     throw NothingUsableError(fmt::format(
         "{}: none of {} images has features; expected corners and texture: are the images blank, "
         "dark or blurred?",
@@ -349,7 +368,7 @@ class Programs {
   const fs::path& workspace_;
   const Installation& colmap_;
   std::ofstream log_;
-  bool with_faint_features_ = false;
+  bool with_faint_features_ = false, has_no_features_ = false;
   std::string last_line_, error_;
 };
 

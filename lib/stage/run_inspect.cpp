@@ -146,16 +146,16 @@ std::string InBrackets(const std::string& doubts) {
 
 // ", scale ... (uncertain: ...), up (uncertain: ...)", up only if it is uncertain; empty for
 // a world whose scale is given.
-std::string WorldInHeadline(const fs::path& path, const Sequence& sequence) {
+std::string WorldInHeadline(const std::optional<Artefact<WorldReport>>& world,
+                            const Sequence& sequence) {
   constexpr const char* kUnknown = ", scale unknown";
-  if (!Exists(path)) return IsInMetresWithoutWorld(sequence) ? "" : kUnknown;
-  const Artefact<WorldReport> world = ReadWorld(path);
+  if (!world) return IsInMetresWithoutWorld(sequence) ? "" : kUnknown;
   std::string words = kUnknown;
-  if (const auto& scale = world.body.scale) {
+  if (const auto& scale = world->body.scale) {
     words = fmt::format(", scale +- {:.0f} %{}", HalfIntervalPercent(*scale),
                         InBrackets(ContradictionsInWords(*scale)));
   }
-  const std::string doubt = DoubtOfUp(world.findings);
+  const std::string doubt = DoubtOfUp(world->findings);
   return doubt.empty() ? words : words + ", up" + InBrackets(doubt);
 }
 
@@ -180,10 +180,10 @@ std::string Headline(const InspectRequest& request) {
     ++placed;
     if (!doubts[i].empty()) ++uncertain;
   }
-  std::string line = Counted(placed, "object") + WorldInHeadline(folder / "world.json", sequence);
-  if (uncertain > 0) line += fmt::format(", {} uncertain", Counted(uncertain, "object"));
   std::optional<Artefact<WorldReport>> world;
   if (Exists(folder / "world.json")) world = ReadWorld(folder / "world.json");
+  std::string line = Counted(placed, "object") + WorldInHeadline(world, sequence);
+  if (uncertain > 0) line += fmt::format(", {} uncertain", Counted(uncertain, "object"));
   const std::string distrust = DistrustOfMap(world ? &world->body : nullptr, sequence);
   if (!distrust.empty()) line += "\ndo not trust this map: " + distrust;
   return line + "\n";

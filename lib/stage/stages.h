@@ -334,7 +334,7 @@ int RunReproduce(const NoOptions& options, const StageFiles& files, int threads)
 // Arguments of soslam-inspect.
 struct InspectRequest {
   std::filesystem::path file;
-  bool headline = false;                     // one line instead, of a map.json
+  bool headline = false;                     // one line instead, or two, of a map.json
   std::optional<std::string> table;          // the one that is wanted, whole; the first one as CSV
   std::optional<std::filesystem::path> csv;  // output path of the table; "-" is standard output
   std::optional<std::filesystem::path> image;     // output path of the picture, a .png

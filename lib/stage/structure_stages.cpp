@@ -364,7 +364,7 @@ void RunGround(const GroundOptions& options, const StageFiles& files, int thread
                        .stage = "ground"};
   const Edits edits = files.contains("edits") ? ReadEdits(files.at("edits")) : Edits();
   if (files.contains("edits")) info.inputs.push_back(files.at("edits"));
-  std::vector<SegmentView> views =
+  const std::vector<SegmentView> views =
       ViewsOfSegments(sequence, options.verticals, files, threads, &info.inputs);
   const GroundEstimate estimate =
       EstimateGround(sequence, WithoutMovingThings(sequence, ReadPoints(files.at("points"))), views,
@@ -378,12 +378,7 @@ void RunGround(const GroundOptions& options, const StageFiles& files, int thread
   }
   ReportFindings("ground", info.findings);
   WriteWorld(files.at("world"), ReportOf(estimate, sequence, info.findings), info);
-  Sequence grounded = WithGround(sequence, estimate);
-  for (size_t i = 0; i < views.size(); ++i) {
-    views[i].world_from_camera = grounded.frames[i].world_from_camera;
-  }
-  SetSceneAxes(views, options.upright.ViewCorrelation(), &grounded);
-  WriteSequence(files.at("output"), grounded, info);
+  WriteSequence(files.at("output"), WithGround(sequence, estimate), info);
   std::string scale_in_words = "unknown scale";
   if (const auto scale = WorldScaleOf(estimate, info.findings)) {
     const std::string contradictions = ContradictionsInWords(*scale);
@@ -392,9 +387,9 @@ void RunGround(const GroundOptions& options, const StageFiles& files, int thread
                                  contradictions.empty() ? "" : ", uncertain: ", contradictions);
   }
   PrintPulls(estimate);
-  fmt::print("{}: up +- {:.1f} degrees (one standard deviation), {}, {}\n", sequence.name,
+  fmt::print("{}: up +- {:.1f} degrees (one standard deviation), {}, {} of points\n", sequence.name,
              kDegPerRad * estimate.tilt_sigma, scale_in_words,
-             Counted(estimate.planes.size(), "support plane"));
+             Counted(estimate.planes.size(), "horizontal plane"));
 }
 
 }  // namespace soslam

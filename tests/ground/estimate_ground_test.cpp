@@ -184,16 +184,6 @@ TEST(EstimateGroundTest, TheSizeOfOneThingTellsTheScale) {
   EXPECT_EQ(CountOf(kObjectsAgainstSettingsCheck, CheckGround(in_feet, {})), 1);
 }
 
-TEST(EstimateGroundTest, PullsAreWhatTheScaleLosesWithoutAnObject) {
-  ScaleEvidence low, high;
-  low.hypotheses = {{"chair", kNoPlane, 0.0, 0.2}};
-  high.hypotheses = {{"sofa", kNoPlane, 0.1, 0.1}};
-  const auto both = EstimateScale({low, high}, {});
-  EXPECT_NEAR(*both->pull[0], both->log_scale - EstimateScale({high}, {})->log_scale, 0.01);
-  EXPECT_NEAR(*both->pull[1], both->log_scale - EstimateScale({low}, {})->log_scale, 0.01);
-  EXPECT_EQ(EstimateScale({low}, {})->pull[0], std::nullopt);
-}
-
 // Whether the objects overrule it or not.
 TEST(EstimateGroundTest, AKnownValueThatObjectsContradictIsAFinding) {
   const PriorScene scene = SceneOf(3);
@@ -328,7 +318,11 @@ TEST(EstimateGroundTest, TurnedImagesTellUpFromDown) {
 
 TEST(EstimateGroundTest, WaysToHoldCamerasHaveProbabilities) {
   const PriorScene scene = SceneOf(3);
-  const UpEstimate up = Estimate(scene.sequence, scene.points).up_of_cameras;
+  const GroundEstimate estimate = Estimate(scene.sequence, scene.points);
+  EXPECT_GT(estimate.up_probability, 0.99);
+  EXPECT_LT(Estimate(scene.sequence, {}).up_probability, estimate.up_probability)
+      << "cameras alone are less sure";
+  const UpEstimate& up = estimate.up_of_cameras;
   double sum = 0.0;
   for (const TriedHolding& tried : up.holdings) sum += tried.probability;
   EXPECT_NEAR(sum, 1.0, 1e-9);
@@ -341,6 +335,33 @@ TEST(EstimateGroundTest, PlanesTellUpWhereCamerasAreTurnedInManyWays) {
   const GroundEstimate estimate = Estimate(scene.sequence, scene.points);
   EXPECT_EQ(CountOf(kCamerasTurnedCheck, CheckGround(estimate, {})), 1);
   EXPECT_LT(AngleBetweenDeg(estimate.up_in_input, scene.up_in_world), 0.5);
+}
+
+TEST(WithSizesTest, NamedBoxesAreOfOneObject) {
+  Edits edits;
+  edits.edits.resize(4);
+  for (const size_t i : {0, 1, 2}) edits.edits[i].kind = EditKind::kSize;
+  edits.edits[0].size.height_m = 0.5;
+  edits.edits[1].size.width_m = 0.6;
+  edits.edits[2].size.depth_m = 0.7;
+  // Most of a group and a stray box; the same group again; boxes of no group; another edit.
+  const FoundEdits found = {edits, {{2, 3, 9}, {4}, {20, 21}, {8}}, {}};
+  const auto groups = WithSizes(found, {{1, 2, 3, 4}, {7, 8, 9}});
+  std::map<std::vector<int>, KnownSize> sizes;
+  for (const BoxGroup& group : groups) sizes[group.detections] = group.size;
+  ASSERT_EQ(sizes.size(), 4u);
+  EXPECT_EQ((sizes.at({1, 2, 3, 9}).height_m), 0.5);
+  EXPECT_EQ((sizes.at({4}).width_m), 0.6);
+  EXPECT_EQ((sizes.at({20, 21}).depth_m), 0.7);
+  EXPECT_FALSE((sizes.at({7, 8}).Any()));
+}
+
+TEST(CheckGroundTest, ASizeThatTellsNothingIsAFinding) {
+  PriorScene scene = SceneOf(3);
+  const Edits edits = KnownSizeOf(scene);
+  for (Object& object : scene.sequence.objects) object.label = "unknown thing";
+  const GroundEstimate estimate = Estimate(scene.sequence, scene.points, {}, edits);
+  EXPECT_EQ(CountOf("size_tells_nothing", CheckGround(estimate, {})), 1);
 }
 
 TEST(GroupBoxesTest, GroupsAreOfOneObject) {
@@ -404,6 +425,7 @@ TEST(SlowGroundTest, TrueScalesAreWithinTheirIntervals) {
   EXPECT_GE(within, 0.9 * tried) << summary;
   EXPECT_LE(width, 1.3 * tried) << summary;
   EXPECT_GE(within_with_size, 0.9 * tried) << summary;
+  EXPECT_GE(within_with_wrong_labels, 0.9 * tried) << summary;
   EXPECT_LE(ratio_with_size, 0.5 * tried) << summary;
   EXPECT_LT(largest_up_error, 1.5) << summary;
   EXPECT_LE(missed, 0.05 * planes) << summary;

@@ -98,5 +98,15 @@ TEST(ScalePosteriorTest, IsNoneWithoutEvidence) {
   EXPECT_FALSE(EstimateScale({ScaleEvidence()}, {}));
 }
 
+TEST(ScalePosteriorTest, PullsAreWhatTheScaleLosesWithoutAnObject) {
+  ScaleEvidence low, high;
+  low.hypotheses = {{"chair", kNoPlane, 0.0, 0.2}};
+  high.hypotheses = {{"sofa", kNoPlane, 0.1, 0.1}};
+  const auto both = EstimateScale({low, high}, {});
+  EXPECT_NEAR(*both->pull[0], both->log_scale - EstimateScale({high}, {})->log_scale, 0.01);
+  EXPECT_NEAR(*both->pull[1], both->log_scale - EstimateScale({low}, {})->log_scale, 0.01);
+  EXPECT_EQ(EstimateScale({low}, {})->pull[0], std::nullopt);
+}
+
 }  // namespace
 }  // namespace soslam

@@ -276,6 +276,30 @@ TEST(EstimatePlanes, BoxesHavePlanesWherePointsHaveNone) {
   ExpectInTurn(estimate);
 }
 
+TEST(EstimatePlanes, OfTwoPlanesOfPointsOnOneLevelTheSurerIsItsPrior) {
+  Sequence sequence = SyntheticSequence(CuboidScene(1, 4), true);
+  sequence.ground = GroundOf(sequence, 0.0, 0.02);
+  const HeightPrior& table = sequence.ground->planes[0];
+  sequence.ground->planes.push_back(
+      {table.point_in_world + 0.005 * sequence.ground->up_in_world, 0.01});
+  const PlanesEstimate estimate = Estimate(sequence);
+  ASSERT_EQ(estimate.planes.size(), 1u);
+  EXPECT_EQ(estimate.planes[0].height_prior->sigma_m, 0.01);
+}
+
+TEST(EstimatePlanes, WhatHangsHasNoFloorOfPoints) {
+  Sequence sequence = SyntheticSequence(CuboidScene(1, 4), false);
+  auto priors = TrueCuboidPriors(sequence, kLogSigma);
+  for (auto& prior : priors) prior->mount = Mount::kHanging;
+  const auto planes = [&] {
+    const auto found = FindPlanes(sequence, priors, CamerasUp(sequence), ModelOptions(), 2);
+    return found ? found->planes.size() : 0;
+  };
+  const size_t without = planes();
+  sequence.ground = GroundOf(sequence, 0.0, 0.01);
+  EXPECT_EQ(planes(), without);
+}
+
 TEST(EstimatePlanes, PlanesOfPointsHoldObjectsThatAreSeenOnce) {
   Sequence sequence = SyntheticSequence(CuboidScene(2, 3), false);
   for (int i = 0; i < 3; ++i) KeepOneDetectionOf(i, &sequence);

@@ -331,7 +331,9 @@ TEST_F(RunReconstructTest, FaintFeaturesAreSoughtWhereImagesFindNoPlace) {
   WriteModel("1", 2, "models_of_faint");
   WriteModel("0", 1, "models_of_faint");
   Run();
+  EXPECT_THAT(printed_.output, HasSubstr("registered 2 of 3 images"));
   EXPECT_EQ(ReadReconstruction(Output("reconstruction.json")).body.components.size(), 1u);
+  EXPECT_FALSE(fs::exists(Output("colmap/sparse.faint")));
 }
 
 TEST_F(RunReconstructTest, FindingsAreReported) {
