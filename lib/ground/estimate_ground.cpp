@@ -199,15 +199,15 @@ void TellScale(double same_label_correlation, UpHypothesis* hypothesis) {
   for (MeasuredObject& object : hypothesis->objects) {
     if (!object.evidence.hypotheses.empty()) objects.push_back(&object);
   }
-  const auto measured = std::ranges::stable_partition(
-      objects, [](const MeasuredObject* object) { return !object->size.Any(); });
+  const auto measured =
+      std::stable_partition(objects.begin(), objects.end(),
+                            [](const MeasuredObject* object) { return !object->size.Any(); });
   std::vector<ScaleEvidence> evidence;
-  for (auto object = objects.begin(); object != measured.begin(); ++object) {
-    evidence.push_back((*object)->evidence);
-  }
+  const auto add = [&](const MeasuredObject* object) { evidence.push_back(object->evidence); };
+  std::for_each(objects.begin(), measured, add);
   WeightSameLabels(same_label_correlation, &evidence);
   result.scale_of_objects = EstimateScale(evidence, {});
-  for (const MeasuredObject* object : measured) evidence.push_back(object->evidence);
+  std::for_each(measured, objects.end(), add);
   result.scale = EstimateScale(evidence, result.known_scales);
   for (size_t i = 0; i < objects.size(); ++i) {
     objects[i]->evidence.weight = evidence[i].weight;

@@ -4,6 +4,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <optional>
 #include <set>
 
@@ -154,14 +156,33 @@ AssociateOptions FitOptions(const GroundOptions& options) {
 
 std::vector<BoxGroup> WithSizes(const FoundEdits& edits,
                                 const std::vector<std::vector<int>>& groups) {
+  std::vector<BoxGroup> sized;  // what edits of common boxes say
+  for (size_t e = 0; e < edits.boxes.size(); ++e) {
+    BoxGroup one{edits.boxes[e], edits.edits.edits[e].size};
+    if (!one.size.Any()) continue;
+    std::ranges::sort(one.detections);
+    for (BoxGroup& other : sized) {
+      std::vector<int> common, all;
+      std::ranges::set_intersection(one.detections, other.detections, std::back_inserter(common));
+      if (common.empty()) continue;
+      std::ranges::set_union(one.detections, other.detections, std::back_inserter(all));
+      one.detections = std::move(all);
+      if (!one.size.depth_m) one.size.depth_m = other.size.depth_m;
+      if (!one.size.width_m) one.size.width_m = other.size.width_m;
+      if (!one.size.height_m) one.size.height_m = other.size.height_m;
+      other.size = KnownSize();
+    }
+    std::erase_if(sized, [](const BoxGroup& other) { return !other.size.Any(); });
+    sized.push_back(std::move(one));
+  }
+  std::ranges::stable_sort(sized, std::greater(),
+                           [](const BoxGroup& group) { return group.detections.size(); });
   std::vector<BoxGroup> result;
   for (const std::vector<int>& group : groups) result.push_back({group, {}});
-  for (size_t e = 0; e < edits.boxes.size(); ++e) {
-    const KnownSize& size = edits.edits.edits[e].size;
-    if (!size.Any()) continue;
-    std::vector<int> named = edits.boxes[e];
-    std::ranges::sort(named);
-    const auto is_named = [&](int box) { return std::ranges::binary_search(named, box); };
+  for (const auto& [named, size] : sized) {
+    const auto is_named = [&named = named](int box) {
+      return std::ranges::binary_search(named, box);
+    };
     const auto count = [&](const BoxGroup& group) {
       return group.size.Any() ? 0 : std::ranges::count_if(group.detections, is_named);
     };
@@ -172,6 +193,7 @@ std::vector<BoxGroup> WithSizes(const FoundEdits& edits,
     std::ranges::sort(most->detections);
     most->size = size;
   }
+  std::erase_if(result, [](const BoxGroup& group) { return group.detections.empty(); });
   return result;
 }
 

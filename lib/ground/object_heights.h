@@ -31,7 +31,8 @@ struct BoxGroup {
 };
 
 // The groups with the sizes of edits. The boxes that an edit names are of one object, with all that
-// the group with most of them has, unless that has a size by another edit.
+// the group with most of them has, unless that has a size by another edit, which names more. Edits
+// that name a common box are of one object.
 std::vector<BoxGroup> WithSizes(const FoundEdits& edits,
                                 const std::vector<std::vector<int>>& groups);
 

@@ -339,18 +339,21 @@ TEST(EstimateGroundTest, PlanesTellUpWhereCamerasAreTurnedInManyWays) {
 
 TEST(WithSizesTest, NamedBoxesAreOfOneObject) {
   Edits edits;
-  edits.edits.resize(4);
-  for (const size_t i : {0, 1, 2}) edits.edits[i].kind = EditKind::kSize;
+  edits.edits.resize(5);
+  for (const size_t i : {0, 1, 2, 4}) edits.edits[i].kind = EditKind::kSize;
   edits.edits[0].size.height_m = 0.5;
   edits.edits[1].size.width_m = 0.6;
   edits.edits[2].size.depth_m = 0.7;
-  // Most of a group and a stray box; the same group again; boxes of no group; another edit.
-  const FoundEdits found = {edits, {{2, 3, 9}, {4}, {20, 21}, {8}}, {}};
+  edits.edits[4].size.width_m = 0.8;
+  // Most of a group and a stray box; the same group again; boxes of no group; another edit; another
+  // length of the first thing.
+  const FoundEdits found = {edits, {{2, 3, 9}, {4}, {20, 21}, {8}, {9}}, {}};
   const auto groups = WithSizes(found, {{1, 2, 3, 4}, {7, 8, 9}});
   std::map<std::vector<int>, KnownSize> sizes;
   for (const BoxGroup& group : groups) sizes[group.detections] = group.size;
   ASSERT_EQ(sizes.size(), 4u);
   EXPECT_EQ((sizes.at({1, 2, 3, 9}).height_m), 0.5);
+  EXPECT_EQ((sizes.at({1, 2, 3, 9}).width_m), 0.8);
   EXPECT_EQ((sizes.at({4}).width_m), 0.6);
   EXPECT_EQ((sizes.at({20, 21}).depth_m), 0.7);
   EXPECT_FALSE((sizes.at({7, 8}).Any()));
