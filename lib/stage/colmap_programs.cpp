@@ -40,7 +40,8 @@ constexpr int kBlockSize = 10;  // images per block of exhaustive matching
 // wrong matches remain to bend an estimated focal length by more than 1 %.
 constexpr const char* kMaxReprojectionErrorPx = "1.5";
 
-// Least contrast of faint features (difference of Gaussians); a third of COLMAP's own bound.
+// Least contrast of faint features (difference of Gaussians); a third of COLMAP's own
+// bound, a guess.
 constexpr const char* kFaintPeak = "0.0022";
 
 // Last number in a line; 0 without one.
