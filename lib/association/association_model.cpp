@@ -74,6 +74,14 @@ double CostOfPlane(const Sequence& sequence, const Plane& plane_in_world, const 
   return std::log(static_cast<double>(alike) / probability);
 }
 
+// The labels that it is detected with, or the one that is given by hand.
+std::vector<std::string> DetectedLabels(const Track& track) {
+  if (track.by_hand && track.by_hand->label) return {*track.by_hand->label};
+  std::vector<std::string> labels;
+  for (const auto& [label, votes] : track.votes) labels.push_back(label);
+  return labels;
+}
+
 }  // namespace
 
 AssociationModel::AssociationModel(const Sequence& sequence, const SemanticTable& table,
@@ -137,15 +145,28 @@ void AssociationModel::TryFreeHeight(const Track& track, const std::string& labe
                CostOfLabel(track, label, *free) - std::log(options_.no_support_probability));
 }
 
+void AssociationModel::TryDetected(const Track& track, Hypotheses* hypotheses) const {
+  for (const std::string& label : DetectedLabels(track)) {
+    for (const Support& support : SupportsOf(track)) Try(track, label, support, {}, hypotheses);
+  }
+}
+
+void AssociationModel::TrySimilar(const Track& track, Hypotheses* hypotheses) const {
+  if (!hypotheses->fit || (track.by_hand && track.by_hand->label)) return;
+  const std::vector<Support> supports = SupportsOf(track);
+  const auto support = std::ranges::find(supports, hypotheses->plane_index, &Support::plane_index);
+  const std::vector<Landmark> start = {hypotheses->fit->landmark_in_world};
+  for (const std::string& label : labels_.Candidates(track.votes)) {
+    if (track.votes.contains(label) || !table_.Contains(label)) continue;
+    Try(track, label, *support, start, hypotheses);
+  }
+}
+
 void AssociationModel::Fit(Track* track) const {
   Hypotheses hypotheses;
-  std::vector<std::string> labels = labels_.Candidates(track->votes);
-  std::erase_if(labels, [&](const std::string& label) {
-    return !track->votes.contains(label) && !table_.Contains(label);
-  });
-  if (track->by_hand && track->by_hand->label) labels = {*track->by_hand->label};
-  for (const std::string& label : labels) {
-    for (const Support& support : SupportsOf(*track)) Try(*track, label, support, {}, &hypotheses);
+  TryDetected(*track, &hypotheses);
+  TrySimilar(*track, &hypotheses);
+  for (const std::string& label : DetectedLabels(*track)) {
     TryFreeHeight(*track, label, &hypotheses);
   }
   Settle(hypotheses, track);
@@ -153,18 +174,10 @@ void AssociationModel::Fit(Track* track) const {
 
 void AssociationModel::FitAsDetected(Track* track) const {
   Hypotheses hypotheses;
-  const std::vector<Support> supports = SupportsOf(*track);
-  for (const auto& [label, votes] : track->votes) {
-    for (const Support& support : supports) Try(*track, label, support, {}, &hypotheses);
-  }
+  TryDetected(*track, &hypotheses);
   if (hypotheses.fit && options_.label_evidence_weight * hypotheses.fit->cost_of_misfit >
                             -std::log(options_.similar_label_confusion)) {
-    const auto support = std::ranges::find(supports, hypotheses.plane_index, &Support::plane_index);
-    const std::vector<Landmark> start = {hypotheses.fit->landmark_in_world};
-    for (const std::string& label : labels_.Candidates(track->votes)) {
-      if (track->votes.contains(label) || !table_.Contains(label)) continue;
-      Try(*track, label, *support, start, &hypotheses);
-    }
+    TrySimilar(*track, &hypotheses);
   }
   Settle(hypotheses, track);
 }
@@ -224,18 +237,24 @@ std::optional<Prediction> AssociationModel::Predict(const Track& track, int fram
     const int before = frame_of(*std::prev(next));
     if (std::abs(frame_index - before) <= std::abs(frame_index - nearest)) nearest = before;
   }
-  return boxes_.Predict(*track.fit, nearest, frame_index);
+  return Predict(track, *track.fit, nearest, frame_index);
+}
+
+std::optional<Prediction> AssociationModel::Predict(const Track& track, const FittedObject& fit,
+                                                    int known_frame_index, int frame_index) const {
+  auto prediction = boxes_.Predict(fit, known_frame_index, frame_index);
+  const auto prior = table_.Find(soslam::LabelOf(track));
+  if (prediction && prior) prediction->edge_bias = prior->edge_bias;
+  return prediction;
 }
 
 std::optional<BoxMatch> AssociationModel::Match(const Track& track, const Prediction& prediction,
                                                 const Detection& detection) const {
   if (sequence_.HasSupports() && PlaneOf(detection) != track.plane_index) return std::nullopt;
-  const double label_cost = -2.0 * std::log(labels_.Probability(LabelOf(detection), track.labels));
-  if (!std::isfinite(label_cost)) return std::nullopt;
-  const auto prior = table_.Find(soslam::LabelOf(track));
-  auto match = boxes_.Match(prediction, detection, prior ? prior->edge_bias : EdgeBias());
+  auto match = boxes_.Match(prediction, detection);
   if (!match) return std::nullopt;
-  match->cost += label_cost - 2.0 * std::log(1.0 - options_.new_object_probability);
+  match->cost -= 2.0 * std::log(labels_.Probability(LabelOf(detection), track.labels)) +
+                 2.0 * std::log(1.0 - options_.new_object_probability);
   return match->cost < NewObjectCost(detection) ? match : std::nullopt;
 }
 
@@ -252,7 +271,7 @@ std::vector<std::optional<BoxMatch>> AssociationModel::Explain(const Track& trac
   const int middle = DetectionAt(track.detections[track.detections.size() / 2]).frame_index;
   for (size_t i = 0; i < matches.size(); ++i) {
     const Detection& detection = DetectionAt(track.detections[i]);
-    const auto prediction = boxes_.Predict(exact, middle, detection.frame_index);
+    const auto prediction = Predict(track, exact, middle, detection.frame_index);
     if (prediction) matches[i] = Match(track, *prediction, detection);
   }
   return matches;

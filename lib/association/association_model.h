@@ -38,16 +38,16 @@ class AssociationModel {
     return sequence_.ObjectOf(detection).plane_index;
   }
 
-  // Fits the track's landmark to its detections, once for each label that it may have and, where
-  // its support plane is unknown, each plane. Boxes, sizes and votes decide among them. When the
-  // boxes determine no landmark, the track keeps its previous one.
+  // Fits the track's landmark to its detections, once for each label that it is detected with and,
+  // where its support plane is unknown, each plane; as similar labels from the best of these
+  // landmarks, on its support. Boxes, sizes and votes decide among them. When the boxes determine
+  // no landmark, the track keeps its previous one.
   void Fit(Track* track) const;
   // The same with the labels and supports of its parts alone, which have been fitted; from their
   // landmarks, if they are two or fewer.
   void FitLike(const std::vector<const Track*>& parts, Track* track) const;
-  // The same with the labels that it is detected with and, where these misfit by more than that
-  // costs, similar ones from the best landmark, on its support; without asking whether the track
-  // has a support.
+  // The same with similar labels only where the others misfit by more than those cost, and without
+  // asking whether the track has a support.
   void FitAsDetected(Track* track) const;
 
   // Expected box of a track in a frame. None when the track has no landmark, its landmark is not
@@ -79,6 +79,8 @@ class AssociationModel {
 
  private:
   int SegmentOf(const Track& track) const;
+  std::optional<Prediction> Predict(const Track& track, const FittedObject& fit,
+                                    int known_frame_index, int frame_index) const;
   // Costs of the labels and supports that a track may have; its best fit on a support.
   struct Hypotheses {
     std::map<std::string, double> cost_of_label;
@@ -92,6 +94,9 @@ class AssociationModel {
   std::vector<Support> SupportsOf(const Track& track) const;
   void Try(const Track& track, const std::string& label, const Support& support,
            const std::vector<Landmark>& starts, Hypotheses* hypotheses) const;
+  // Each label on each support, then others from the best landmark on its support.
+  void TryDetected(const Track& track, Hypotheses* hypotheses) const;
+  void TrySimilar(const Track& track, Hypotheses* hypotheses) const;
   void TryFreeHeight(const Track& track, const std::string& label, Hypotheses* hypotheses) const;
   double CostOfLabel(const Track& track, const std::string& label, const FittedObject& fit) const;
   ShapePrior PriorOf(const Track& track, const std::string& label) const;

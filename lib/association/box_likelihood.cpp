@@ -115,8 +115,8 @@ std::optional<Prediction> BoxLikelihood::Predict(const FittedObject& object, int
 }
 
 std::optional<BoxMatch> BoxLikelihood::Match(const Prediction& prediction,
-                                             const Detection& detection,
-                                             const EdgeBias& bias) const {
+                                             const Detection& detection) const {
+  const EdgeBias& bias = prediction.edge_bias;
   const Box box = WithoutBias(detection.box, detection.is_one_sided, bias);
   const auto edges = BoxEdges(sequence_.CameraOf(detection), detection.box, detection.is_one_sided,
                               options_.upright.detection_sigma_fraction, bias);

@@ -53,6 +53,7 @@ struct Prediction {
   // Covariance of the outward offsets of the edges (left, top, right, bottom), px^2.
   Eigen::Matrix4d outline_covariance;
   bool feet_are_hidden = false;  // see FittedObject
+  EdgeBias edge_bias = {};       // of boxes of the object's label
 };
 
 // Likelihood of a detected box given an object. The four edges are normally distributed about the
@@ -68,10 +69,8 @@ class BoxLikelihood {
   std::optional<Prediction> Predict(const FittedObject& object, int known_frame_index,
                                     int frame_index) const;
 
-  // None when the box is so far off that CostOfAnyBox is certainly lower. `bias`: of boxes of the
-  // object's label.
-  std::optional<BoxMatch> Match(const Prediction& prediction, const Detection& detection,
-                                const EdgeBias& bias = {}) const;
+  // None when the box is so far off that CostOfAnyBox is certainly lower.
+  std::optional<BoxMatch> Match(const Prediction& prediction, const Detection& detection) const;
 
   // Cost of the box of an unseen object: uniform over all positions and sizes in the image.
   double CostOfAnyBox(const Detection& detection) const;

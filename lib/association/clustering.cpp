@@ -39,6 +39,12 @@ struct Group : Cluster {
   int tried_until = 0;  // divisions into clusters with ids below are tried
 };
 
+// Two groups as one.
+struct Trial {
+  Cluster joint;
+  double gain = 0.0;
+};
+
 struct Clustering {
   int FrameOf(int detection) const { return model.DetectionAt(detection).frame_index; }
 
@@ -48,8 +54,9 @@ struct Clustering {
   std::vector<Cluster> singles = {};  // by detection
   std::map<int, Group> groups = {};   // by id
   int next_id = 0;
-  // Log odds of one object, by two groups' ids, above zero; gain of joining them.
-  std::map<std::pair<int, int>, double> promises = {}, gains = {};
+  // Log odds of one object, by two groups' ids, above zero; what joining them would lead to.
+  std::map<std::pair<int, int>, double> promises = {};
+  std::map<std::pair<int, int>, Trial> trials = {};
 };
 
 double CostOfBoxes(const Clustering& all, const Cluster& cluster) {
@@ -145,30 +152,37 @@ double OnePlaceCost(const AssociationModel& model, const Cluster& one, const Clu
   return IntersectionVolume(a, b) < least ? 0.0 : kOnePlaceCost;
 }
 
-// Log odds of one object against two by pairs of boxes alone: pictures, and how the body of one
-// predicts some boxes of the other. kNone where neither tells that they may be one.
-double Promise(const Clustering& all, const Cluster& one, const Cluster& other) {
+// The boxes of a track that others' bodies are to predict.
+std::vector<int> BoxesToPredict(const Track& track) {
   constexpr size_t kPredicted = 3;
-  const AssociationModel& model = all.model;
-  if (!model.MayShareSupport(one.track, other.track)) return kNone;
-  const double by_pictures = all.pairs.LogRatio(one.track.detections, other.track.detections);
-  const double by_place = 0.5 * OnePlaceCost(model, one, other);
-  double by_boxes = 0.0;
-  bool is_predicted = false;
-  for (const auto& [by, of] : {std::pair(&one, &other), std::pair(&other, &one)}) {
-    const std::vector<int> some = SpreadOver(of->track.detections, kPredicted);
-    double sum = 0.0;
-    for (const int index : some) {
-      const Detection& detection = model.DetectionAt(index);
-      const auto prediction = model.Predict(by->track, detection.frame_index);
-      const auto match = prediction ? model.Match(by->track, *prediction, detection) : std::nullopt;
-      if (!match) continue;
-      is_predicted = true;
-      sum += 0.5 * (model.NewObjectCost(detection) - match->cost);
-    }
-    by_boxes = std::max(by_boxes, sum / static_cast<double>(some.size()));
+  return SpreadOver(track.detections, kPredicted);
+}
+
+// Mean log odds that boxes are of a track's body against unseen ones', none if it predicts none of
+// them. `predict`: the body's Prediction in a frame, if any.
+template <typename Predict>
+std::optional<double> OddsByBody(const AssociationModel& model, const Track& body,
+                                 const std::vector<int>& boxes, const Predict& predict) {
+  std::optional<double> sum;
+  for (const int index : boxes) {
+    const Detection& detection = model.DetectionAt(index);
+    const std::optional<Prediction>& prediction = predict(detection.frame_index);
+    const auto match = prediction ? model.Match(body, *prediction, detection) : std::nullopt;
+    if (match) sum = sum.value_or(0.0) + 0.5 * (model.NewObjectCost(detection) - match->cost);
   }
-  const bool may_be_one = is_predicted || by_pictures > 0.0 || by_place > 0.0;
+  if (sum) *sum /= static_cast<double>(boxes.size());
+  return sum;
+}
+
+// Log odds of one object against two by pairs of boxes alone: pictures, and OddsByBody of the body
+// of either. kNone where neither tells that they may be one.
+double Promise(const Clustering& all, const Cluster& one, const Cluster& other,
+               const std::optional<double>& by_one, const std::optional<double>& by_other) {
+  if (!all.model.MayShareSupport(one.track, other.track)) return kNone;
+  const double by_pictures = all.pairs.LogRatio(one.track.detections, other.track.detections);
+  const double by_place = 0.5 * OnePlaceCost(all.model, one, other);
+  const bool may_be_one = by_one || by_other || by_pictures > 0.0 || by_place > 0.0;
+  const double by_boxes = std::max({0.0, by_one.value_or(0.0), by_other.value_or(0.0)});
   return may_be_one ? by_pictures + by_boxes + by_place : kNone;
 }
 
@@ -197,10 +211,24 @@ std::vector<std::vector<int>> Tracklets(const Clustering& all, const std::vector
   ParallelFor(in_frame.size() - 1, all.threads, [&](size_t frame) {
     const std::vector<int>&from = in_frame[frame], &to = in_frame[frame + 1];
     if (from.empty() || to.empty()) return;
+    const auto predictions = [&](const std::vector<int>& boxes, size_t in_frame) {
+      std::vector<std::optional<Prediction>> all_of_them;
+      for (const int box : boxes) {
+        all_of_them.push_back(
+            all.model.Predict(all.singles[box].track, static_cast<int>(in_frame)));
+      }
+      return all_of_them;
+    };
+    const auto forwards = predictions(from, frame + 1), backwards = predictions(to, frame);
     Eigen::MatrixXd odds(from.size(), to.size());
     for (Eigen::Index i = 0; i < odds.rows(); ++i) {
       for (Eigen::Index j = 0; j < odds.cols(); ++j) {
-        odds(i, j) = Promise(all, all.singles[from[i]], all.singles[to[j]]);
+        const Cluster &one = all.singles[from[i]], &other = all.singles[to[j]];
+        const auto by_one = OddsByBody(
+            all.model, one.track, {to[j]}, [&](int) -> const auto& { return forwards[i]; });
+        const auto by_other = OddsByBody(
+            all.model, other.track, {from[i]}, [&](int) -> const auto& { return backwards[j]; });
+        odds(i, j) = Promise(all, one, other, by_one, by_other);
       }
     }
     for (Eigen::Index i = 0; i < odds.rows(); ++i) {
@@ -227,13 +255,13 @@ void Add(Cluster cluster, Clustering* all) {
   all->groups.emplace(all->next_id++, Group{std::move(cluster)});
 }
 
-void Remove(int id, Clustering* all) {
-  all->groups.erase(id);
-  const auto is_of = [id](const auto& row) {
-    return row.first.first == id || row.first.second == id;
+void Remove(const std::set<int>& ids, Clustering* all) {
+  for (const int id : ids) all->groups.erase(id);
+  const auto is_of = [&ids](const auto& row) {
+    return ids.contains(row.first.first) || ids.contains(row.first.second);
   };
   std::erase_if(all->promises, is_of);
-  std::erase_if(all->gains, is_of);
+  std::erase_if(all->trials, is_of);
 }
 
 // Block of frames, of this number, that a cluster is in.
@@ -243,19 +271,45 @@ int BlockOf(const Clustering& all, const Cluster& cluster, int frames) {
 
 // Adds the promises of pairs in one block that have none yet.
 void ComparePairs(int block, Clustering* all) {
+  const AssociationModel& model = all->model;
   std::vector<std::map<int, Group>::iterator> groups;
-  for (auto at = all->groups.begin(); at != all->groups.end(); ++at) groups.push_back(at);
+  std::vector<std::vector<int>> boxes;  // of each group, to predict
+  for (auto at = all->groups.begin(); at != all->groups.end(); ++at) {
+    groups.push_back(at);
+    boxes.push_back(BoxesToPredict(at->second.track));
+  }
+  const auto is_new = [&](const Group& one, const Group& other) {
+    const int known = std::min(one.block, other.block);
+    return BlockOf(*all, one, block) == BlockOf(*all, other, block) &&
+           (known == 0 || BlockOf(*all, one, known) != BlockOf(*all, other, known));
+  };
+  // Odds by the body of each group, by the place of the group of the boxes.
+  std::vector<std::map<size_t, double>> by_body(groups.size());
+  ParallelFor(groups.size(), all->threads, [&](size_t i) {
+    const Group& one = groups[i]->second;
+    std::map<int, std::optional<Prediction>> predictions;  // by frame
+    const auto predict = [&](int frame) -> const auto& {
+      const auto [at, is_unknown] = predictions.try_emplace(frame);
+      if (is_unknown) at->second = model.Predict(one.track, frame);
+      return at->second;
+    };
+    for (size_t j = 0; j < groups.size(); ++j) {
+      if (j == i || !is_new(one, groups[j]->second)) continue;
+      const auto odds = OddsByBody(model, one.track, boxes[j], predict);
+      if (odds) by_body[i].emplace(j, *odds);
+    }
+  });
   std::vector<std::vector<std::pair<std::pair<int, int>, double>>> found(groups.size());
   ParallelFor(groups.size(), all->threads, [&](size_t i) {
     const Group& one = groups[i]->second;
+    const auto odds = [&](size_t body, size_t boxes) {
+      const auto at = by_body[body].find(boxes);
+      return at == by_body[body].end() ? std::nullopt : std::optional(at->second);
+    };
     for (size_t j = i + 1; j < groups.size(); ++j) {
       const Group& other = groups[j]->second;
-      const int known = std::min(one.block, other.block);
-      if (BlockOf(*all, one, block) != BlockOf(*all, other, block) ||
-          (known > 0 && BlockOf(*all, one, known) == BlockOf(*all, other, known))) {
-        continue;
-      }
-      const double promise = Promise(*all, one, other);
+      if (!is_new(one, other)) continue;
+      const double promise = Promise(*all, one, other, odds(i, j), odds(j, i));
       if (promise > 0.0) found[i].push_back({{groups[i]->first, groups[j]->first}, promise});
     }
   });
@@ -264,7 +318,7 @@ void ComparePairs(int block, Clustering* all) {
 }
 
 // The pairs that are most promising for one of the two.
-std::set<std::pair<int, int>> MostPromising(const Clustering& all) {
+std::set<std::pair<int, int>> MostPromising(const Clustering& all, size_t partners_each) {
   std::map<int, std::vector<std::pair<double, int>>> partners;
   for (const auto& [pair, promise] : all.promises) {
     partners[pair.first].emplace_back(-promise, pair.second);
@@ -273,54 +327,50 @@ std::set<std::pair<int, int>> MostPromising(const Clustering& all) {
   std::set<std::pair<int, int>> pairs;
   for (auto& [one, others] : partners) {
     std::ranges::sort(others);
-    if (others.size() > kMostPromising) others.resize(kMostPromising);
+    if (others.size() > partners_each) others.resize(partners_each);
     for (const auto& [promise, other] : others) pairs.insert(std::minmax(one, other));
   }
   return pairs;
 }
 
 // Joins clusters in one block that each gain most by each other, until nothing is gained. Those are
-// tried that are most promising for one of the two.
-void Join(int block, Clustering* all) {
+// tried that are among as many most promising ones for one of the two.
+void Join(int block, size_t promising, Clustering* all) {
   while (true) {
     ComparePairs(block, all);
-    const std::set<std::pair<int, int>> tried = MostPromising(*all);
+    const std::set<std::pair<int, int>> tried = MostPromising(*all, promising);
     std::vector<std::pair<int, int>> unknown;
     std::ranges::copy_if(tried, std::back_inserter(unknown),
-                         [&](const auto& pair) { return !all->gains.contains(pair); });
-    std::vector<double> gains(unknown.size());
+                         [&](const auto& pair) { return !all->trials.contains(pair); });
+    std::vector<Trial> trials(unknown.size());
     ParallelFor("pairs", unknown.size(), all->threads, [&](size_t i) {
       const Cluster& one = all->groups.at(unknown[i].first);
       const Cluster& other = all->groups.at(unknown[i].second);
-      gains[i] = one.cost + other.cost + OnePlaceCost(all->model, one, other) -
-                 Joint(*all, one, other).cost;
+      trials[i].joint = Joint(*all, one, other);
+      trials[i].gain =
+          one.cost + other.cost + OnePlaceCost(all->model, one, other) - trials[i].joint.cost;
     });
-    for (size_t i = 0; i < unknown.size(); ++i) all->gains[unknown[i]] = gains[i];
+    for (size_t i = 0; i < unknown.size(); ++i) all->trials[unknown[i]] = std::move(trials[i]);
     std::map<int, std::pair<double, int>> best;  // gain and partner of each cluster
     for (const auto& pair : tried) {
-      const double gain = all->gains.at(pair);
+      const double gain = all->trials.at(pair).gain;
       if (gain < kLeastGain) continue;
       for (const auto& [one, other] : {pair, std::pair(pair.second, pair.first)}) {
         const auto [at, is_first] = best.emplace(one, std::pair(gain, other));
         if (!is_first && gain > at->second.first) at->second = {gain, other};
       }
     }
-    std::vector<std::pair<int, int>> joined;
+    std::vector<Cluster> joined;
+    std::set<int> parts;
     for (const auto& [one, partner] : best) {
-      if (one < partner.second && best.at(partner.second).second == one) {
-        joined.emplace_back(one, partner.second);
-      }
+      const int other = partner.second;
+      if (one > other || best.at(other).second != one) continue;
+      joined.push_back(std::move(all->trials.at({one, other}).joint));
+      parts.insert({one, other});
     }
     if (joined.empty()) return;
-    std::vector<Cluster> joint(joined.size());
-    ParallelFor(joined.size(), all->threads, [&](size_t i) {
-      joint[i] = Joint(*all, all->groups.at(joined[i].first), all->groups.at(joined[i].second));
-    });
-    for (size_t i = 0; i < joined.size(); ++i) {
-      Remove(joined[i].first, all);
-      Remove(joined[i].second, all);
-      Add(std::move(joint[i]), all);
-    }
+    Remove(parts, all);
+    for (Cluster& joint : joined) Add(std::move(joint), all);
   }
 }
 
@@ -391,7 +441,11 @@ Division BestDivision(int block, int id, const Clustering& all) {
           BlockOf(all, into, block) != BlockOf(all, cluster, block)) {
         continue;
       }
-      if (Promise(all, into, part) <= 0.0) continue;
+      const auto by_body = [&](const Cluster& body, const Cluster& boxes) {
+        return OddsByBody(all.model, body.track, BoxesToPredict(boxes.track),
+                          [&](int frame) { return all.model.Predict(body.track, frame); });
+      };
+      if (Promise(all, into, part, by_body(into, part), by_body(part, into)) <= 0.0) continue;
       std::vector<int> both = into.track.detections;
       both.push_back(parts[i].front());
       Cluster taken_in =
@@ -418,8 +472,7 @@ bool Divide(int block, Clustering* all) {
       all->groups.at(id).tried_until = all->next_id;
       continue;
     }
-    if (division.to) Remove(*division.to, all);
-    Remove(id, all);
+    Remove(division.to ? std::set{id, *division.to} : std::set{id}, all);
     for (Cluster* cluster : {&division.rest, &division.part}) {
       if (cluster->track.detections.size() > 1) {
         Cluster anew = Evaluate(*all, cluster->track.detections, cluster->log_ratio, {});
@@ -478,7 +531,7 @@ Clusters ClusterDetections(const AssociationModel& model, const PairEvidence& pa
     for (auto& [id, group] : all.groups) group.tried_until = 0;
     result.is_settled = false;
     for (int round = 0; round < kMaxRounds && !result.is_settled; ++round) {
-      Join(block, &all);
+      for (const size_t promising : {size_t{1}, kMostPromising}) Join(block, promising, &all);
       result.is_settled = !Divide(block, &all);
     }
     if (block >= frames) break;

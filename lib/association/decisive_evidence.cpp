@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -77,6 +78,7 @@ class EvidenceOfTracks {
     const Track& track = association_.tracks[index];
     std::set<int> frames;
     for (const int box : track.boxes) frames.insert(FrameOf(box));
+    std::map<int, std::optional<Prediction>> predictions;  // by frame
     std::vector<KeptOutRow> rows;
     for (int i = 0; i < std::ssize(association_.tracks); ++i) {
       const Track& other = association_.tracks[i];
@@ -90,7 +92,9 @@ class EvidenceOfTracks {
       for (const int box : other.boxes) {
         if (frames.contains(FrameOf(box))) frames_with_both.insert(FrameOf(box));
         Evidence of_box;
-        for (const int own : track.boxes) AddPictures(own, box, &of_box);
+        for (size_t k = 0; k < track.boxes.size() && !pairs_.IsEmpty(); ++k) {
+          AddPictures(track.boxes[k], box, &of_box);
+        }
         row.evidence.points_in_both += of_box.points_in_both;
         row.evidence.points_in_any += of_box.points_in_any;
         row.evidence.points += of_box.points;
@@ -102,10 +106,11 @@ class EvidenceOfTracks {
       row.frames_with_both = static_cast<int>(frames_with_both.size());
       const std::vector<int> some = SpreadOver(other.boxes, kPredicted);
       for (const int box : some) {
-        const auto prediction = model_.Predict(track, FrameOf(box));
+        const auto [at, is_unknown] = predictions.try_emplace(FrameOf(box));
+        if (is_unknown) at->second = model_.Predict(track, FrameOf(box));
         AddBox(
             track, box,
-            prediction ? model_.Match(track, *prediction, model_.DetectionAt(box)) : std::nullopt,
+            at->second ? model_.Match(track, *at->second, model_.DetectionAt(box)) : std::nullopt,
             1.0 / static_cast<double>(some.size()), &row.evidence);
       }
       if (std::isfinite(row.evidence.labels)) rows.push_back(row);

@@ -12,6 +12,13 @@ LabelConfusion::LabelConfusion(const std::set<std::string>& labels, const Associ
       probability_(options.label_confusion),
       similar_probability_(options.similar_label_confusion) {
   for (const std::string& label : labels) detected_groups_.insert(groups_.Group(label));
+  std::set<std::string> of_objects = labels;
+  for (const std::string& label : labels) of_objects.merge(SimilarTo(label));
+  for (const std::string& detected : labels) {
+    for (const std::string& label : of_objects) {
+      probabilities_[detected][label] = FindProbability(detected, label);
+    }
+  }
 }
 
 std::set<std::string> LabelConfusion::SimilarTo(const std::string& label) const {
@@ -26,6 +33,16 @@ std::set<std::string> LabelConfusion::SimilarTo(const std::string& label) const 
 
 double LabelConfusion::Probability(const std::string& of_detection,
                                    const std::string& of_object) const {
+  const auto detected = probabilities_.find(of_detection);
+  if (detected != probabilities_.end()) {
+    const auto known = detected->second.find(of_object);
+    if (known != detected->second.end()) return known->second;
+  }
+  return FindProbability(of_detection, of_object);
+}
+
+double LabelConfusion::FindProbability(const std::string& of_detection,
+                                       const std::string& of_object) const {
   const std::string &detected = groups_.Group(of_detection), &own = groups_.Group(of_object);
   std::set<std::string> similar;  // groups
   for (const std::string& label : SimilarTo(of_object)) {

@@ -22,8 +22,8 @@ class LabelConfusion {
   // `labels`: all labels of the detections. Throws SettingsError for malformed groups.
   LabelConfusion(const std::set<std::string>& labels, const AssociateOptions& options);
 
-  // Probability that an object is detected with a label, normalised over the labels of the
-  // detections.
+  // Probability that an object is detected with a label, one of those of the detections, over which
+  // it is normalised.
   double Probability(const std::string& of_detection, const std::string& of_object) const;
   // The same for an object whose label is uncertain.
   double Probability(const std::string& of_detection,
@@ -41,12 +41,15 @@ class LabelConfusion {
  private:
   // Labels that are similar to a label, and the label itself; none where nothing is similar to it.
   std::set<std::string> SimilarTo(const std::string& label) const;
+  double FindProbability(const std::string& of_detection, const std::string& of_object) const;
 
   LabelGroups groups_;
   std::vector<std::vector<std::string>> similar_;
   std::set<std::string> detected_groups_;
   double probability_;          // of a label that is neither the object's nor similar to it, in sum
   double similar_probability_;  // of a similar label, in sum
+  // Probability by the label of a detection, then that of an object: asked for each pair of boxes.
+  std::map<std::string, std::map<std::string, double>> probabilities_;
 };
 
 // Probabilities of alternatives whose costs are -log of their evidence, most probable first.

@@ -13,7 +13,6 @@ namespace {
 constexpr int kMaxRounds = 20;
 // The first rounds hold the body to the prior's ratio: the initial guess is too rough to adapt it.
 constexpr int kRoundsWithFixedRatio = 3;
-constexpr double kConvergenceTolerance = 1e-6;  // relative change of the half axes
 // Smallest reciprocal condition number (1-norm) of the first round's system: below it, the boxes do
 // not determine the body.
 constexpr double kMinConditionReciprocal = 1e-9;
@@ -84,7 +83,7 @@ std::optional<Landmark> BodyAtYaw::Solve(double yaw) const {
       break;
     }
     if (round >= kRoundsWithFixedRatio &&
-        (body.half_axes - before).norm() < kConvergenceTolerance * before.norm()) {
+        (body.half_axes - before).norm() < evidence_.precision.half_axes * before.norm()) {
       break;
     }
   }

@@ -31,7 +31,8 @@ std::optional<ObjectFit> Fit(const ObjectEvidence& evidence, const Landmark& sta
   Landmark at = start;
   for (int round = 0; round < kRounds; ++round) {
     const auto solution = FitUpright(evidence.plane, at, CostsAt(evidence, at),
-                                     {.yaw = yaw_is_free, .height = evidence.height_is_free});
+                                     {.yaw = yaw_is_free, .height = evidence.height_is_free},
+                                     evidence.precision.cost);
     if (!solution) return std::nullopt;
     at = solution->landmark;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "initialisation/upright.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/levenberg_marquardt.h"
@@ -58,8 +59,8 @@ UprightJacobian UprightGround::ParameterJacobian(const Landmark& landmark) const
 }
 
 std::optional<UprightSolution> FitUpright(const Plane& plane, const Landmark& start,
-                                          const LandmarkCosts& costs,
-                                          const UprightFreedom& is_free) {
+                                          const LandmarkCosts& costs, const UprightFreedom& is_free,
+                                          double negligible_decrease) {
   const UprightGround ground(plane);
   const auto landmark_at = [&](const UprightVector& at) {
     return ground.LandmarkAt(at, start.shape_exponents, start.rests_on);
@@ -73,8 +74,8 @@ std::optional<UprightSolution> FitUpright(const Plane& plane, const Landmark& st
   };
   UprightVector parameters = ground.ParametersOf(start);
   if (!is_free.height) parameters[6] = 0.0;
-  const double cost =
-      MinimiseSquares(evaluate, {kMaxIterations, NegligibleDecrease(costs)}, &parameters).cost;
+  const double negligible = std::max(negligible_decrease, NegligibleDecrease(costs));
+  const double cost = MinimiseSquares(evaluate, {kMaxIterations, negligible}, &parameters).cost;
   if (!std::isfinite(cost) || !parameters.allFinite()) return std::nullopt;
   return UprightSolution{landmark_at(parameters), cost + ConstantCost(costs)};
 }

@@ -44,9 +44,11 @@ struct UprightFreedom {
   bool yaw = true;
   bool height = false;
 };
+// `negligible_decrease`: see LevenbergMarquardtOptions; that of the costs if it is larger.
 std::optional<UprightSolution> FitUpright(const Plane& plane, const Landmark& start,
                                           const LandmarkCosts& costs,
-                                          const UprightFreedom& is_free = {});
+                                          const UprightFreedom& is_free = {},
+                                          double negligible_decrease = 0.0);
 
 // Levenberg-Marquardt over all nine parameters of a body that leans on a plane, from an upright
 // landmark and from that landmark tilted to four sides. `costs` hold a LeaningTerm. Returns the
