@@ -74,8 +74,8 @@ double CostOfPlane(const Sequence& sequence, const Plane& plane_in_world, const 
   return std::log(static_cast<double>(alike) / probability);
 }
 
-// The labels that it is detected with, or the one that is given by hand.
-std::vector<std::string> DetectedLabels(const Track& track) {
+// The labels that a track is detected with, or the one that is given by hand.
+std::vector<std::string> OwnLabels(const Track& track) {
   if (track.by_hand && track.by_hand->label) return {*track.by_hand->label};
   std::vector<std::string> labels;
   for (const auto& [label, votes] : track.votes) labels.push_back(label);
@@ -145,36 +145,43 @@ void AssociationModel::TryFreeHeight(const Track& track, const std::string& labe
                CostOfLabel(track, label, *free) - std::log(options_.no_support_probability));
 }
 
-void AssociationModel::TryDetected(const Track& track, Hypotheses* hypotheses) const {
-  for (const std::string& label : DetectedLabels(track)) {
+void AssociationModel::TryOwnLabels(const Track& track, Hypotheses* hypotheses) const {
+  for (const std::string& label : OwnLabels(track)) {
     for (const Support& support : SupportsOf(track)) Try(track, label, support, {}, hypotheses);
   }
 }
 
 void AssociationModel::TrySimilar(const Track& track, Hypotheses* hypotheses) const {
-  if (!hypotheses->fit || (track.by_hand && track.by_hand->label)) return;
-  const std::vector<Support> supports = SupportsOf(track);
-  const auto support = std::ranges::find(supports, hypotheses->plane_index, &Support::plane_index);
-  const std::vector<Landmark> start = {hypotheses->fit->landmark_in_world};
+  if (track.by_hand && track.by_hand->label) return;
+  std::vector<Support> supports = SupportsOf(track);
+  std::vector<Landmark> starts;
+  if (hypotheses->fit) {
+    std::erase_if(supports, [&, plane_index = hypotheses->plane_index](const Support& support) {
+      return support.plane_index != plane_index;
+    });
+    starts.push_back(hypotheses->fit->landmark_in_world);
+  }
   for (const std::string& label : labels_.Candidates(track.votes)) {
     if (track.votes.contains(label) || !table_.Contains(label)) continue;
-    Try(track, label, *support, start, hypotheses);
+    for (const Support& support : supports) Try(track, label, support, starts, hypotheses);
   }
 }
 
 void AssociationModel::Fit(Track* track) const {
   Hypotheses hypotheses;
-  TryDetected(*track, &hypotheses);
+  TryOwnLabels(*track, &hypotheses);
   TrySimilar(*track, &hypotheses);
-  for (const std::string& label : DetectedLabels(*track)) {
-    TryFreeHeight(*track, label, &hypotheses);
+  std::vector<std::string> at_free_height = OwnLabels(*track);
+  if (hypotheses.fit && !track->votes.contains(hypotheses.label)) {
+    at_free_height.push_back(hypotheses.label);
   }
+  for (const std::string& label : at_free_height) TryFreeHeight(*track, label, &hypotheses);
   Settle(hypotheses, track);
 }
 
 void AssociationModel::FitAsDetected(Track* track) const {
   Hypotheses hypotheses;
-  TryDetected(*track, &hypotheses);
+  TryOwnLabels(*track, &hypotheses);
   if (hypotheses.fit && options_.label_evidence_weight * hypotheses.fit->cost_of_misfit >
                             -std::log(options_.similar_label_confusion)) {
     TrySimilar(*track, &hypotheses);
@@ -242,10 +249,8 @@ std::optional<Prediction> AssociationModel::Predict(const Track& track, int fram
 
 std::optional<Prediction> AssociationModel::Predict(const Track& track, const FittedObject& fit,
                                                     int known_frame_index, int frame_index) const {
-  auto prediction = boxes_.Predict(fit, known_frame_index, frame_index);
   const auto prior = table_.Find(soslam::LabelOf(track));
-  if (prediction && prior) prediction->edge_bias = prior->edge_bias;
-  return prediction;
+  return boxes_.Predict(fit, known_frame_index, frame_index, prior ? prior->edge_bias : EdgeBias());
 }
 
 std::optional<BoxMatch> AssociationModel::Match(const Track& track, const Prediction& prediction,

@@ -39,9 +39,10 @@ class AssociationModel {
   }
 
   // Fits the track's landmark to its detections, once for each label that it is detected with and,
-  // where its support plane is unknown, each plane; as similar labels from the best of these
+  // where its support plane is unknown, each plane; then as similar labels from the best of these
   // landmarks, on its support. Boxes, sizes and votes decide among them. When the boxes determine
-  // no landmark, the track keeps its previous one.
+  // no landmark, the track keeps its previous one. Whether it has a support is asked of the former
+  // labels, and of the one that was decided for.
   void Fit(Track* track) const;
   // The same with the labels and supports of its parts alone, which have been fitted; from their
   // landmarks, if they are two or fewer.
@@ -94,8 +95,10 @@ class AssociationModel {
   std::vector<Support> SupportsOf(const Track& track) const;
   void Try(const Track& track, const std::string& label, const Support& support,
            const std::vector<Landmark>& starts, Hypotheses* hypotheses) const;
-  // Each label on each support, then others from the best landmark on its support.
-  void TryDetected(const Track& track, Hypotheses* hypotheses) const;
+  // Labels that the track is detected with, or the one given by hand, on each support.
+  void TryOwnLabels(const Track& track, Hypotheses* hypotheses) const;
+  // Labels similar to those, from the best landmark on its support; where there is none yet, on
+  // each support.
   void TrySimilar(const Track& track, Hypotheses* hypotheses) const;
   void TryFreeHeight(const Track& track, const std::string& label, Hypotheses* hypotheses) const;
   double CostOfLabel(const Track& track, const std::string& label, const FittedObject& fit) const;

@@ -87,10 +87,11 @@ BoxLikelihood::BoxLikelihood(const Sequence& sequence, const AssociateOptions& o
              options.odometry_translation_sigma_m) {}
 
 std::optional<Prediction> BoxLikelihood::Predict(const FittedObject& object, int known_frame_index,
-                                                 int frame_index) const {
+                                                 int frame_index, const EdgeBias& bias) const {
   const Frame& frame = sequence_.frames[frame_index];
   Prediction prediction;
   prediction.feet_are_hidden = object.feet_are_hidden;
+  prediction.edge_bias = bias;
   prediction.camera_from_world = frame.world_from_camera.Inverse();
   prediction.landmark_in_camera = Transform(prediction.camera_from_world, object.landmark_in_world);
   const Camera& camera = sequence_.CameraOf(frame);

@@ -25,7 +25,8 @@ constexpr double kOnePlaceCost = 60.0;
 // Log odds from which two boxes of neighbouring frames are certainly of one object, and by which
 // they are ahead of all rivals.
 constexpr double kCertain = 3.0;
-// Number of other clusters that a cluster is tried to be joined with.
+// Number of others that a cluster is tried to be joined with, once joins with one gain nothing
+// more.
 constexpr size_t kMostPromising = 3;
 // Number of frames within which boxes are grouped first, then within twice as many, and so on.
 constexpr int kBlockFrames = 128;
@@ -158,31 +159,32 @@ std::vector<int> BoxesToPredict(const Track& track) {
   return SpreadOver(track.detections, kPredicted);
 }
 
-// Mean log odds that boxes are of a track's body against unseen ones', none if it predicts none of
-// them. `predict`: the body's Prediction in a frame, if any.
-template <typename Predict>
-std::optional<double> OddsByBody(const AssociationModel& model, const Track& body,
-                                 const std::vector<int>& boxes, const Predict& predict) {
-  std::optional<double> sum;
-  for (const int index : boxes) {
-    const Detection& detection = model.DetectionAt(index);
-    const std::optional<Prediction>& prediction = predict(detection.frame_index);
-    const auto match = prediction ? model.Match(body, *prediction, detection) : std::nullopt;
-    if (match) sum = sum.value_or(0.0) + 0.5 * (model.NewObjectCost(detection) - match->cost);
-  }
-  if (sum) *sum /= static_cast<double>(boxes.size());
-  return sum;
+// Log odds that a box is of a track's body, not of an unseen one; zero where the body does not
+// predict it, otherwise above.
+double OddsOfBox(const AssociationModel& model, const Track& body,
+                 const std::optional<Prediction>& prediction, int box) {
+  const Detection& detection = model.DetectionAt(box);
+  const auto match = prediction ? model.Match(body, *prediction, detection) : std::nullopt;
+  return match ? 0.5 * (model.NewObjectCost(detection) - match->cost) : 0.0;
 }
 
-// Log odds of one object against two by pairs of boxes alone: pictures, and OddsByBody of the body
-// of either. kNone where neither tells that they may be one.
-double Promise(const Clustering& all, const Cluster& one, const Cluster& other,
-               const std::optional<double>& by_one, const std::optional<double>& by_other) {
-  if (!all.model.MayShareSupport(one.track, other.track)) return kNone;
+// Mean OddsOfBox of some boxes. `predict`: the body's Prediction in a frame, if any.
+template <typename Predict>
+double OddsOfBoxes(const AssociationModel& model, const Track& body, const std::vector<int>& boxes,
+                   const Predict& predict) {
+  double sum = 0.0;
+  for (const int box : boxes) {
+    sum += OddsOfBox(model, body, predict(model.DetectionAt(box).frame_index), box);
+  }
+  return sum / static_cast<double>(boxes.size());
+}
+
+// Log odds of one object against two that may share a support, by pairs of boxes alone: pictures,
+// and the larger of OddsOfBoxes by either body. kNone where neither tells that they may be one.
+double Promise(const Clustering& all, const Cluster& one, const Cluster& other, double by_boxes) {
   const double by_pictures = all.pairs.LogRatio(one.track.detections, other.track.detections);
   const double by_place = 0.5 * OnePlaceCost(all.model, one, other);
-  const bool may_be_one = by_one || by_other || by_pictures > 0.0 || by_place > 0.0;
-  const double by_boxes = std::max({0.0, by_one.value_or(0.0), by_other.value_or(0.0)});
+  const bool may_be_one = by_boxes > 0.0 || by_pictures > 0.0 || by_place > 0.0;
   return may_be_one ? by_pictures + by_boxes + by_place : kNone;
 }
 
@@ -211,24 +213,23 @@ std::vector<std::vector<int>> Tracklets(const Clustering& all, const std::vector
   ParallelFor(in_frame.size() - 1, all.threads, [&](size_t frame) {
     const std::vector<int>&from = in_frame[frame], &to = in_frame[frame + 1];
     if (from.empty() || to.empty()) return;
-    const auto predictions = [&](const std::vector<int>& boxes, size_t in_frame) {
-      std::vector<std::optional<Prediction>> all_of_them;
+    const auto predictions = [&](const std::vector<int>& boxes, size_t other_frame) {
+      std::vector<std::optional<Prediction>> by_box;
       for (const int box : boxes) {
-        all_of_them.push_back(
-            all.model.Predict(all.singles[box].track, static_cast<int>(in_frame)));
+        by_box.push_back(all.model.Predict(all.singles[box].track, static_cast<int>(other_frame)));
       }
-      return all_of_them;
+      return by_box;
     };
     const auto forwards = predictions(from, frame + 1), backwards = predictions(to, frame);
     Eigen::MatrixXd odds(from.size(), to.size());
     for (Eigen::Index i = 0; i < odds.rows(); ++i) {
       for (Eigen::Index j = 0; j < odds.cols(); ++j) {
         const Cluster &one = all.singles[from[i]], &other = all.singles[to[j]];
-        const auto by_one = OddsByBody(
-            all.model, one.track, {to[j]}, [&](int) -> const auto& { return forwards[i]; });
-        const auto by_other = OddsByBody(
-            all.model, other.track, {from[i]}, [&](int) -> const auto& { return backwards[j]; });
-        odds(i, j) = Promise(all, one, other, by_one, by_other);
+        const double by_boxes = std::max(OddsOfBox(all.model, one.track, forwards[i], to[j]),
+                                         OddsOfBox(all.model, other.track, backwards[j], from[i]));
+        odds(i, j) = all.model.MayShareSupport(one.track, other.track)
+                         ? Promise(all, one, other, by_boxes)
+                         : kNone;
       }
     }
     for (Eigen::Index i = 0; i < odds.rows(); ++i) {
@@ -281,9 +282,10 @@ void ComparePairs(int block, Clustering* all) {
   const auto is_new = [&](const Group& one, const Group& other) {
     const int known = std::min(one.block, other.block);
     return BlockOf(*all, one, block) == BlockOf(*all, other, block) &&
-           (known == 0 || BlockOf(*all, one, known) != BlockOf(*all, other, known));
+           (known == 0 || BlockOf(*all, one, known) != BlockOf(*all, other, known)) &&
+           model.MayShareSupport(one.track, other.track);
   };
-  // Odds by the body of each group, by the place of the group of the boxes.
+  // OddsOfBoxes above zero by the body of each group, by the place of the group of the boxes.
   std::vector<std::map<size_t, double>> by_body(groups.size());
   ParallelFor(groups.size(), all->threads, [&](size_t i) {
     const Group& one = groups[i]->second;
@@ -295,21 +297,21 @@ void ComparePairs(int block, Clustering* all) {
     };
     for (size_t j = 0; j < groups.size(); ++j) {
       if (j == i || !is_new(one, groups[j]->second)) continue;
-      const auto odds = OddsByBody(model, one.track, boxes[j], predict);
-      if (odds) by_body[i].emplace(j, *odds);
+      const double odds = OddsOfBoxes(model, one.track, boxes[j], predict);
+      if (odds > 0.0) by_body[i].emplace(j, odds);
     }
   });
   std::vector<std::vector<std::pair<std::pair<int, int>, double>>> found(groups.size());
   ParallelFor(groups.size(), all->threads, [&](size_t i) {
     const Group& one = groups[i]->second;
-    const auto odds = [&](size_t body, size_t boxes) {
-      const auto at = by_body[body].find(boxes);
-      return at == by_body[body].end() ? std::nullopt : std::optional(at->second);
+    const auto odds = [&](size_t body, size_t of_boxes) {
+      const auto at = by_body[body].find(of_boxes);
+      return at == by_body[body].end() ? 0.0 : at->second;
     };
     for (size_t j = i + 1; j < groups.size(); ++j) {
       const Group& other = groups[j]->second;
       if (!is_new(one, other)) continue;
-      const double promise = Promise(*all, one, other, odds(i, j), odds(j, i));
+      const double promise = Promise(*all, one, other, std::max(odds(i, j), odds(j, i)));
       if (promise > 0.0) found[i].push_back({{groups[i]->first, groups[j]->first}, promise});
     }
   });
@@ -317,7 +319,7 @@ void ComparePairs(int block, Clustering* all) {
   for (auto& [id, group] : all->groups) group.block = block;
 }
 
-// The pairs that are most promising for one of the two.
+// The pairs that are among the `partners_each` most promising ones for one of the two.
 std::set<std::pair<int, int>> MostPromising(const Clustering& all, size_t partners_each) {
   std::map<int, std::vector<std::pair<double, int>>> partners;
   for (const auto& [pair, promise] : all.promises) {
@@ -333,12 +335,12 @@ std::set<std::pair<int, int>> MostPromising(const Clustering& all, size_t partne
   return pairs;
 }
 
-// Joins clusters in one block that each gain most by each other, until nothing is gained. Those are
-// tried that are among as many most promising ones for one of the two.
-void Join(int block, size_t promising, Clustering* all) {
+// Joins clusters in one block that each gain most by each other, of MostPromising pairs, until
+// nothing is gained.
+void Join(int block, size_t partners_each, Clustering* all) {
   while (true) {
     ComparePairs(block, all);
-    const std::set<std::pair<int, int>> tried = MostPromising(*all, promising);
+    const std::set<std::pair<int, int>> tried = MostPromising(*all, partners_each);
     std::vector<std::pair<int, int>> unknown;
     std::ranges::copy_if(tried, std::back_inserter(unknown),
                          [&](const auto& pair) { return !all->trials.contains(pair); });
@@ -349,6 +351,7 @@ void Join(int block, size_t promising, Clustering* all) {
       trials[i].joint = Joint(*all, one, other);
       trials[i].gain =
           one.cost + other.cost + OnePlaceCost(all->model, one, other) - trials[i].joint.cost;
+      if (trials[i].gain < kLeastGain) trials[i].joint = {};  // is not needed any more
     });
     for (size_t i = 0; i < unknown.size(); ++i) all->trials[unknown[i]] = std::move(trials[i]);
     std::map<int, std::pair<double, int>> best;  // gain and partner of each cluster
@@ -442,10 +445,13 @@ Division BestDivision(int block, int id, const Clustering& all) {
         continue;
       }
       const auto by_body = [&](const Cluster& body, const Cluster& boxes) {
-        return OddsByBody(all.model, body.track, BoxesToPredict(boxes.track),
-                          [&](int frame) { return all.model.Predict(body.track, frame); });
+        return OddsOfBoxes(all.model, body.track, BoxesToPredict(boxes.track),
+                           [&](int frame) { return all.model.Predict(body.track, frame); });
       };
-      if (Promise(all, into, part, by_body(into, part), by_body(part, into)) <= 0.0) continue;
+      if (!all.model.MayShareSupport(into.track, part.track) ||
+          Promise(all, into, part, std::max(by_body(into, part), by_body(part, into))) <= 0.0) {
+        continue;
+      }
       std::vector<int> both = into.track.detections;
       both.push_back(parts[i].front());
       Cluster taken_in =
@@ -531,7 +537,7 @@ Clusters ClusterDetections(const AssociationModel& model, const PairEvidence& pa
     for (auto& [id, group] : all.groups) group.tried_until = 0;
     result.is_settled = false;
     for (int round = 0; round < kMaxRounds && !result.is_settled; ++round) {
-      for (const size_t promising : {size_t{1}, kMostPromising}) Join(block, promising, &all);
+      for (const size_t partners : {size_t{1}, kMostPromising}) Join(block, partners, &all);
       result.is_settled = !Divide(block, &all);
     }
     if (block >= frames) break;

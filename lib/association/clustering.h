@@ -32,9 +32,9 @@ struct Clusters {
 // of the evidence that its boxes are of one object: Laplace's approximation of its body's evidence,
 // where one of the boxes counts as that of an unseen object, and PairEvidence. Tracklets of boxes
 // in neighbouring frames that no other box rivals are joined wherever that lowers the sum of all
-// costs, the largest gain first. Then boxes that their body does not explain, and halves that are
-// held together least, leave their cluster where that lowers it, in turn with further joins, until
-// nothing does.
+// costs, first with the others that promise most, the largest gain first. Then boxes that their
+// body does not explain, and halves that are held together least, leave their cluster where that
+// lowers it, in turn with further joins, until nothing does.
 Clusters ClusterDetections(const AssociationModel& model, const PairEvidence& pairs,
                            const std::vector<int>& detections, int threads);
 

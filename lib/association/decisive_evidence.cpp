@@ -92,9 +92,7 @@ class EvidenceOfTracks {
       for (const int box : other.boxes) {
         if (frames.contains(FrameOf(box))) frames_with_both.insert(FrameOf(box));
         Evidence of_box;
-        for (size_t k = 0; k < track.boxes.size() && !pairs_.IsEmpty(); ++k) {
-          AddPictures(track.boxes[k], box, &of_box);
-        }
+        for (const int own : track.boxes) AddPictures(own, box, &of_box);
         row.evidence.points_in_both += of_box.points_in_both;
         row.evidence.points_in_any += of_box.points_in_any;
         row.evidence.points += of_box.points;

@@ -14,9 +14,9 @@
 namespace soslam {
 namespace {
 
-// Log evidence is compared to about a tenth; in the valley along the ray of a single box a step
-// lowers the cost by much less than what is left.
-constexpr FitPrecision kPrecisionOfTracks = {.cost = 1e-5, .half_axes = 1e-3};
+// Errors of about a tenth of log evidence are accepted; in the valley along the ray of a single box
+// a step lowers the cost by much less than what is left.
+constexpr FitTolerance kToleranceOfTracks = {.cost = 1e-5, .half_axes = 1e-3};
 // The parameters of UprightVector, the last of which, the height, is free without a plane.
 constexpr int kMaxParameters = 7;
 using Information =
@@ -116,7 +116,7 @@ std::optional<FittedObject> FitTrack(const Sequence& sequence, const std::vector
   evidence.height_is_free = up != nullptr;
   evidence.plane = up != nullptr ? Plane{up->up_in_world, 0.0} : std::get<Plane>(support_in_world);
   evidence.size_is_known = true;
-  evidence.precision = kPrecisionOfTracks;
+  evidence.tolerance = kToleranceOfTracks;
   WeighViews(options.upright.ViewCorrelation(), &evidence);
   const Eigen::Matrix3d up_covariance = up != nullptr ? up->covariance : Eigen::Matrix3d::Zero();
   std::optional<FittedObject> best = FitOnFaces(evidence, up_covariance, how.starts, options);

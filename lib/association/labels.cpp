@@ -16,7 +16,7 @@ LabelConfusion::LabelConfusion(const std::set<std::string>& labels, const Associ
   for (const std::string& label : labels) of_objects.merge(SimilarTo(label));
   for (const std::string& detected : labels) {
     for (const std::string& label : of_objects) {
-      probabilities_[detected][label] = FindProbability(detected, label);
+      probabilities_[detected][label] = ComputeProbability(detected, label);
     }
   }
 }
@@ -38,11 +38,11 @@ double LabelConfusion::Probability(const std::string& of_detection,
     const auto known = detected->second.find(of_object);
     if (known != detected->second.end()) return known->second;
   }
-  return FindProbability(of_detection, of_object);
+  return ComputeProbability(of_detection, of_object);
 }
 
-double LabelConfusion::FindProbability(const std::string& of_detection,
-                                       const std::string& of_object) const {
+double LabelConfusion::ComputeProbability(const std::string& of_detection,
+                                          const std::string& of_object) const {
   const std::string &detected = groups_.Group(of_detection), &own = groups_.Group(of_object);
   std::set<std::string> similar;  // groups
   for (const std::string& label : SimilarTo(of_object)) {

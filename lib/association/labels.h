@@ -41,7 +41,7 @@ class LabelConfusion {
  private:
   // Labels that are similar to a label, and the label itself; none where nothing is similar to it.
   std::set<std::string> SimilarTo(const std::string& label) const;
-  double FindProbability(const std::string& of_detection, const std::string& of_object) const;
+  double ComputeProbability(const std::string& of_detection, const std::string& of_object) const;
 
   LabelGroups groups_;
   std::vector<std::vector<std::string>> similar_;

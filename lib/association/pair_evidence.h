@@ -25,8 +25,6 @@ class PairEvidence {
   // The sequence's detections are named by their index.
   PairEvidence(const Sequence& sequence, const ImageMatches& matches);
 
-  bool IsEmpty() const { return detections_.empty(); }
-
   struct Counts {
     int in_both = 0;
     int in_any = 0;

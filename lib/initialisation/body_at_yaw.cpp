@@ -83,7 +83,7 @@ std::optional<Landmark> BodyAtYaw::Solve(double yaw) const {
       break;
     }
     if (round >= kRoundsWithFixedRatio &&
-        (body.half_axes - before).norm() < evidence_.precision.half_axes * before.norm()) {
+        (body.half_axes - before).norm() < evidence_.tolerance.half_axes * before.norm()) {
       break;
     }
   }

@@ -32,7 +32,7 @@ std::optional<ObjectFit> Fit(const ObjectEvidence& evidence, const Landmark& sta
   for (int round = 0; round < kRounds; ++round) {
     const auto solution = FitUpright(evidence.plane, at, CostsAt(evidence, at),
                                      {.yaw = yaw_is_free, .height = evidence.height_is_free},
-                                     evidence.precision.cost);
+                                     evidence.tolerance.cost);
     if (!solution) return std::nullopt;
     at = solution->landmark;
   }

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "base/levenberg_marquardt.h"
 #include "constraints/landmark_terms.h"
 #include "constraints/standing_on_plane.h"
 #include "constraints/tangency.h"
@@ -36,10 +35,11 @@ struct FurtherEvidence {
   double weight = 1.0;
 };
 
-// When fits end: where a step lowers the cost by less than this share of 1 + cost, and where half
-// axes at a fixed yaw change by less than this share.
-struct FitPrecision {
-  double cost = kNegligibleDecrease;
+// When fits of upright bodies end: where a step lowers the cost by less than this share of 1 + cost
+// (zero: see NegligibleDecrease), and where half axes at a fixed yaw change by less than this
+// share.
+struct FitTolerance {
+  double cost = 0.0;
   double half_axes = 1e-6;
 };
 
@@ -66,7 +66,7 @@ struct ObjectEvidence {
   // A cost, none below zero, by which hypotheses are compared, but that is not fitted; may be
   // empty. It may stop, and return anything higher, once it is above the limit.
   std::function<double(const Landmark&, double limit)> compared_cost = {};
-  FitPrecision precision = {};
+  FitTolerance tolerance = {};
 
   bool MayLean() const { return prior && prior->attitude == Attitude::kFree && !height_is_free; }
   bool HasRatio() const { return prior && !ratio_is_free; }

@@ -71,9 +71,9 @@ TEST_F(BoxLikelihoodTest, ABoxThatIsWrongByTheBiasIsTheExpectedOne) {
   Detection detection = expected_;
   detection.box.y_max -= 0.2 * expected_.box.Height();
   const auto match = [&](const EdgeBias& bias) {
-    Prediction prediction = Predicted(0);
-    prediction.edge_bias = bias;
-    return BoxLikelihood(sequence_, options_).Match(prediction, detection);
+    const BoxLikelihood likelihood(sequence_, options_);
+    const int frame = expected_.frame_index;
+    return likelihood.Match(*likelihood.Predict(object_, frame, frame, bias), detection);
   };
   const auto corrected = match({0.0, 0.0, 0.0, -0.25});  // of the height that is left
   ASSERT_TRUE(corrected);

@@ -32,6 +32,12 @@ ShelfScene OnFloorAndShelf(int seed, double shelf_height_m) {
   return {given, WithoutIds(given)};
 }
 
+Sequence OnFloorAlone(Sequence sequence) {
+  sequence.planes.resize(1);
+  for (Object& object : sequence.objects) object.plane_index = 0;
+  return sequence;
+}
+
 Sequence WithUnknownSupports(Sequence sequence) {
   for (Object& object : sequence.objects) object.plane_index = kNoPlane;
   return sequence;
@@ -71,11 +77,8 @@ TEST(SupportsTest, WhatStandsOnNoPlaneIsNoObject) {
   int without_support = 0;
   for (int seed = 1; seed < 6; ++seed) {
     const auto [given, seen] = OnFloorAndShelf(seed, 0.8);
-    Sequence floor_only = seen;
-    floor_only.planes.resize(1);
-    for (Object& object : floor_only.objects) object.plane_index = 0;
     const Association association =
-        Associate(floor_only, table, PairEvidence(), EstimatedAssociation(), 2);
+        Associate(OnFloorAlone(seen), table, PairEvidence(), EstimatedAssociation(), 2);
     for (const Track& track : association.tracks) {
       if (track.fate != TrackFate::kNoSupport) continue;
       const auto first = static_cast<size_t>(track.detections.front());
@@ -85,6 +88,29 @@ TEST(SupportsTest, WhatStandsOnNoPlaneIsNoObject) {
     }
   }
   EXPECT_GE(without_support, 3);
+}
+
+// The same where the detector calls them by the name of much lower things.
+TEST(SupportsTest, WhatIsOfASimilarLabelOnNoPlaneIsNoObjectEither) {
+  SemanticTable table;
+  table.priors["other"] = *UnknowingTable().default_prior;
+  table.priors["other"].height_m = LogNormal{0.5, 0.5};
+  table.priors["thing"] = {{5.0, 5.0}, {0.1, 0.1}, kCuboidExponent, 0.0, LogNormal{0.1, 0.1}};
+  AssociateOptions options = EstimatedAssociation();
+  options.similar_labels = "thing, other";
+  options.similar_label_confusion = 0.3;
+  int without_support = 0;
+  for (int seed = 1; seed < 6; ++seed) {
+    const auto [given, seen] = OnFloorAndShelf(seed, 0.8);
+    for (const Track& track :
+         Associate(OnFloorAlone(seen), table, PairEvidence(), options, 2).tracks) {
+      if (track.fate != TrackFate::kNoSupport) continue;
+      const auto first = static_cast<size_t>(track.detections.front());
+      EXPECT_EQ(seen.ObjectOf(seen.detections[first]).plane_index, 1) << seed;
+      ++without_support;
+    }
+  }
+  EXPECT_GE(without_support, 1);
 }
 
 // Objects of two labels that the detector calls by one name are told apart by their boxes.

@@ -93,6 +93,23 @@ TEST(FitObject, NoneOfManyRandomStartsIsBetter) {
   }
 }
 
+// What is left out costs about as much as the tolerance says; one larger than all costs leaves out
+// everything.
+TEST(FitObject, EndsWithinItsTolerance) {
+  double sum_of_exact = 0.0, sum_of_coarse = 0.0;
+  for (int i = 0; i < 20; ++i) {
+    ObjectEvidence evidence = NoisyEvidence(0.0);
+    const double exact = Optima(evidence, 1).front().cost.total;
+    evidence.tolerance = {.cost = 1e-5, .half_axes = 1e-3};
+    const double loose = Optima(evidence, 1).front().cost.total;
+    EXPECT_NEAR(loose, exact, 1e-2 * (1.0 + exact));
+    evidence.tolerance = {.cost = 1e9, .half_axes = 1e9};
+    sum_of_exact += exact;
+    sum_of_coarse += Optima(evidence, 1).front().cost.total;
+  }
+  EXPECT_GT(sum_of_coarse, 1.1 * sum_of_exact);
+}
+
 TEST(FitObject, AreSortedDistinctLandmarksInFrontOfTheCamera) {
   for (int i = 0; i < 50; ++i) {
     const ObjectEvidence evidence = NoisyEvidence(i % 2);
