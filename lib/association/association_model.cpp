@@ -156,8 +156,8 @@ void AssociationModel::TrySimilar(const Track& track, Hypotheses* hypotheses) co
   std::vector<Support> supports = SupportsOf(track);
   std::vector<Landmark> starts;
   if (hypotheses->fit) {
-    std::erase_if(supports, [&, plane_index = hypotheses->plane_index](const Support& support) {
-      return support.plane_index != plane_index;
+    std::erase_if(supports, [&](const Support& support) {
+      return support.plane_index != hypotheses->plane_index;
     });
     starts.push_back(hypotheses->fit->landmark_in_world);
   }

@@ -7,6 +7,7 @@
 
 #include "association/agreement.h"
 #include "association/association.h"
+#include "association/association_model.h"
 #include "association/up_estimate.h"
 #include "geometry/angles.h"
 #include "support/association_scenes.h"
@@ -137,6 +138,36 @@ TEST(LabelEvidenceTest, BoxesDecideAmongSimilarLabels) {
     EXPECT_EQ(track.labels.front().label, object % 2 == 0 ? "cup" : "mug");
     EXPECT_EQ(LabelOf(track), "cup");  // what it is called
   }
+}
+
+// The floor suits nothing that is on a wall, but a similar label that stands.
+TEST(LabelEvidenceTest, WhereNoPlaneSuitsALabelASimilarOneIsFitted) {
+  const Sequence sequence =
+      WithUnknownSupports(SyntheticSequence(LabelledScene(11, 1, 30, {"screen"}), false));
+  SemanticTable table;
+  table.priors["monitor"] = *UnknowingTable().default_prior;
+  table.priors["monitor"].height_m = LogNormal{0.5, 0.5};
+  table.priors["monitor"].edge_bias = {0.0, 0.0, 0.0, -0.25};
+  table.priors["screen"] = table.priors["monitor"];
+  table.priors["screen"].mount = Mount::kOnWall;
+  table.priors["screen"].edge_bias = {0.0, 0.0, 0.0, -0.5};
+  AssociateOptions options = EstimatedAssociation();
+  const auto fitted = [&](const char* similar_labels) {
+    options.similar_labels = similar_labels;
+    Track track;
+    track.detections = DetectionsByObject(sequence)[0];
+    track.votes["screen"] = 1.0;
+    AssociationModel(sequence, table, options).Fit(&track);
+    return track;
+  };
+  EXPECT_FALSE(fitted("").fit);
+  const Track track = fitted("screen, monitor");
+  ASSERT_TRUE(track.fit);
+  EXPECT_EQ(track.fit_label, "monitor");
+  const int frame = sequence.detections[track.detections.front()].frame_index;
+  const auto prediction = AssociationModel(sequence, table, options).Predict(track, frame);
+  ASSERT_TRUE(prediction);
+  EXPECT_EQ(prediction->edge_bias, table.Find(LabelOf(track))->edge_bias);
 }
 
 // The rotation of a camera that looks along the world's x axis, with z up.
