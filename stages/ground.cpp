@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
                    "dataset folder with the images, where verticals are looked for, and turns.json "
                    "of soslam-detect, if there is one",
                    false},
+                  {"matches", "matches.h5 of soslam-match; read if shared_points is true", false},
                   {"edits", "edits.json, as soslam-associate reads it: sizes in it tell the scale",
                    false}},
        .outputs = {{"output", "sequence.json to write: z up, in metres, with the planes of points"},

@@ -10,7 +10,6 @@
 #include "geometry/rigid3.h"
 #include "initialisation/object_evidence.h"
 #include "planes/camera_holding.h"
-#include "planes/up_prior.h"
 
 namespace soslam {
 namespace {
@@ -56,19 +55,6 @@ BoxesOfLabels ObserveLabels(const Sequence& sequence, const Segment& segment,
   return boxes;
 }
 
-// `other_variance`: of up over alternatives (rad^2).
-UpEstimate FromPrior(const UpPrior& prior, double other_variance) {
-  const Eigen::Vector3d& up = prior.up_in_world;
-  // Rotations about these two axes move up by their cross products with it.
-  Eigen::Matrix<double, 3, 2> axes;
-  axes.col(0) = up.unitOrthogonal();
-  axes.col(1) = up.cross(axes.col(0));
-  const Eigen::Matrix<double, 3, 2> d_turns = -Skew(up) * axes;
-  Eigen::Matrix2d covariance = (d_turns.transpose() * prior.information * d_turns).inverse();
-  covariance.diagonal().array() += 0.5 * other_variance;
-  return {up, axes * covariance * axes.transpose()};
-}
-
 UpEstimate UpOf(const Segment& segment, const BoxesOfLabels& boxes,
                 const AssociateOptions& options) {
   std::vector<UpPrior> up_priors;
@@ -99,7 +85,7 @@ UpEstimate UpOf(const Segment& segment, const BoxesOfLabels& boxes,
   }
   const double expected_cost = 0.5 * static_cast<double>(boxes.size());
   const HoldingChoice choice = ChooseHolding(evidence, expected_cost, kClear);
-  UpEstimate up = FromPrior(up_priors[choice.best], choice.tilt_variance);
+  UpEstimate up = UpEstimateOf(up_priors[choice.best], choice.tilt_variance);
   up.holding = evidence[choice.best].holding;
   up.holding_tilt_variance = choice.tilt_variance;
   for (size_t i = 0; i < evidence.size(); ++i) {
@@ -112,6 +98,13 @@ UpEstimate UpOf(const Segment& segment, const BoxesOfLabels& boxes,
 }
 
 }  // namespace
+
+UpEstimate UpEstimateOf(const UpPrior& prior, double other_variance) {
+  const Eigen::Matrix3d level = UprightRotation(prior.up_in_world, 0.0).toRotationMatrix();
+  Eigen::Matrix2d covariance = TiltCovariance(prior);
+  covariance.diagonal().array() += 0.5 * other_variance;
+  return {prior.up_in_world, level.leftCols<2>() * covariance * level.leftCols<2>().transpose()};
+}
 
 ShapePrior PriorOfLabel(const SemanticTable& table, const std::string& label,
                         const AssociateOptions& options) {
@@ -135,7 +128,7 @@ std::map<int, UpEstimate> UpOfSegments(const Sequence& sequence, const SemanticT
   std::map<int, UpEstimate> up;
   for (const auto& [id, segment] : segments) {
     if (sequence.ground) {
-      up[id] = FromPrior({sequence.ground->up_information, sequence.ground->up_in_world}, 0.0);
+      up[id] = UpEstimateOf({sequence.ground->up_information, sequence.ground->up_in_world});
       continue;
     }
     up[id] = UpOf(segment, ObserveLabels(sequence, segment, table, options), options);

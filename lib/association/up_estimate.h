@@ -10,6 +10,7 @@
 #include "model/semantic_table.h"
 #include "model/sequence.h"
 #include "planes/planes_estimate.h"
+#include "planes/up_prior.h"
 
 namespace soslam {
 
@@ -25,6 +26,9 @@ struct UpEstimate {
   // Variance of up over the alternatives (rad^2); 0 where the choice is clear.
   double holding_tilt_variance = 0.0;
 };
+
+// `other_variance`: of up over alternatives (rad^2), which is added.
+UpEstimate UpEstimateOf(const UpPrior& prior, double other_variance = 0.0);
 
 // Shape prior of a label's objects; it always has a height, also where the table has none.
 ShapePrior PriorOfLabel(const SemanticTable& table, const std::string& label,

@@ -2,60 +2,26 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "geometry/rigid3.h"
-#include "ground/object_heights.h"
+#include "geometry/similarity.h"
 #include "ground/options.h"
-#include "ground/scale_posterior.h"
-#include "model/image_turns.h"
+#include "ground/up_hypotheses.h"
 #include "model/map_points.h"
 #include "model/semantic_table.h"
 #include "model/sequence.h"
+#include "model/world.h"
 #include "planes/planes_estimate.h"
-#include "planes/up_prior.h"
 
 namespace soslam {
-
-// Change of the world's frame and unit: rigid * (scale * point).
-struct Similarity {
-  double scale = 1.0;
-  Rigid3d rigid;
-
-  Eigen::Vector3d operator*(const Eigen::Vector3d& point) const { return rigid * (scale * point); }
-  Similarity operator*(const Similarity& other) const {
-    return {
-        scale * other.scale,
-        {(rigid.rotation * other.rigid.rotation).normalized(), *this * other.rigid.translation}};
-  }
-};
 
 // The sequence without planes, with its estimated poses in the target world. Ground truth stays.
 Sequence Transformed(const Similarity& target_from_source, Sequence sequence);
 
 std::vector<MapPoint> Transformed(const Similarity& target_from_source,
                                   std::vector<MapPoint> points);
-
-// Result for one object: its most probable label and support.
-struct GroundObject {
-  std::string label;
-  int plane = kNoPlane;  // index in GroundEstimate::planes
-  int boxes = 0;
-  std::optional<Eigen::Vector3d> centre_in_world;  // of the output; none where no body fits
-  std::optional<double> height_m;
-  std::optional<double> log_scale;  // by its label's height, of metres per unit of the input
-  std::optional<double> log_sigma;
-  double weight = 0.0;         // below 1 where its height is correlated with that of others
-  double agreement = 0.0;      // probability that its height is right
-  bool is_measured = false;    // edits give a size
-  std::optional<double> pull;  // see ScalePosterior
-
-  bool AgreesWithScale() const { return agreement >= 0.5; }
-  bool TellsByLabel() const { return AgreesWithScale() && !is_measured; }
-};
 
 // Up, scale and horizontal planes of points of a world that has neither up nor scale.
 struct GroundEstimate {
@@ -76,31 +42,22 @@ struct GroundEstimate {
   std::vector<int> points_on_planes;
   int planes_of_points = 0;  // before planes without an object were dropped
   int points = 0;
-  std::vector<GroundObject> objects;
+  std::vector<WorldReport::ObjectRow> objects;
 
   // How many objects have the height of their label at the scale, which rests on them.
   int AgreeingObjects() const {
-    return static_cast<int>(std::ranges::count_if(objects, &GroundObject::TellsByLabel));
+    return static_cast<int>(std::ranges::count_if(objects, &WorldReport::ObjectRow::TellsByLabel));
   }
 
   // The sum of the weights of these.
   double IndependentObjects() const {
     double sum = 0.0;
-    for (const GroundObject& object : objects) {
+    for (const WorldReport::ObjectRow& object : objects) {
       if (object.TellsByLabel()) sum += object.weight;
     }
     return sum;
   }
 };
-
-// What a detector finds in a frame's image and in its turned copies (ImageTurns::Row).
-struct TurnedImage {
-  int frame_index;
-  std::array<double, kQuarterTurns> scores;
-};
-
-// KnownScale::setting of an object whose size edits give.
-inline constexpr const char* kSizeByHand = "edits";
 
 // Estimates up, scale and planes from sparse points, boxes and the way cameras are held.
 // The result does not depend on the frame and unit of the input. `views`: line segments per frame;
@@ -108,7 +65,8 @@ inline constexpr const char* kSizeByHand = "edits";
 // segment. Throws InputError for edits that fit no box.
 GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoint>& points,
                               const std::vector<SegmentView>& views,
-                              const std::vector<TurnedImage>& turned_images, const Edits& edits,
+                              const std::vector<TurnedImage>& turned_images,
+                              const PairEvidence& pairs, const Edits& edits,
                               const SemanticTable& table, const GroundOptions& options,
                               int threads);
 

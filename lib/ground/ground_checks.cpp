@@ -50,7 +50,7 @@ void CheckScale(const GroundEstimate& estimate, std::vector<Finding>* findings) 
 }
 
 void CheckSizesByHand(const GroundEstimate& estimate, std::vector<Finding>* findings) {
-  for (const GroundObject& object : estimate.objects) {
+  for (const WorldReport::ObjectRow& object : estimate.objects) {
     if (!object.is_measured || object.log_scale) continue;
     findings->push_back(
         {"size_tells_nothing", Severity::kWarning,
@@ -246,7 +246,7 @@ std::optional<WorldScale> WorldScaleOf(const GroundEstimate& estimate,
                    estimate.scale->misfit,
                    estimate.scale->second_mode_share};
   std::set<std::string> labels;
-  for (const GroundObject& object : estimate.objects) {
+  for (const WorldReport::ObjectRow& object : estimate.objects) {
     if (object.TellsByLabel()) labels.insert(object.label);
   }
   scale.labels.assign(labels.begin(), labels.end());
@@ -283,21 +283,15 @@ WorldReport ReportOf(const GroundEstimate& estimate, const Sequence& input,
     report.up.tried.push_back({tried.holding, tried.cost, tried.probability});
   }
   report.scale = WorldScaleOf(estimate, findings);
-  report.output_from_input = {estimate.output_from_input.scale, estimate.output_from_input.rigid};
+  report.output_from_input = estimate.output_from_input;
   for (int i = 0; i < std::ssize(estimate.planes); ++i) {
-    const auto objects = std::ranges::count(estimate.objects, i, &GroundObject::plane);
+    const auto objects = std::ranges::count(estimate.objects, i, &WorldReport::ObjectRow::plane);
     report.planes.push_back(
         {RowOf(estimate.planes[i], i), estimate.points_on_planes[i], static_cast<int>(objects)});
   }
   report.points = estimate.points;
   report.planes_of_points = estimate.planes_of_points;
-  for (const GroundObject& object : estimate.objects) {
-    report.objects.push_back({object.label, object.boxes,
-                              object.plane == kNoPlane ? std::nullopt : std::optional(object.plane),
-                              object.centre_in_world, object.height_m, object.log_scale,
-                              object.log_sigma, object.weight, object.agreement, object.is_measured,
-                              object.pull});
-  }
+  report.objects = estimate.objects;
   return report;
 }
 

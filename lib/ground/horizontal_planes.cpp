@@ -8,10 +8,10 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <utility>
 
-#include "constraints/loss.h"
 #include "geometry/angles.h"
 #include "geometry/triangulation.h"
 
@@ -53,6 +53,8 @@ constexpr double kBetweenStarts = 1.2 * kTiltStep;
 constexpr size_t kStarts = 16;  // directions that are refined
 constexpr double kBound = 3.0;  // inliers, standard deviations
 constexpr int kRounds = 10;
+constexpr double kLeastOffPlanes = 0.01;  // share of the points
+constexpr double kRange = 1.0;            // of heights of points that are on no plane (a guess)
 constexpr size_t kMaxPlanes = 12;
 constexpr double kLeastShare = 0.01;  // of the points, on a plane
 constexpr double kLeastOnPlane = 15.0;
@@ -141,28 +143,30 @@ std::vector<double> PeakHeights(const std::vector<GroundPoint>& points, const Ei
   return peaks;
 }
 
-// Up and the heights of all planes, which points fit best.
+// Up and the heights of all planes, which points fit best. The height of a point is normally
+// distributed about that of the nearest plane, or uniformly over kRange where it is on none.
 struct Fit {
   Eigen::Vector3d up;
   std::vector<double> heights;
-  Eigen::MatrixXd covariance;  // of two rotations (rad) and the heights
-  double gain = 0.0;           // how much better points lie on planes than anywhere
+  std::vector<double> shares = {};  // of the points, on each plane
+  Eigen::MatrixXd covariance = {};  // of two rotations (rad) and the heights, were it known which
+                                    // points are on planes
+  double gain = 0.0;  // log likelihood ratio against points on no plane and up of the prior
 };
 
-// The plane of a point, or none where it is off all of them.
-std::optional<size_t> PlaneOfPoint(const Fit& fit, const GroundPoint& point, double sigma) {
-  std::optional<size_t> best;
-  double nearest = kBound * sigma;
-  for (size_t k = 0; k < fit.heights.size(); ++k) {
-    const double distance = std::abs(fit.up.dot(point.position_in_world) - fit.heights[k]);
-    if (distance >= nearest) continue;
-    nearest = distance;
-    best = k;
-  }
-  return best;
+// Twice the negative logarithm of the prior.
+double CostOf(const UpPrior& up_prior, const Eigen::Vector3d& up) {
+  return up.dot(up_prior.information * up);
 }
 
-// One step of reweighted least squares.
+size_t NearestPlane(const Fit& fit, const GroundPoint& point) {
+  const auto distance = [height = fit.up.dot(point.position_in_world)](double other) {
+    return std::abs(height - other);
+  };
+  return std::ranges::min_element(fit.heights, {}, distance) - fit.heights.begin();
+}
+
+// One step of expectation maximisation, whose weights are the probabilities to be on the plane.
 void Step(const std::vector<GroundPoint>& points, const UpPrior& up_prior, Fit* fit) {
   const auto count = static_cast<Eigen::Index>(2 + fit->heights.size());
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
@@ -170,21 +174,25 @@ void Step(const std::vector<GroundPoint>& points, const UpPrior& up_prior, Fit* 
   const Eigen::Matrix<double, 3, 2> d_turns = UpByTurns(fit->up);
   information.topLeftCorner<2, 2>() = d_turns.transpose() * up_prior.information * d_turns;
   gradient.head<2>() = d_turns.transpose() * up_prior.information * fit->up;
-  const GemanMcClureLoss loss(kBound);
-  fit->gain = -0.5 * fit->up.dot(up_prior.information * fit->up);
+  fit->gain = 0.5 * (CostOf(up_prior, up_prior.up_in_world) - CostOf(up_prior, fit->up));
+  const double on_none = 1.0 - std::accumulate(fit->shares.begin(), fit->shares.end(), 0.0);
+  std::vector<double> on_planes(fit->shares.size());
   for (const GroundPoint& point : points) {
     const double sigma = Sigma(point, fit->up);
-    const auto plane = PlaneOfPoint(*fit, point, sigma);
-    if (!plane) continue;
-    const double residual = (fit->up.dot(point.position_in_world) - fit->heights[*plane]) / sigma;
-    const double weight = EvaluateLoss(loss, residual).weight;
+    const size_t plane = NearestPlane(*fit, point);
+    const double residual = (fit->up.dot(point.position_in_world) - fit->heights[plane]) / sigma;
+    const double density =
+        std::exp(-0.5 * residual * residual) / (sigma * std::sqrt(2.0 * std::numbers::pi));
+    const double on_plane = fit->shares[plane] * kRange * density;
+    const double weight = on_plane / (on_plane + on_none);
+    on_planes[plane] += weight;
     // The row of the Jacobian, which is zero for the other planes.
     Eigen::Vector3d row;
     row << d_turns.transpose() * point.position_in_world / sigma, -1.0 / sigma;
-    const std::array<Eigen::Index, 3> at = {0, 1, static_cast<Eigen::Index>(2 + *plane)};
+    const std::array<Eigen::Index, 3> at = {0, 1, static_cast<Eigen::Index>(2 + plane)};
     gradient(at) += weight * residual * row;
     information(at, at) += weight * row * row.transpose();
-    fit->gain += 0.5 * (kBound * kBound - residual * residual);
+    fit->gain += std::log(on_plane + on_none);
   }
   information.diagonal().tail(count - 2).array() += 1e-9;
   const Eigen::LDLT<Eigen::MatrixXd> solver(information);
@@ -192,31 +200,26 @@ void Step(const std::vector<GroundPoint>& points, const UpPrior& up_prior, Fit* 
   fit->up = (fit->up + d_turns * change.head<2>()).normalized();
   for (size_t k = 0; k < fit->heights.size(); ++k) {
     fit->heights[k] += change(static_cast<Eigen::Index>(2 + k));
+    fit->shares[k] =
+        (1.0 - kLeastOffPlanes) * on_planes[k] / std::max(1.0, static_cast<double>(points.size()));
   }
   fit->covariance = solver.solve(Eigen::MatrixXd::Identity(count, count));
 }
 
-Fit FitPlanes(const std::vector<GroundPoint>& points, const UpPrior& up_prior, Eigen::Vector3d up,
-              std::vector<double> heights) {
-  Fit fit{std::move(up), std::move(heights), {}, 0.0};
+Fit FitPlanes(const std::vector<GroundPoint>& points, const UpPrior& up_prior,
+              const Eigen::Vector3d& up, const std::vector<double>& heights) {
+  Fit fit{up, heights};
+  fit.shares.assign(heights.size(), 0.5 / static_cast<double>(heights.size()));
   for (int round = 0; round < kRounds; ++round) Step(points, up_prior, &fit);
   return fit;
 }
 
-// The points on planes, in as many sectors around their common centre as are left out in turn.
+// The points without those of one sector each, around the centre of those on planes.
 std::vector<std::vector<GroundPoint>> WithoutSectors(const std::vector<GroundPoint>& points,
-                                                     const Fit& fit) {
-  std::vector<GroundPoint> inliers;
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  for (const GroundPoint& point : points) {
-    if (!PlaneOfPoint(fit, point, Sigma(point, fit.up))) continue;
-    inliers.push_back(point);
-    centre += point.position_in_world;
-  }
-  centre /= static_cast<double>(std::max<size_t>(1, inliers.size()));
-  const Eigen::Matrix3d level = UprightRotation(fit.up, 0.0).toRotationMatrix();
+                                                     const Eigen::Vector3d& centre,
+                                                     const Eigen::Matrix3d& level) {
   std::vector<std::vector<GroundPoint>> others(kSectors);
-  for (const GroundPoint& point : inliers) {
+  for (const GroundPoint& point : points) {
     const Eigen::Vector3d from_centre = level.transpose() * (point.position_in_world - centre);
     const double turns = std::atan2(from_centre.y(), from_centre.x()) / (2.0 * std::numbers::pi);
     const auto own = static_cast<size_t>((turns + 0.5) * static_cast<double>(kSectors)) % kSectors;
@@ -232,11 +235,16 @@ HorizontalPlanes PlanesOf(const std::vector<GroundPoint>& points, const UpPrior&
   HorizontalPlanes result;
   result.ambiguity = ambiguity;
   result.up_in_world = fit.up;
+  result.gain = fit.gain;
   result.planes.resize(fit.heights.size());
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  double on_planes = 0.0;
   for (const GroundPoint& point : points) {
-    const auto index = PlaneOfPoint(fit, point, Sigma(point, fit.up));
-    if (!index) continue;
-    PlaneOfPoints& plane = result.planes[*index];
+    const size_t index = NearestPlane(fit, point);
+    const double distance = fit.up.dot(point.position_in_world) - fit.heights[index];
+    if (std::abs(distance) >= kBound * Sigma(point, fit.up)) continue;
+    centre += (point.position_in_world - centre) / ++on_planes;
+    PlaneOfPoints& plane = result.planes[index];
     plane.points_in_world.push_back(point.position_in_world);
     plane.centre_in_world += (point.position_in_world - plane.centre_in_world) /
                              static_cast<double>(plane.points_in_world.size());
@@ -254,7 +262,7 @@ HorizontalPlanes PlanesOf(const std::vector<GroundPoint>& points, const UpPrior&
   }
   // The scatter of fits that leave out one sector each (delete-a-block jackknife).
   constexpr double kShare = (kSectors - 1.0) / kSectors;
-  for (const auto& others : WithoutSectors(points, fit)) {
+  for (const auto& others : WithoutSectors(points, centre, level)) {
     const Fit without = FitPlanes(others, up_prior, fit.up, fit.heights);
     const Eigen::Vector3d turn = without.up - fit.up;
     for (size_t k = 0; k < result.planes.size(); ++k) {
@@ -275,10 +283,8 @@ HorizontalPlanes PlanesOf(const std::vector<GroundPoint>& points, const UpPrior&
   return result;
 }
 
-// Mean squared turn from the best direction to others whose planes explain nearly as many points.
+// Mean squared turn from the best direction to others that are nearly as likely.
 Eigen::Matrix2d AmbiguityOf(std::vector<Fit> fits, const Fit& best) {
-  constexpr double kShare =
-      0.1;  // of the gain; as much less makes a direction e times less probable
   constexpr double kSameUp = 0.3 * kRadPerDeg;
   std::ranges::stable_sort(fits, std::ranges::greater(), &Fit::gain);
   std::vector<Eigen::Vector3d> seen;
@@ -290,7 +296,7 @@ Eigen::Matrix2d AmbiguityOf(std::vector<Fit> fits, const Fit& best) {
         seen, [&](const Eigen::Vector3d& other) { return AngleBetween(other, fit.up) > kSameUp; });
     if (!is_new) continue;
     seen.push_back(fit.up);
-    const double weight = std::exp((fit.gain - best.gain) / (kShare * std::max(1.0, best.gain)));
+    const double weight = WeightOfGain(fit.gain, best.gain);
     const Eigen::Vector2d turn(-level.col(1).dot(fit.up), level.col(0).dot(fit.up));
     squares += weight * turn * turn.transpose();
     sum += weight;
@@ -319,12 +325,11 @@ std::vector<GroundPoint> GroundPoints(const Sequence& sequence,
 HorizontalPlanes FindHorizontalPlanes(const std::vector<GroundPoint>& points,
                                       const UpPrior& up_prior) {
   const std::vector<GroundPoint> usable = UsablePoints(points, up_prior.up_in_world);
-  const double lowest = up_prior.up_in_world.dot(up_prior.information * up_prior.up_in_world);
+  const double lowest = CostOf(up_prior, up_prior.up_in_world);
   const std::vector<Eigen::Vector3d> directions = UpDirections(up_prior, kTiltStep);
   std::vector<double> costs;
   for (const Eigen::Vector3d& up : directions) {
-    const double cost = up.dot(up_prior.information * up) - lowest;
-    costs.push_back(-Sharpness(usable, up) * std::exp(-0.25 * cost));
+    costs.push_back(-Sharpness(usable, up) * std::exp(-0.25 * (CostOf(up_prior, up) - lowest)));
   }
   std::vector<Fit> fits;
   for (const Eigen::Vector3d& start : LowestApart(directions, costs, kBetweenStarts, kStarts)) {
@@ -336,10 +341,16 @@ HorizontalPlanes FindHorizontalPlanes(const std::vector<GroundPoint>& points,
       up = fits.back().up;
     }
   }
-  if (fits.empty()) return WithoutPlanes(up_prior);
-  const Fit& best = *std::ranges::max_element(fits, {}, &Fit::gain);
+  const auto best_fit = std::ranges::max_element(fits, {}, &Fit::gain);
+  if (best_fit == fits.end() || best_fit->gain < 0.0) return WithoutPlanes(up_prior);
+  const Fit& best = *best_fit;
   const Eigen::Matrix2d ambiguity = AmbiguityOf(fits, best);
   return PlanesOf(usable, up_prior, best, ambiguity);
+}
+
+double WeightOfGain(double gain, double best_gain) {
+  constexpr double kShare = 0.1;  // (a guess)
+  return std::exp((gain - best_gain) / (kShare * std::max(1.0, best_gain)));
 }
 
 void AddAmbiguity(double variance, HorizontalPlanes* planes) {

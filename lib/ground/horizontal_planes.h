@@ -35,26 +35,23 @@ struct PlaneOfPoints {
 struct HorizontalPlanes {
   Eigen::Vector3d up_in_world = Eigen::Vector3d::UnitZ();
   Eigen::Matrix2d tilt_covariance = Eigen::Matrix2d::Zero();  // of the two turns above (rad^2)
-  // Part of it: the spread over other directions in which nearly as many points lie on planes.
+  // Part of it: the spread over other directions that are nearly as likely.
   Eigen::Matrix2d ambiguity = Eigen::Matrix2d::Zero();
   std::vector<PlaneOfPoints> planes;  // ascending heights
-
-  // Number of points on all of them.
-  double PointCount() const {
-    double count = 0.0;
-    for (const PlaneOfPoints& plane : planes) {
-      count += static_cast<double>(plane.points_in_world.size());
-    }
-    return count;
-  }
+  double gain = 0.0;  // log likelihood ratio against points on no plane and up of the prior
 };
+
+// Weight of a direction with this gain beside the best one. Points are not independent, so that
+// gains count as shares of the best one: a tenth less makes a direction e times less probable.
+double WeightOfGain(double gain, double best_gain);
 
 // Adds a variance of up (rad^2).
 void AddAmbiguity(double variance, HorizontalPlanes* planes);
 
-// Finds the up direction, among those that the up prior of the cameras allows, in which most points
-// lie on few planes, by least squares over the points of all planes. The unit of length is the
-// typical distance of the points from the cameras. Without planes, up is that of the up prior.
+// Finds the up direction, among those that the up prior of the cameras allows, in which points lie
+// most probably on few planes: heights of points are normally distributed about those of planes, or
+// uniformly. The unit of length is the typical distance of the points from the cameras. Without
+// planes, up is that of the up prior.
 HorizontalPlanes FindHorizontalPlanes(const std::vector<GroundPoint>& points,
                                       const UpPrior& up_prior);
 

@@ -64,19 +64,15 @@ bool IsOverSurface(const PlaneOfPoints& plane, const Eigen::Vector3d& up,
 // Probability that an object is a false one or not what its boxes say: those that are detected in
 // few of the frames that show their place are seldom right. One that a person measured is right but
 // for mistakes.
-double WrongProbability(const Sequence& sequence, const MeasuredObject& object,
-                        const GroundOptions& options) {
+double WrongProbability(const Sequence& sequence, const std::vector<int>& frames_to_group,
+                        const MeasuredObject& object, const GroundOptions& options) {
   constexpr double kUsualShare = 0.2;
   constexpr double kMistake = 0.001;
   if (object.size.Any()) return kMistake;
   const auto& hypotheses = object.evidence.hypotheses;
   const auto best = std::ranges::max_element(hypotheses, {}, &ScaleHypothesis::probability);
   const Landmark& landmark = object.landmarks[best - hypotheses.begin()];
-  std::set<int> frames_with_boxes;
-  for (const Detection& detection : sequence.detections) {
-    frames_with_boxes.insert(detection.frame_index);
-  }
-  const auto in_view = std::ranges::count_if(frames_with_boxes, [&](int index) {
+  const auto in_view = std::ranges::count_if(frames_to_group, [&](int index) {
     const Frame& frame = sequence.frames[index];
     const Camera& camera = sequence.CameraOf(frame);
     const auto pixel = camera.Project(frame.world_from_camera.Inverse() * landmark.Centre());
@@ -142,7 +138,6 @@ void Measure(const Sequence& sequence, const SemanticTable& table, const Horizon
     sum += hypotheses[i].probability;
   }
   for (ScaleHypothesis& one : hypotheses) one.probability /= sum;
-  object->evidence.wrong_probability = WrongProbability(sequence, *object, options);
 }
 
 }  // namespace
@@ -197,11 +192,13 @@ std::vector<BoxGroup> WithSizes(const FoundEdits& edits,
   return result;
 }
 
-std::vector<MeasuredObject> MeasureObjects(const Sequence& sequence,
+std::vector<MeasuredObject> MeasureObjects(const Sequence& sequence, const std::vector<int>& frames,
                                            const std::vector<BoxGroup>& groups,
                                            const SemanticTable& table,
-                                           const HorizontalPlanes& planes, const UpEstimate& up,
+                                           const HorizontalPlanes& planes,
                                            const GroundOptions& options, int threads) {
+  const UpEstimate up =
+      UpEstimateOf(WithTiltCovariance(planes.up_in_world, planes.tilt_covariance));
   const std::set<std::string> moving = NormalisedLabels("moving_labels", sequence.moving_labels);
   std::vector<MeasuredObject> objects;
   for (const BoxGroup& group : groups) {
@@ -214,6 +211,8 @@ std::vector<MeasuredObject> MeasureObjects(const Sequence& sequence,
   }
   ParallelFor("objects", objects.size(), threads, [&](size_t i) {
     Measure(sequence, table, planes, up, moving, options, &objects[i]);
+    if (objects[i].evidence.hypotheses.empty()) return;
+    objects[i].evidence.wrong_probability = WrongProbability(sequence, frames, objects[i], options);
   });
   return objects;
 }

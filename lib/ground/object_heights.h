@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "association/edits.h"
+#include "association/pair_evidence.h"
 #include "association/up_estimate.h"
 #include "ground/horizontal_planes.h"
 #include "ground/options.h"
@@ -15,14 +16,18 @@
 
 namespace soslam {
 
-// Detections (indices in Sequence::detections) in groups, ascending, each of one object. The
-// upright rectangle that a box shows, at the depth of the points in it or of a plane under its
-// lower edge, predicts the boxes of its object in all other frames. Rectangles are chosen in the
-// order of how many boxes agree with them. Boxes whose depth is unknown and that agree with none
-// are in no group.
-std::vector<std::vector<int>> GroupBoxes(const Sequence& sequence,
-                                         const std::vector<GroundPoint>& points,
-                                         const HorizontalPlanes& planes, int threads);
+// Frames (indices, ascending) whose boxes are grouped: those with boxes, 200 of them evenly spread
+// over more, and all whose boxes edits name.
+std::vector<int> FramesToGroup(const Sequence& sequence, const FoundEdits& edits);
+
+// Detections (indices in Sequence::detections) in groups, ascending, each of one object and with
+// one box per frame: clusters of association in the normalised world, without boxes that their body
+// does not explain. Heights of labels say as much of the objects' sizes there as is known of that
+// world's unit.
+std::vector<std::vector<int>> GroupBoxes(Sequence sequence, const std::vector<int>& frames,
+                                         const FoundEdits& edits, const SemanticTable& table,
+                                         const PairEvidence& pairs, const UpPrior& up,
+                                         const GroundOptions& options, int threads);
 
 // Boxes of one object.
 struct BoxGroup {
@@ -48,11 +53,12 @@ struct MeasuredObject {
   std::optional<double> pull = {};      // see ScalePosterior
 };
 
-// Fits an upright body to the boxes of each group, on each plane and at a free height.
-std::vector<MeasuredObject> MeasureObjects(const Sequence& sequence,
+// Fits an upright body to the boxes of each group, on each plane and at a free height. `frames`:
+// those whose boxes were grouped.
+std::vector<MeasuredObject> MeasureObjects(const Sequence& sequence, const std::vector<int>& frames,
                                            const std::vector<BoxGroup>& groups,
                                            const SemanticTable& table,
-                                           const HorizontalPlanes& planes, const UpEstimate& up,
+                                           const HorizontalPlanes& planes,
                                            const GroundOptions& options, int threads);
 
 // The settings of association with which bodies are fitted and up is found.

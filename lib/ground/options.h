@@ -24,6 +24,7 @@ struct GroundOptions {
   double wrong_height_probability = 0.05;
   double same_label_correlation = 0.3;
   int min_boxes = 3;
+  bool shared_points = false;
   UprightOptions upright = kUprightTracks;
   CameraTilt tilt;
   VerticalOptions verticals;
@@ -53,6 +54,9 @@ struct GroundOptions {
                "chairs in one room are often of one model; 1: together they count as one object");
     visit.Group("Objects");
     visit.Integer("min_boxes", &min_boxes, {2, 100000}, "objects with fewer boxes are not used");
+    visit.Flag("shared_points", &shared_points,
+               "points that several images show (soslam-match) tell which boxes show the same "
+               "object; needs images");
     upright.DescribeSigmaAboutBody(
         visit,
         "standard deviation of a box edge about that of the object's body, as a fraction of the "

@@ -9,7 +9,7 @@
 
 #include "base/description.h"
 #include "geometry/plane.h"
-#include "geometry/rigid3.h"
+#include "geometry/similarity.h"
 
 namespace soslam {
 
@@ -70,6 +70,15 @@ void Describe(Visitor& visit, PlaneRow& row) {
   visit.Field("height_sigma_m", &row.height_sigma_m, "of the plane at its point", kNotNegative);
 }
 
+// One tried way to hold the cameras and its result.
+struct TriedHolding {
+  CameraHolding holding = CameraHolding::kLevel;
+  bool verticals = false;
+  double cost = 0.0;
+  double probability = 0.0;
+  std::optional<int> planes = {};  // none where it was given up before planes were looked for
+};
+
 struct PlanesReport {
   struct Error {
     int plane = 0;
@@ -87,18 +96,11 @@ struct PlanesReport {
     SupportReason reason = SupportReason::kNoViews;
     std::optional<double> height_m = {}, height_sigma_m = {}, cost = {};
   };
-  struct TriedRow {
-    CameraHolding held = CameraHolding::kLevel;
-    bool verticals = false;
-    double cost = 0.0;
-    double probability = 0.0;
-    std::optional<int> planes = {};
-  };
   struct HoldingRow {
     CameraHolding held = CameraHolding::kLevel;
     bool verticals = false;
     bool is_clear = false;
-    std::vector<TriedRow> tried = {};
+    std::vector<TriedHolding> tried = {};
   };
   std::string dataset;
   std::vector<EstimatedPlaneRow> planes = {};
@@ -143,8 +145,8 @@ void Describe(Visitor& visit, PlanesReport::ObjectRow& row) {
               "negative log likelihood of its boxes and ratio, on its plane; null without a body");
 }
 template <typename Visitor>
-void Describe(Visitor& visit, PlanesReport::TriedRow& row) {
-  visit.Field("held", &row.held, "how the cameras are held");
+void Describe(Visitor& visit, TriedHolding& row) {
+  visit.Field("held", &row.holding, "how the cameras are held");
   visit.Field("verticals", &row.verticals, "vertical edges of the images are used");
   visit.Field("cost", &row.cost,
               "over that of the one taken, as a negative log likelihood; negative of one for which "
@@ -233,13 +235,8 @@ void Describe(Visitor& visit, WorldScale& scale) {
               "of another group of scales, where objects contradict one another", kShare);
 }
 
-// Change of frame and unit from the input to the output.
-struct OutputFromInput {
-  double scale = 1.0;
-  Rigid3d rigid;
-};
 template <typename Visitor>
-void Describe(Visitor& visit, OutputFromInput& change) {
+void Describe(Visitor& visit, Similarity& change) {
   visit.Field("scale", &change.scale, "rotation * (scale * point) + translation", kPositive);
   Describe(visit, change.rigid);
 }
@@ -276,11 +273,14 @@ struct WorldReport {
     double agreement = 0.0;
     bool is_measured = false;
     std::optional<double> pull = {};
+
+    bool AgreesWithScale() const { return agreement >= 0.5; }
+    bool TellsByLabel() const { return AgreesWithScale() && !is_measured; }
   };
   std::string dataset;
   Up up;
   std::optional<WorldScale> scale = {};
-  OutputFromInput output_from_input;
+  Similarity output_from_input;
   std::vector<SupportRow> planes = {};
   int points = 0;
   int planes_of_points = 0;

@@ -62,7 +62,6 @@ Observations Observe(const Sequence& sequence, const std::vector<std::optional<S
     observation.height_is_free = true;
     WeighViews(options.upright.ViewCorrelation(), &observation);
     observation.ratio_is_free = prior && prior->attitude != Attitude::kStanding;
-    observation.size_is_known = options.size_prior && !observation.ratio_is_free;
   }
   return observations;
 }
@@ -127,32 +126,7 @@ StandingBodies OnSharedPlanes(const std::map<size_t, StandingBody>& own,
   return standing;
 }
 
-// Refines planes and bodies: together where planes are parallel, else those of one plane at a time.
-// None when the fit of a body fails.
-std::vector<RefinedPlanes> RefineAll(bool parallel, int threads, StandingBodies* standing) {
-  std::vector<RefinedPlanes> refined;
-  if (parallel) {
-    if (auto all = Refine(standing, threads)) refined.push_back(std::move(*all));
-    return refined;
-  }
-  for (size_t plane = 0; plane < standing->planes.size(); ++plane) {
-    StandingBodies alone{
-        {}, {}, {standing->planes[plane]}, standing->up_prior, standing->height_sigma_fraction};
-    for (size_t i = 0; i < standing->bodies.size(); ++i) {
-      if (standing->plane_of[i] != static_cast<int>(plane)) continue;
-      alone.bodies.push_back(standing->bodies[i]);
-      alone.plane_of.push_back(0);
-    }
-    auto one = Refine(&alone, threads);
-    if (!one) return {};
-    refined.push_back(std::move(*one));
-    standing->planes[plane] = alone.planes.front();
-  }
-  return refined;
-}
-
-EstimatedPlane EstimatedPlaneOf(const StandingBodies& standing,
-                                const std::vector<RefinedPlanes>& all_refined, bool parallel,
+EstimatedPlane EstimatedPlaneOf(const StandingBodies& standing, const RefinedPlanes& refined,
                                 size_t index) {
   const Plane& plane = standing.planes[index];
   std::vector<StandingBody> bodies;
@@ -168,9 +142,7 @@ EstimatedPlane EstimatedPlaneOf(const StandingBodies& standing,
   const Eigen::Vector3d feet = bodies.empty() ? of_points->point_in_world : MeanBasePoint(bodies);
   const Eigen::Vector3d point = feet - plane.SignedDistance(feet) * plane.normal;
   const Eigen::Matrix3d level = UprightRotation(plane.normal, 0.0).toRotationMatrix();
-  const RefinedPlanes& refined = parallel ? all_refined.front() : all_refined[index];
-  const auto rise = static_cast<Eigen::Index>(parallel ? 2 + index : 2);
-  const std::array<Eigen::Index, 3> motion = {0, 1, rise};
+  const std::array<Eigen::Index, 3> motion = {0, 1, static_cast<Eigen::Index>(2 + index)};
   const Eigen::Matrix3d covariance = refined.covariance(motion, motion);
   // Rotations about the pivot raise the plane at the point.
   Eigen::Matrix3d at_point = Eigen::Matrix3d::Identity();
@@ -231,32 +203,31 @@ std::optional<PlanesEstimate> EstimateFrom(const Eigen::Vector3d& up, const UpPr
   estimate.up_of_cameras = up_prior.up_in_world;
   estimate.attitude_information = up_prior.information;
   StandingBodies standing;
-  std::vector<RefinedPlanes> all_refined;
+  std::optional<RefinedPlanes> refined;
   std::map<size_t, int> plane_of, before;  // by object
   Eigen::Vector3d normal = up;
   for (; estimate.rounds < kMaxRounds && !estimate.settled; ++estimate.rounds) {
     const std::map<size_t, StandingBody> own = FindOwnHeights(observations, normal, threads);
     if (own.empty() && of_points.empty()) return std::nullopt;
     if (own.empty()) {
-      standing.planes.clear(), all_refined.clear(), plane_of.clear();
+      standing.planes.clear(), refined.reset(), plane_of.clear();
       break;
     }
     standing = OnSharedPlanes(own, of_points, normal, up_prior, options);
-    all_refined = RefineAll(options.parallel, threads, &standing);
-    if (all_refined.empty()) return std::nullopt;
+    refined = Refine(&standing, threads);
+    if (!refined) return std::nullopt;
     before = std::exchange(plane_of, {});
     size_t body_index = 0;
     for (const auto& [object, body] : own) plane_of[object] = standing.plane_of[body_index++];
     estimate.settled = before == plane_of;
     normal = standing.planes.front().normal;
   }
-  estimate.cost = 0.0;
-  for (const RefinedPlanes& refined : all_refined) *estimate.cost += refined.cost;
+  estimate.cost = refined ? refined->cost : 0.0;
   for (const auto& observation : observations) {
     if (observation) estimate.expected_cost += ExpectedCost(*observation);
   }
   for (size_t i = 0; i < standing.planes.size(); ++i) {
-    estimate.planes.push_back(EstimatedPlaneOf(standing, all_refined, options.parallel, i));
+    estimate.planes.push_back(EstimatedPlaneOf(standing, *refined, i));
   }
   if (standing.planes.empty()) {
     estimate.settled = true;
@@ -312,9 +283,7 @@ std::optional<PlanesEstimate> EstimatePlanes(const Sequence& sequence,
   const auto is_observed = [](const auto& observation) { return observation.has_value(); };
   if (std::ranges::none_of(all, is_observed)) return std::nullopt;
   std::vector<HeightPrior> of_points;
-  if (sequence.ground && mount == Mount::kStanding && options.parallel) {
-    of_points = sequence.ground->planes;
-  }
+  if (sequence.ground && mount == Mount::kStanding) of_points = sequence.ground->planes;
   std::optional<PlanesEstimate> best;
   double lowest = 0.0;
   for (const Eigen::Vector3d& up : SearchUp(up_prior, sparse, threads)) {
@@ -352,18 +321,16 @@ UpPrior DownOf(const UpPrior& up_prior, const std::optional<PlanesEstimate>& flo
   return down;
 }
 
-// Floors and ceilings in one estimate, with the objects of each on their own planes; ceilings are
-// made parallel to the floor if `parallel`.
+// Floors and ceilings in one estimate, with the objects of each on their own planes. Ceilings are
+// made parallel to the floor, through their own points.
 PlanesEstimate JoinedPlanes(const PlanesEstimate& floors, const PlanesEstimate& ceilings,
-                            bool parallel, const std::vector<std::optional<ShapePrior>>& priors) {
+                            const std::vector<std::optional<ShapePrior>>& priors) {
   PlanesEstimate joined = floors;
   const Eigen::Vector3d down = -floors.planes.front().plane_in_world.normal;
   for (EstimatedPlane ceiling : ceilings.planes) {
-    if (parallel) {  // made parallel to the floor, through its own point
-      ceiling.plane_in_world = {down, -down.dot(ceiling.point_in_world)};
-      const Eigen::Vector3d x = ceiling.x_axis_in_world;
-      ceiling.x_axis_in_world = (x - down.dot(x) * down).normalized();
-    }
+    ceiling.plane_in_world = {down, -down.dot(ceiling.point_in_world)};
+    const Eigen::Vector3d x = ceiling.x_axis_in_world;
+    ceiling.x_axis_in_world = (x - down.dot(x) * down).normalized();
     joined.planes.push_back(ceiling);
   }
   for (size_t i = 0; i < priors.size(); ++i) {
@@ -406,7 +373,7 @@ std::optional<PlanesEstimate> FindPlanes(const Sequence& sequence,
       EstimatePlanes(sequence, priors, Mount::kHanging, DownOf(up_prior, floors), options, threads);
   std::optional<PlanesEstimate> estimate = floors ? floors : ceilings;
   if (!estimate) return std::nullopt;
-  if (floors && ceilings) estimate = JoinedPlanes(*floors, *ceilings, options.parallel, priors);
+  if (floors && ceilings) estimate = JoinedPlanes(*floors, *ceilings, priors);
   estimate->up_of_cameras = up_prior.up_in_world;
   estimate->attitude_information = up_prior.information;
   for (size_t i = 0; i < priors.size(); ++i) {

@@ -25,9 +25,9 @@ BodyCosts CostsOfUprightBodies(const Sequence& sequence,
                                const UpPrior& up_prior, const PlanesOptions& options, int threads);
 
 // Estimates the planes that the sequence's upright objects stand on, from their boxes in several
-// frames, the trajectory, the objects' priors and the prior on up; and, where planes are parallel,
-// from the planes of points of the sequence's ground. None when there are none of these, and no
-// object's views determine the height of its base (one view, or all from the same place).
+// frames, the trajectory, the objects' priors, the prior on up, and the planes of points of the
+// sequence's ground. None when there are none of these, and no object's views determine the
+// height of its base (one view, or all from the same place).
 std::optional<PlanesEstimate> FindPlanes(const Sequence& sequence,
                                          const std::vector<std::optional<ShapePrior>>& priors,
                                          const UpPrior& up_prior, const PlanesOptions& options,

@@ -59,14 +59,12 @@ struct VerticalOptions {
 struct PlanesOptions {
   PlaneSource planes = PlaneSource::kGiven;
   double camera_height_m = 1.65;
-  bool parallel = true;
   UprightOptions upright{.axes_weight = 0.0};
   CameraTilt tilt;
   VerticalOptions verticals;
   double odometry_rotation_sigma_deg = 0.2;
   double odometry_translation_sigma_m = 0.003;
   bool refine_poses = true;
-  bool size_prior = false;
   double height_sigma_fraction = 0.05;
   double new_plane_cost = 10.0;
 
@@ -87,9 +85,6 @@ struct PlanesOptions {
     });
     visit.OnlyWhere({{"planes", {"estimated", "where_missing"}}}, [&] {
       visit.Group("Estimated planes");
-      visit.Flag("parallel", &parallel,
-                 "all planes have the same normal, as horizontal ones do; otherwise planes of "
-                 "points are not used");
       upright.DescribeSigma(visit);
       upright.DescribeViewCorrelation(
           visit,
@@ -105,9 +100,6 @@ struct PlanesOptions {
                  "label's shape; decides which objects share a plane");
       visit.Real("new_plane_cost", &new_plane_cost, {0.0, 1e6},
                  "cost (negative logarithm of a likelihood) of one more plane");
-      visit.Flag("size_prior", &size_prior,
-                 "heights have the prior of the semantic table (height_m); without it all "
-                 "metres come from the trajectory; not with refine_poses");
       visit.Flag("refine_poses", &refine_poses,
                  "finally the back end optimises planes, poses and bodies together, and its "
                  "poses carry the planes into the frames");

@@ -129,11 +129,7 @@ PlanesReport ReportOf(const PlanesEstimate& estimate, const Sequence& given) {
   report.up_of_cameras_in_world = estimate.up_of_cameras;
   if (!estimate.holdings.empty()) {
     report.camera_holding = {estimate.holding, estimate.verticals,
-                             estimate.holding_tilt_variance == 0.0};
-    for (const TriedHolding& tried : estimate.holdings) {
-      report.camera_holding->tried.push_back(
-          {tried.holding, tried.verticals, tried.cost, tried.probability, tried.planes});
-    }
+                             estimate.holding_tilt_variance == 0.0, estimate.holdings};
   }
   report.cost = estimate.cost;
   report.rounds = estimate.rounds;

@@ -33,15 +33,6 @@ struct ObjectSupport {
   std::optional<double> cost;  // cost of its boxes, on its plane
 };
 
-// One tried camera holding and its result.
-struct TriedHolding {
-  CameraHolding holding = CameraHolding::kLevel;
-  bool verticals = false;  // vertical edges of the images are used
-  double cost = 0.0;       // relative to the lowest (negative log likelihood)
-  double probability = 0.0;
-  std::optional<int> planes;  // number of planes; none when it was dropped before
-};
-
 struct PlanesEstimate {
   std::vector<EstimatedPlane> planes;
   std::vector<ObjectSupport> objects;  // one per Sequence::objects

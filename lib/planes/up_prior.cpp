@@ -27,6 +27,11 @@ Eigen::Matrix2d TiltCovariance(const UpPrior& prior) {
   return (d_turns.transpose() * prior.information * d_turns).inverse();
 }
 
+UpPrior WithTiltCovariance(const Eigen::Vector3d& up_in_world, const Eigen::Matrix2d& covariance) {
+  const Eigen::Matrix<double, 3, 2> d_turns = UpByTurns(up_in_world);
+  return {d_turns * covariance.inverse() * d_turns.transpose(), up_in_world};
+}
+
 std::vector<double> CameraWeights(const std::vector<Rigid3d>& world_from_camera,
                                   double correlation_rad) {
   std::vector<Eigen::Vector3d> optical_axes;

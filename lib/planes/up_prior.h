@@ -28,6 +28,9 @@ Eigen::Matrix<double, 3, 2> UpByTurns(const Eigen::Vector3d& up);
 // Covariance of these two turns of a prior's up direction.
 Eigen::Matrix2d TiltCovariance(const UpPrior& prior);
 
+// The prior whose up direction has this covariance of these two turns.
+UpPrior WithTiltCovariance(const Eigen::Vector3d& up_in_world, const Eigen::Matrix2d& covariance);
+
 // Weight of each camera: cameras whose optical axes are closer than about `correlation_rad` are
 // correlated and count together as one; all weights are 1 where it is zero.
 std::vector<double> CameraWeights(const std::vector<Rigid3d>& world_from_camera,

@@ -63,6 +63,23 @@ void CheckLabels(const Edits& edits, const SemanticTable& table) {
   }
 }
 
+// What the matches of soslam-match tell of pairs of boxes; nothing where they are not used.
+PairEvidence ReadPairs(bool shared_points, const Sequence& sequence, const StageFiles& files) {
+  if (!shared_points) return {};
+  if (!files.contains("matches")) {
+    throw SettingsError("shared_points = true needs --matches, the matches.h5 of soslam-match");
+  }
+  const ImageMatches matches = ReadMatches(files.at("matches"));
+  if (matches.colours.size() != sequence.detections.size()) {
+    throw InputError(fmt::format(
+        "{}: found colours of {} boxes; expected {}, those of {}; likely cause: the file is of "
+        "another sequence",
+        files.at("matches").string(), matches.colours.size(), sequence.detections.size(),
+        files.at("sequence").string()));
+  }
+  return {sequence, matches};
+}
+
 }  // namespace
 
 void RunAssociate(const AssociateOptions& settings, const StageFiles& files, int threads) {
@@ -75,21 +92,7 @@ void RunAssociate(const AssociateOptions& settings, const StageFiles& files, int
   options.moving_labels = sequence.moving_labels;
   const SemanticTable table = ReadSemanticTable(files.at("table"));
   if (!options.use_planes) sequence = WithoutPlanes(std::move(sequence));
-  if (options.shared_points && !files.contains("matches")) {
-    throw SettingsError("shared_points = true needs --matches, the matches.h5 of soslam-match");
-  }
-  PairEvidence pairs;
-  if (options.shared_points) {
-    const ImageMatches matches = ReadMatches(files.at("matches"));
-    if (matches.colours.size() != sequence.detections.size()) {
-      throw InputError(fmt::format(
-          "{}: found colours of {} boxes; expected {}, those of {}; likely cause: the file is of "
-          "another sequence",
-          files.at("matches").string(), matches.colours.size(), sequence.detections.size(),
-          files.at("sequence").string()));
-    }
-    pairs = PairEvidence(sequence, matches);
-  }
+  const PairEvidence pairs = ReadPairs(options.shared_points, sequence, files);
   const Edits edits = files.contains("edits") ? ReadEdits(files.at("edits")) : Edits();
   CheckLabels(edits, table);
   const Association association = Associate(sequence, table, pairs, options, threads, edits);
@@ -214,10 +217,6 @@ Result FromSequence(const Sequence& sequence) {
 Result FromBoxes(const Sequence& sequence, const PlanesOptions& options, const StageFiles& files,
                  int threads) {
   CheckOneSegment(sequence, files.at("sequence"));
-  if (options.size_prior && options.refine_poses) {
-    throw SettingsError(
-        "size_prior = true needs refine_poses = false: the back end knows no heights");
-  }
   Result result;
   result.inputs = {files.at("table")};
   const SemanticTable table = ReadSemanticTable(files.at("table"));
@@ -333,13 +332,14 @@ std::vector<TurnedImage> TurnedImages(const Sequence& sequence, const StageFiles
 // What told the scale, in the order of how much it pulls at it.
 void PrintPulls(const GroundEstimate& estimate) {
   constexpr double kLeastPull = 0.01;
-  std::vector<const GroundObject*> pulling;
-  for (const GroundObject& object : estimate.objects) {
+  std::vector<const WorldReport::ObjectRow*> pulling;
+  for (const WorldReport::ObjectRow& object : estimate.objects) {
     if (object.pull && std::abs(*object.pull) >= kLeastPull) pulling.push_back(&object);
   }
-  std::ranges::stable_sort(pulling, std::greater(),
-                           [](const GroundObject* object) { return std::abs(*object->pull); });
-  for (const GroundObject* object : pulling) {
+  std::ranges::stable_sort(pulling, std::greater(), [](const WorldReport::ObjectRow* object) {
+    return std::abs(*object->pull);
+  });
+  for (const WorldReport::ObjectRow* object : pulling) {
     fmt::print("  {:+.0f} % by a {} of {} boxes, {:.2f} m high{}\n",
                100.0 * std::expm1(*object->pull), object->label, object->boxes, *object->height_m,
                object->is_measured ? ", its size given"
@@ -364,11 +364,13 @@ void RunGround(const GroundOptions& options, const StageFiles& files, int thread
                        .stage = "ground"};
   const Edits edits = files.contains("edits") ? ReadEdits(files.at("edits")) : Edits();
   if (files.contains("edits")) info.inputs.push_back(files.at("edits"));
+  const PairEvidence pairs = ReadPairs(options.shared_points, sequence, files);
+  if (options.shared_points) info.inputs.push_back(files.at("matches"));
   const std::vector<SegmentView> views =
       ViewsOfSegments(sequence, options.verticals, files, threads, &info.inputs);
   const GroundEstimate estimate =
       EstimateGround(sequence, WithoutMovingThings(sequence, ReadPoints(files.at("points"))), views,
-                     TurnedImages(sequence, files, &info.inputs), edits,
+                     TurnedImages(sequence, files, &info.inputs), pairs, edits,
                      ReadSemanticTable(files.at("table")), options, threads);
   info.findings = CheckGround(estimate, options);
   if (!estimate.cameras_are_turned) {

@@ -64,12 +64,12 @@ std::vector<PipelineStage> MakeStages() {
   const StageOutput sequence_file = {"output", "sequence.json"};
   return {
       Stage<ImportOptions>("import", {}, {dataset}, {sequence_file}),
-      Stage<GroundOptions>("ground", {sequence},
+      // Neither matches nor points nor edge maps depend on the world or its unit.
+      Stage<MatchOptions>("match", {imported}, {dataset}, {{"output", "matches.h5"}}),
+      Stage<GroundOptions>("ground", {sequence, matches},
                            {dataset, {"points", "$(dataset)/points.h5"}, table},
                            {sequence_file, {"world", "world.json"}}, "ground",
                            /*takes_edits=*/true),
-      // Neither matches nor points nor edge maps depend on the world or its unit.
-      Stage<MatchOptions>("match", {imported}, {dataset}, {{"output", "matches.h5"}}),
       Stage<AssociateOptions>("associate", {sequence, matches}, {table},
                               {sequence_file, {"associations", "associations.json"}}, "association",
                               /*takes_edits=*/true),

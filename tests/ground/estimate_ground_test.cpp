@@ -23,6 +23,7 @@ using testing::EndsWith;
 using testing::Field;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::SizeIs;
 
 const SemanticTable& ShippedTable() {
   static const SemanticTable table =
@@ -42,7 +43,7 @@ PriorScene SceneOf(unsigned seed, double wrong_label_probability = 0.0) {
 
 GroundEstimate Estimate(const Sequence& sequence, const std::vector<MapPoint>& points,
                         const GroundOptions& options = {}, const Edits& edits = {}) {
-  return EstimateGround(sequence, points, {}, {}, edits, ShippedTable(), options, 2);
+  return EstimateGround(sequence, points, {}, {}, {}, edits, ShippedTable(), options, 2);
 }
 
 // The height, or width, of the object with most boxes, `factor` times the true one.
@@ -167,7 +168,7 @@ TEST(EstimateGroundTest, TheSizeOfOneThingTellsTheScale) {
   const GroundEstimate with = Estimate(scene.sequence, scene.points, {}, KnownSizeOf(scene));
   EXPECT_NEAR(with.scale->log_scale, std::log(scene.metres_per_unit), 0.03);
   EXPECT_LT(with.scale->log_sigma, 0.5 * without.scale->log_sigma);
-  const auto pull = [](const GroundObject& object) {
+  const auto pull = [](const WorldReport::ObjectRow& object) {
     return object.pull ? std::abs(*object.pull) : 0.0;
   };
   EXPECT_TRUE(std::ranges::max_element(with.objects, {}, pull)->is_measured);
@@ -238,7 +239,7 @@ TEST(CheckGroundTest, AnUncertainScaleSaysWhatItRestsOn) {
   GroundEstimate estimate;
   estimate.scale = ScalePosterior{.log_sigma = 0.3, .low = -0.6, .high = 0.6};
   estimate.objects.resize(3);
-  for (GroundObject& object : estimate.objects) object.weight = 0.7;
+  for (WorldReport::ObjectRow& object : estimate.objects) object.weight = 0.7;
   estimate.objects[0].agreement = 0.9;
   estimate.objects[1].agreement = 0.1;  // of the other two, nothing counts
   const auto found = [&] {
@@ -252,7 +253,7 @@ TEST(CheckGroundTest, AnUncertainScaleSaysWhatItRestsOn) {
   estimate.objects[1].agreement = 0.8;
   EXPECT_THAT(found(), HasSubstr("of 2 detected things; as heights of one label are alike, these "
                                  "things count as 1.4"));
-  for (GroundObject& object : estimate.objects) object.weight = 1.0;
+  for (WorldReport::ObjectRow& object : estimate.objects) object.weight = 1.0;
   EXPECT_THAT(found(), EndsWith("of 2 detected things"));
 }
 
@@ -311,7 +312,7 @@ TEST(EstimateGroundTest, TurnedImagesTellUpFromDown) {
   EXPECT_EQ(Estimate(scene.sequence, {}).up_of_cameras.holding, CameraHolding::kLevel);
   const std::vector<TurnedImage> upside_down = {{0, {3.0, 2.0, 20.0, 2.0}}};
   const GroundEstimate estimate =
-      EstimateGround(scene.sequence, {}, {}, upside_down, {}, ShippedTable(), {}, 2);
+      EstimateGround(scene.sequence, {}, {}, upside_down, {}, {}, ShippedTable(), {}, 2);
   EXPECT_EQ(estimate.up_of_cameras.holding, CameraHolding::kRolled180);
   EXPECT_GT(AngleBetweenDeg(estimate.up_in_input, scene.up_in_world), 170.0);
 }
@@ -369,23 +370,46 @@ TEST(CheckGroundTest, ASizeThatTellsNothingIsAFinding) {
 
 TEST(GroupBoxesTest, GroupsAreOfOneObject) {
   const PriorScene scene = SceneOf(5);
-  HorizontalPlanes none;
-  none.up_in_world = scene.up_in_world;
-  const auto groups =
-      GroupBoxes(scene.sequence, GroundPoints(scene.sequence, scene.points), none, 1);
-  size_t in_largest = 0, mixed = 0;
-  std::map<int, size_t> largest;
-  for (const auto& group : groups) {
-    std::map<int, size_t> counts;
-    for (const int index : group) {
-      ++counts[*scene.sequence.detections[index].true_object_id];
+  const Eigen::Vector3d& up = scene.up_in_world;
+  const UpPrior known_up = {1e4 * (Eigen::Matrix3d::Identity() - up * up.transpose()), up};
+  const Edits no_edits;
+  for (const double metres_per_unit : {0.8, 2.0, 5.0}) {
+    SCOPED_TRACE(metres_per_unit);
+    const Sequence sequence =
+        Transformed(Similarity{scene.metres_per_unit / metres_per_unit, {}}, scene.sequence);
+    const FoundEdits edits = FindBoxes(no_edits, sequence, {});
+    const auto groups = GroupBoxes(sequence, FramesToGroup(sequence, edits), edits, ShippedTable(),
+                                   {}, known_up, {}, 1);
+    size_t in_largest = 0, mixed = 0;
+    std::map<int, size_t> largest;
+    for (const auto& group : groups) {
+      std::map<int, size_t> counts;
+      for (const int index : group) {
+        ++counts[*scene.sequence.detections[index].true_object_id];
+      }
+      if (counts.size() > 1) ++mixed;
+      for (const auto& [id, count] : counts) largest[id] = std::max(largest[id], count);
     }
-    if (counts.size() > 1) ++mixed;
-    for (const auto& [id, count] : counts) largest[id] = std::max(largest[id], count);
+    for (const auto& [id, count] : largest) in_largest += count;
+    EXPECT_LE(mixed, 1u);
+    EXPECT_GE(in_largest, 80 * scene.sequence.detections.size() / 100);
   }
-  for (const auto& [id, count] : largest) in_largest += count;
-  EXPECT_LE(mixed, 1u);
-  EXPECT_GE(in_largest, 80 * scene.sequence.detections.size() / 100);
+}
+
+TEST(GroupBoxesTest, FramesAreSpreadOverVeryMany) {
+  Sequence sequence;
+  sequence.frames.resize(1000);
+  sequence.objects.resize(1);
+  for (int frame = 0; frame < 1000; frame += 2) {
+    sequence.detections.emplace_back().frame_index = frame;
+  }
+  const Edits no_edits;
+  FoundEdits edits{no_edits, {}, {}};
+  const std::vector<int> frames = FramesToGroup(sequence, edits);
+  EXPECT_EQ(frames.size(), 200u);
+  EXPECT_GT(frames.back(), 990);
+  edits.boxes = {{1}};  // of frame 2
+  EXPECT_THAT(FramesToGroup(sequence, edits), AllOf(SizeIs(201), Contains(2)));
 }
 
 // Figures of docs/planes.md: SOSLAM_SCENES=200.

@@ -16,10 +16,10 @@ constexpr double kUnit = 3.0;  // m, the distance of the points from cameras
 // A floor at height 0, a table top at 0.7 m and a wall, in a world with this up direction.
 class HorizontalPlanesTest : public testing::Test {
  protected:
-  void AddPoint(const Eigen::Vector3d& in_room) {
-    constexpr double kSigma = 0.003 / kUnit;
-    points_.push_back({world_from_room_ * (in_room / kUnit + RandomNormalVector(kSigma)),
-                       kSigma * kSigma * Eigen::Matrix3d::Identity(),
+  void AddPoint(const Eigen::Vector3d& in_room, double sigma_m = 0.003) {
+    const double sigma = sigma_m / kUnit;
+    points_.push_back({world_from_room_ * (in_room / kUnit + RandomNormalVector(sigma)),
+                       sigma * sigma * Eigen::Matrix3d::Identity(),
                        {0, 1}});
   }
 
@@ -55,6 +55,26 @@ TEST_F(HorizontalPlanesTest, FindsFloorAndTable) {
   EXPECT_NEAR(found.planes[1].height, 0.7 / kUnit, 0.001);
   EXPECT_GT(found.planes[0].points_in_world.size(), 270u);
   EXPECT_LT(std::sqrt(found.tilt_covariance.trace()), 0.5 * kRadPerDeg);
+}
+
+TEST_F(HorizontalPlanesTest, AFloorAloneIsAPlane) {
+  for (int i = 0; i < 300; ++i) AddPoint({RandomUniform(-2, 2), RandomUniform(-2, 2), 0.0});
+  const HorizontalPlanes found = FindHorizontalPlanes(points_, CamerasUp(5.0));
+  EXPECT_LT(AngleBetweenDeg(found.up_in_world, world_from_room_ * Eigen::Vector3d::UnitZ()), 0.1);
+  ASSERT_EQ(found.planes.size(), 1u);
+  EXPECT_EQ(found.planes[0].points_in_world.size(), 300u);
+  EXPECT_LT(std::sqrt(found.planes[0].covariance(2, 2)), 0.01);
+}
+
+// The floor is known by points that are seen exactly, though most points are near a rough ramp.
+TEST_F(HorizontalPlanesTest, ExactPointsTellMoreThanMany) {
+  for (int i = 0; i < 200; ++i) AddPoint({RandomUniform(-2, 2), RandomUniform(-2, 2), 0.0});
+  for (int i = 0; i < 500; ++i) {
+    const double y = RandomUniform(-2, 2);
+    AddPoint({RandomUniform(-2, 2), y, 0.7 + 0.14 * y + RandomUniform(-0.1, 0.1)}, 0.027);
+  }
+  const HorizontalPlanes found = FindHorizontalPlanes(points_, CamerasUp(5.0));
+  EXPECT_LT(AngleBetweenDeg(found.up_in_world, world_from_room_ * Eigen::Vector3d::UnitZ()), 0.2);
 }
 
 TEST_F(HorizontalPlanesTest, CovarianceGrowsWithPlanesThatAreNotParallel) {

@@ -132,16 +132,6 @@ TEST(EstimatePlanes, WhatHasNoPlaneToBeMountedOnHasNoSupport) {
             static_cast<int>(detections_before - with_planes.detections.size()));
 }
 
-TEST(EstimatePlanes, PlanesNeedNotBeParallel) {
-  const Sequence sequence = SyntheticSequence(WithShelf(CuboidScene(1, 6), 0.25), false);
-  PlanesOptions options = ModelOptions();
-  options.parallel = false;
-  const PlanesEstimate estimate = Estimate(sequence, options);
-  ASSERT_EQ(estimate.planes.size(), 2u);
-  EXPECT_NE(estimate.planes[0].plane_in_world.normal, estimate.planes[1].plane_in_world.normal);
-  ExpectGiven(sequence, estimate, 0.3 * kRadPerDeg, 0.01);
-}
-
 // How well one object shows the tilt is another matter: from 0.5 to 11 degrees here. Exact boxes
 // leave only the pull of the cameras' up prior, which is less than what the covariance allows for.
 TEST(EstimatePlanes, OneObjectIsEnough) {
@@ -189,51 +179,6 @@ TEST(SlowEstimatePlanes, ErrorsAreAsLargeAsTheCovarianceSays) {
   }
   EXPECT_GT(sum / kScenes, 1.5);
   EXPECT_LT(sum / kScenes, 5.1);
-}
-
-// With the objects' true heights in their priors.
-PlanesEstimate EstimateWithHeights(const Sequence& sequence, double log_sigma, bool size_prior) {
-  auto priors = TrueCuboidPriors(sequence, kLogSigma);
-  for (size_t i = 0; i < priors.size(); ++i) {
-    const double c = sequence.objects[i].ground_truth->landmark_in_world.half_axes.z();
-    priors[i]->height_m = LogNormal{2.0 * c, log_sigma};
-  }
-  PlanesOptions options = ModelOptions();
-  options.size_prior = size_prior;
-  return FindPlanes(sequence, priors, CamerasUp(sequence), options, 2).value();
-}
-
-// From places so near to each other that rays hardly cross, only known heights say how far the
-// floor is: off by a few hundredths of the camera's 1.1 m, and all in all, in 99.9 % of cases, by
-// no more than the covariance says.
-TEST(EstimatePlanes, KnownHeightsReplaceParallax) {
-  for (int seed = 0; seed < 3; ++seed) {
-    SCOPED_TRACE(seed);
-    Scene scene = CuboidScene(seed, 4);
-    scene.noise.box_sigma_px = 1.0;
-    Sequence sequence = SyntheticSequence(scene, true);
-    std::erase_if(sequence.detections,
-                  [](const Detection& detection) { return detection.frame_index > 2; });
-    const PlanesEstimate with = EstimateWithHeights(sequence, 0.01, true);
-    ASSERT_EQ(with.planes.size(), 1u);
-    EXPECT_LT(NormalisedErrorSquared(sequence, with), 16.3);
-    EXPECT_LT(std::abs(CompareWithGiven(sequence, with, 0)->offset), 0.05);
-  }
-}
-
-// One box fits a body on any plane, nearer and smaller or farther and larger: only the height of
-// the object's label says on which it stands.
-TEST(EstimatePlanes, AnObjectSeenOnceNeedsItsHeight) {
-  Sequence sequence = SyntheticSequence(WithShelf(CuboidScene(2, 5), 0.3), false);
-  for (const int once : {0, 1}) KeepOneDetectionOf(once, &sequence);
-  const PlanesEstimate without = EstimateWithHeights(sequence, 0.05, false);
-  const PlanesEstimate with = EstimateWithHeights(sequence, 0.05, true);
-  ASSERT_EQ(with.planes.size(), 2u);
-  for (const size_t once : {0, 1}) {
-    EXPECT_EQ(without.objects[once].reason, SupportReason::kLowestCost);
-    EXPECT_FALSE(without.objects[once].height);
-    EXPECT_EQ(with.objects[once].plane_index, static_cast<int>(once));
-  }
 }
 
 // Ground of points: up and the true planes, `offset` too high.

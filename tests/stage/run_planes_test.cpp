@@ -150,13 +150,11 @@ TEST_F(RunPlanesTest, RefusesSettingsThatItCannotFollow) {
     options_ = options;
     ExpectError<SettingsError>([&] { Run(); }, words);
   };
-  PlanesOptions given = options_, verticals = options_, sizes = options_;
+  PlanesOptions given = options_, verticals = options_;
   given.planes = PlaneSource::kGiven;
   expect_refused(given, {"given", "estimated, where_missing or camera_height"});
   verticals.verticals.are_used = true;
   expect_refused(verticals, {"--dataset", "verticals = false"});
-  sizes.size_prior = true;
-  expect_refused(sizes, {"size_prior", "refine_poses = false"});
 }
 
 TEST_F(RunPlanesTest, WhereMissingKeepsThePlanesThatAreThereAndEstimatesOthers) {
@@ -250,13 +248,19 @@ TEST_F(RunGroundTest, RefusesSeveralSegmentsAndAGivenWorld) {
                              {"ground is given", "expected estimated"});
 }
 
+TEST_F(RunGroundTest, SharedPointsNeedMatches) {
+  options_.shared_points = true;
+  ExpectError<SettingsError>([&] { RunGround(options_, files_, 1); },
+                             {"shared_points", "--matches", "soslam-match"});
+}
+
 TEST_F(RunGroundTest, ACameraHeightAboveNoPlaneIsNotWhatTheScaleIsFoundBy) {
-  options_.scale = 1.0;
+  options_.scale = scene_.metres_per_unit;
   options_.camera_height_m = 1.5;
   WritePoints(files_.at("points"), {}, {});
   RunGround(options_, files_, 1);
   const json world = ReadArtefact(files_.at("world"), "world");
-  EXPECT_THAT(world.at("scale").at("found_by"), testing::ElementsAre("scale"));
+  EXPECT_THAT(world.at("scale").at("found_by"), testing::ElementsAre("objects", "scale"));
   EXPECT_EQ(world.at("findings")[0].at("check"), "camera_height_unused");
 }
 

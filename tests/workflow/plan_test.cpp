@@ -151,6 +151,9 @@ TEST_F(PlanTest, StagesReadTheLatestOfWhatTheyNeed) {
                        {"Points", "optimise", "points", "track/points.h5"},
                        {"Frames", "initialise", "points", "track/points.h5"},
                        {"Frames", "refine", "points", "track/points.h5"}});
+  expect_inputs(R"({"ground": {"ground": "estimated", "shared_points": true}})",
+                {{"Full", "ground", "sequence", "import/sequence.json"},
+                 {"Full", "ground", "matches", "match/matches.h5"}});
   // Images do not depend on what is estimated from boxes.
   expect_inputs(R"({"associate": {"association": "estimated"}})",
                 {{"Full", "associate", "sequence", "import/sequence.json"},
