@@ -154,11 +154,6 @@ struct Fit {
   double gain = 0.0;  // log likelihood ratio against points on no plane and up of the prior
 };
 
-// Twice the negative logarithm of the prior.
-double CostOf(const UpPrior& up_prior, const Eigen::Vector3d& up) {
-  return up.dot(up_prior.information * up);
-}
-
 size_t NearestPlane(const Fit& fit, const GroundPoint& point) {
   const auto distance = [height = fit.up.dot(point.position_in_world)](double other) {
     return std::abs(height - other);
@@ -174,7 +169,7 @@ void Step(const std::vector<GroundPoint>& points, const UpPrior& up_prior, Fit* 
   const Eigen::Matrix<double, 3, 2> d_turns = UpByTurns(fit->up);
   information.topLeftCorner<2, 2>() = d_turns.transpose() * up_prior.information * d_turns;
   gradient.head<2>() = d_turns.transpose() * up_prior.information * fit->up;
-  fit->gain = 0.5 * (CostOf(up_prior, up_prior.up_in_world) - CostOf(up_prior, fit->up));
+  fit->gain = up_prior.Cost(up_prior.up_in_world) - up_prior.Cost(fit->up);
   const double on_none = 1.0 - std::accumulate(fit->shares.begin(), fit->shares.end(), 0.0);
   std::vector<double> on_planes(fit->shares.size());
   for (const GroundPoint& point : points) {
@@ -325,11 +320,11 @@ std::vector<GroundPoint> GroundPoints(const Sequence& sequence,
 HorizontalPlanes FindHorizontalPlanes(const std::vector<GroundPoint>& points,
                                       const UpPrior& up_prior) {
   const std::vector<GroundPoint> usable = UsablePoints(points, up_prior.up_in_world);
-  const double lowest = CostOf(up_prior, up_prior.up_in_world);
+  const double lowest = up_prior.Cost(up_prior.up_in_world);
   const std::vector<Eigen::Vector3d> directions = UpDirections(up_prior, kTiltStep);
   std::vector<double> costs;
   for (const Eigen::Vector3d& up : directions) {
-    costs.push_back(-Sharpness(usable, up) * std::exp(-0.25 * (CostOf(up_prior, up) - lowest)));
+    costs.push_back(-Sharpness(usable, up) * std::exp(-0.5 * (up_prior.Cost(up) - lowest)));
   }
   std::vector<Fit> fits;
   for (const Eigen::Vector3d& start : LowestApart(directions, costs, kBetweenStarts, kStarts)) {

@@ -195,9 +195,7 @@ Eigen::Matrix3d InformationOfVerticals(const SegmentView& view, double sigma,
 UpPrior WithVerticals(const UpPrior& up_prior, const std::vector<SegmentView>& views, double sigma,
                       double correlation_rad, double max_tilt) {
   const LevelDirections normals = NormalsOf(views, sigma, correlation_rad);
-  const auto cost = [&](const Eigen::Vector3d& up) {
-    return 0.5 * up.dot(up_prior.information * up) + normals.Cost(up);
-  };
+  const auto cost = [&](const Eigen::Vector3d& up) { return up_prior.Cost(up) + normals.Cost(up); };
   Eigen::Vector3d best = up_prior.up_in_world;
   double lowest = cost(best);
   const Eigen::Quaterniond level = UprightRotation(up_prior.up_in_world, 0.0);
@@ -217,7 +215,7 @@ std::vector<Eigen::Vector3d> UpDirections(const UpPrior& prior, double step) {
   constexpr double kMaxSigmas = 2.5;
   constexpr double kMaxTilt = 45.0 * kRadPerDeg;
   const Eigen::Quaterniond level = UprightRotation(prior.up_in_world, 0.0);
-  const double lowest = prior.up_in_world.dot(prior.information * prior.up_in_world);
+  const double lowest = prior.Cost(prior.up_in_world);
   const int steps = static_cast<int>(kMaxTilt / step);
   std::vector<Eigen::Vector3d> directions = {prior.up_in_world};
   for (int i = -steps; i <= steps; ++i) {
@@ -225,7 +223,7 @@ std::vector<Eigen::Vector3d> UpDirections(const UpPrior& prior, double step) {
       const Eigen::Vector3d turn(i * step, k * step, 0.0);
       if ((i == 0 && k == 0) || turn.norm() > kMaxTilt) continue;
       const Eigen::Vector3d up = ExpRotation(level * turn) * prior.up_in_world;
-      if (up.dot(prior.information * up) - lowest > kMaxSigmas * kMaxSigmas) continue;
+      if (2.0 * (prior.Cost(up) - lowest) > kMaxSigmas * kMaxSigmas) continue;
       directions.push_back(up);
     }
   }
@@ -266,7 +264,7 @@ std::vector<Eigen::Vector3d> SearchUp(
   std::vector<double> costs(candidates.size());
   ParallelFor("directions of up", candidates.size(), threads, [&](size_t i) {
     const Eigen::Vector3d& up = candidates[i];
-    costs[i] = 0.5 * up.dot(up_prior.information * up);
+    costs[i] = up_prior.Cost(up);
     for (const auto& observation : observations) {
       if (observation) costs[i] += CostOfUprightBody(up, *observation).value_or(kCostWithoutBody);
     }

@@ -17,9 +17,11 @@ namespace soslam {
 
 // Prior on the up direction from the cameras alone, before boxes are used.
 struct UpPrior {
-  // Information (1 / rad^2): an upward unit vector u in the world costs 0.5 u^T information u.
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();   // 1 / rad^2
   Eigen::Vector3d up_in_world = Eigen::Vector3d::UnitZ();  // the one of least cost
+
+  // Negative log likelihood of an upward unit vector in the world.
+  double Cost(const Eigen::Vector3d& up) const { return 0.5 * up.dot(information * up); }
 };
 
 // Derivative of an up direction by turns (rad) about the x and y axes of UprightRotation(up, 0).
