@@ -201,11 +201,35 @@ void Step(const std::vector<GroundPoint>& points, const UpPrior& up_prior, Fit* 
   fit->covariance = solver.solve(Eigen::MatrixXd::Identity(count, count));
 }
 
+// Occam's factor of each plane is part of the gain (Laplace's approximation of the evidence,
+// heights uniform over kRange and shares over 0 to 1 before points are seen).
 Fit FitPlanes(const std::vector<GroundPoint>& points, const UpPrior& up_prior,
               const Eigen::Vector3d& up, const std::vector<double>& heights) {
   Fit fit{up, heights};
   fit.shares.assign(heights.size(), 0.5 / static_cast<double>(heights.size()));
   for (int round = 0; round < kRounds; ++round) Step(points, up_prior, &fit);
+  const auto count = static_cast<double>(points.size());
+  for (size_t k = 0; k < heights.size(); ++k) {
+    const auto row = static_cast<Eigen::Index>(2 + k);
+    for (const double variance : {fit.covariance(row, row) / (kRange * kRange),
+                                  std::max(fit.shares[k], 1.0 / count) / count}) {
+      fit.gain -= 0.5 * std::log1p(1.0 / (2.0 * std::numbers::pi * variance));
+    }
+  }
+  return fit;
+}
+
+// The fit without the planes whose points are as probable on no plane.
+Fit FitProbablePlanes(const std::vector<GroundPoint>& points, const UpPrior& up_prior,
+                      const Eigen::Vector3d& up, const std::vector<double>& heights) {
+  Fit fit = FitPlanes(points, up_prior, up, heights);
+  while (fit.heights.size() > 1) {
+    std::vector<double> others = fit.heights;
+    others.erase(others.begin() + (std::ranges::min_element(fit.shares) - fit.shares.begin()));
+    Fit without = FitPlanes(points, up_prior, fit.up, others);
+    if (without.gain < fit.gain) break;
+    fit = std::move(without);
+  }
   return fit;
 }
 
@@ -332,7 +356,7 @@ HorizontalPlanes FindHorizontalPlanes(const std::vector<GroundPoint>& points,
     for (int round = 0; round < 2; ++round) {
       const std::vector<double> heights = PeakHeights(usable, up);
       if (heights.empty()) break;
-      fits.push_back(FitPlanes(usable, up_prior, up, heights));
+      fits.push_back(FitProbablePlanes(usable, up_prior, up, heights));
       up = fits.back().up;
     }
   }
