@@ -1,15 +1,10 @@
-# What find_package(soslam) reads: the packages that the library needs, then the library.
+# What find_package(soslam) reads: soslam::core, which needs Eigen and Ceres, and soslam::soslam with the rest, unless
+# core is the only component that is asked for.
 include(CMakeFindDependencyMacro)
-find_dependency(OpenCV COMPONENTS core imgproc imgcodecs calib3d dnn video)
 find_dependency(Eigen3)
 find_dependency(Ceres 2.1)
-find_dependency(nlohmann_json)
-find_dependency(fmt)
-find_dependency(OpenSSL)
-find_dependency(LibArchive)
-find_dependency(ZLIB)
-find_dependency(yaml-cpp)
-if(NOT TARGET yaml-cpp::yaml-cpp)
-  add_library(yaml-cpp::yaml-cpp ALIAS yaml-cpp)
+include(${CMAKE_CURRENT_LIST_DIR}/soslam-core-targets.cmake)
+if(NOT soslam_FIND_COMPONENTS STREQUAL "core")
+  include(${CMAKE_CURRENT_LIST_DIR}/soslam-dependencies.cmake)
+  include(${CMAKE_CURRENT_LIST_DIR}/soslam-targets.cmake)
 endif()
-include(${CMAKE_CURRENT_LIST_DIR}/soslam-targets.cmake)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/command_line.h"
-#include "image/frame_choice.h"
-#include "stage/stages.h"
+#include "soslam/cli/command_line.h"
+#include "soslam/image/frame_choice.h"
+#include "soslam/stage/stages.h"
 
 int main(int argc, char** argv) {
   return soslam::StageMain<soslam::FrameOptions>(

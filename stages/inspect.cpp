@@ -7,10 +7,10 @@
 #include <cstdlib>
 #include <string>
 
-#include "base/error.h"
-#include "cli/command_line.h"
-#include "inspection/difference.h"
-#include "stage/stages.h"
+#include "soslam/base/error.h"
+#include "soslam/cli/command_line.h"
+#include "soslam/inspection/difference.h"
+#include "soslam/stage/stages.h"
 
 namespace {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/command_line.h"
-#include "stage/stages.h"
+#include "soslam/cli/command_line.h"
+#include "soslam/stage/stages.h"
 
 int main(int argc, char** argv) {
   return soslam::StageMain<soslam::SynthesiseOptions>(

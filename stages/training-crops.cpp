@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/command_line.h"
-#include "stage/stages.h"
-#include "training/training_crops.h"
+#include "soslam/cli/command_line.h"
+#include "soslam/stage/stages.h"
+#include "soslam/training/training_crops.h"
 
 int main(int argc, char** argv) {
   return soslam::StageMain<soslam::TrainingCropsOptions>(

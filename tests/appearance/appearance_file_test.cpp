@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "appearance/appearance_file.h"
+#include "soslam/appearance/appearance_file.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <functional>
 #include <limits>
 
-#include "artefact/hdf5_artefact.h"
-#include "base/error.h"
+#include "soslam/artefact/hdf5_artefact.h"
+#include "soslam/base/error.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/pictures.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "appearance/crop.h"
+#include "soslam/appearance/crop.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <numbers>
 #include <opencv2/core.hpp>
 
-#include "geometry/angles.h"
-#include "geometry/rigid3.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/geometry/rigid3.h"
 #include "support/looking_at.h"
 #include "support/random.h"
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "appearance/inner_layers.h"
+#include "soslam/appearance/inner_layers.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <opencv2/core.hpp>
 
-#include "base/error.h"
+#include "soslam/base/error.h"
 #include "support/expect_error.h"
 #include "support/onnx_network.h"
 #include "support/random.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "artefact/atomic_file.h"
+#include "soslam/artefact/atomic_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -8,9 +8,9 @@
 #include <csignal>
 #include <opencv2/core/version.hpp>
 
-#include "artefact/run_file.h"
-#include "base/error.h"
-#include "base/hash.h"
+#include "soslam/artefact/run_file.h"
+#include "soslam/base/error.h"
+#include "soslam/system/hash.h"
 #include "support/edited_json.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "artefact/dataset_folder.h"
+#include "soslam/artefact/dataset_folder.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "artefact/files.h"
+#include "soslam/artefact/files.h"
 #include "support/edited_json.h"
 #include "support/folder_test.h"
 #include "support/random_estimates.h"

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The three JSON artefacts of the model: what is written is read back bit for bit.
-#include "artefact/files.h"
+#include "soslam/artefact/files.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "artefact/json_file.h"
-#include "base/error.h"
-#include "model/occlusion.h"
+#include "soslam/artefact/json_file.h"
+#include "soslam/base/error.h"
+#include "soslam/model/occlusion.h"
 #include "support/edited_json.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "artefact/hdf5_artefact.h"
+#include "soslam/artefact/hdf5_artefact.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <functional>
 #include <opencv2/core.hpp>
 
-#include "artefact/files.h"
-#include "base/error.h"
-#include "base/parallel.h"
+#include "soslam/artefact/files.h"
+#include "soslam/base/error.h"
+#include "soslam/base/parallel.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/random.h"

@@ -5,9 +5,9 @@
 #include <map>
 #include <thread>
 
-#include "artefact/hdf5_artefact.h"
-#include "artefact/hdf5_types.h"
-#include "base/error.h"
+#include "soslam/artefact/hdf5_artefact.h"
+#include "soslam/artefact/hdf5_types.h"
+#include "soslam/base/error.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/temporary_folder.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "artefact/hdf5_file.h"
+#include "soslam/artefact/hdf5_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <opencv2/core.hpp>
 
-#include "base/error.h"
+#include "soslam/base/error.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/random.h"

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "artefact/files.h"
-#include "artefact/hdf5_artefact.h"
-#include "base/error.h"
+#include "soslam/artefact/files.h"
+#include "soslam/artefact/hdf5_artefact.h"
+#include "soslam/base/error.h"
+#include "soslam/synthesis/simulate.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/scene.h"
-#include "synthesis/simulate.h"
 
 namespace soslam {
 namespace {

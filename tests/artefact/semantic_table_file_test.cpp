@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "artefact/files.h"
-#include "base/error.h"
+#include "soslam/artefact/files.h"
+#include "soslam/base/error.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/lists.h"

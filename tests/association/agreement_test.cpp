@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "association/agreement.h"
+#include "soslam/association/agreement.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

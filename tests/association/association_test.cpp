@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "association/association.h"
+#include "soslam/association/association.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <set>
 #include <utility>
 
-#include "association/association_model.h"
-#include "association/clustering.h"
+#include "soslam/association/association_model.h"
+#include "soslam/association/clustering.h"
 #include "support/association_scenes.h"
 
 namespace soslam {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "association/box_likelihood.h"
+#include "soslam/association/box_likelihood.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "association/decisive_evidence.h"
+#include "soslam/association/decisive_evidence.h"
 
 #include <gtest/gtest.h>
 

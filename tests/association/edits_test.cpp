@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "association/edits.h"
+#include "soslam/association/edits.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "association/association_model.h"
+#include "soslam/association/association_model.h"
 #include "support/association_scenes.h"
 
 namespace soslam {

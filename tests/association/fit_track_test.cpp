@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "association/fit_track.h"
+#include "soslam/association/fit_track.h"
 
 #include <gtest/gtest.h>
 

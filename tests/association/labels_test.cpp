@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "association/labels.h"
+#include "soslam/association/labels.h"
 
 #include <gtest/gtest.h>
 

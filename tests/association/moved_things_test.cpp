@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "association/moved_things.h"
+#include "soslam/association/moved_things.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

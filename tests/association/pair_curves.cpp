@@ -18,11 +18,11 @@
 #include <numeric>
 #include <vector>
 
-#include "artefact/files.h"
-#include "association/association_model.h"
-#include "association/clustering.h"
-#include "association/pair_evidence.h"
-#include "base/parallel.h"
+#include "soslam/artefact/files.h"
+#include "soslam/association/association_model.h"
+#include "soslam/association/clustering.h"
+#include "soslam/association/pair_evidence.h"
+#include "soslam/base/parallel.h"
 #include "support/association_scenes.h"
 
 namespace soslam {

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "association/agreement.h"
-#include "association/association.h"
-#include "association/association_model.h"
-#include "association/up_estimate.h"
-#include "geometry/angles.h"
+#include "soslam/association/agreement.h"
+#include "soslam/association/association.h"
+#include "soslam/association/association_model.h"
+#include "soslam/association/up_estimate.h"
+#include "soslam/geometry/angles.h"
 #include "support/association_scenes.h"
 #include "support/looking_at.h"
 #include "support/random.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "base/assignment.h"
+#include "soslam/base/assignment.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "base/hash.h"
+#include "soslam/system/hash.h"
 
 namespace soslam {
 namespace {

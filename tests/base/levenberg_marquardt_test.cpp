@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "base/levenberg_marquardt.h"
+#include "soslam/base/levenberg_marquardt.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "base/quadratic_model.h"
+#include "soslam/base/quadratic_model.h"
 
 namespace soslam {
 namespace {

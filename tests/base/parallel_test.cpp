@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "base/parallel.h"
+#include "soslam/base/parallel.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

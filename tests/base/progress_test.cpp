@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "base/progress.h"
+#include "soslam/base/progress.h"
 
 #include <gtest/gtest.h>
 
 #include <sstream>
 
-#include "base/parallel.h"
+#include "soslam/base/parallel.h"
 
 namespace soslam {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "base/table.h"
+#include "soslam/base/table.h"
 
 #include <gtest/gtest.h>
 

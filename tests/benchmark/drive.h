@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "model/semantic_table.h"
-#include "model/sequence.h"
+#include "soslam/model/semantic_table.h"
+#include "soslam/model/sequence.h"
 
 namespace soslam {
 

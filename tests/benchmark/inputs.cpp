@@ -4,14 +4,15 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "base/parallel.h"
-#include "base/process.h"
-#include "geometry/angles.h"
-#include "geometry/iou.h"
-#include "initialisation/initialise.h"
+#include "soslam/base/parallel.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/geometry/iou.h"
+#include "soslam/initialisation/initialise.h"
+#include "soslam/orientation/image_evidence.h"
+#include "soslam/synthesis/render.h"
+#include "soslam/synthesis/scene.h"
+#include "soslam/system/process.h"
 #include "support/scene.h"
-#include "synthesis/render.h"
-#include "synthesis/scene.h"
 
 namespace soslam {
 namespace {
@@ -133,15 +134,17 @@ double MeanIou(const Sequence& sequence, const std::vector<Landmark>& landmarks_
 }
 
 OneObject::OneObject(const Sequence& all, size_t object_index, size_t textures)
-    : sequence(OnlyObject(all, object_index)), input{sequence, {}, TruePriors(sequence), {}, {}} {
+    : sequence(OnlyObject(all, object_index)), input{sequence, {}, TruePriors(sequence)} {
   const Sequence first = FirstObservations(sequence);
   const auto estimates = InitialiseUpright(first, input.priors, UprightOptions(), /*threads=*/1);
   input.initial_landmarks = {FacingCamera(first, estimates.observations.front())};
   for (const int index : SpreadOver(DetectionsByObject(sequence).front(), textures)) {
     const Detection& detection = sequence.detections[index];
     const auto& edges = EdgesOfTwelveViews()[detection.frame_index];
-    input.symmetry_images[index] =
-        std::make_shared<const SymmetryImage>(edges->maps, detection.box);
+    input.images.emplace_back(
+        index,
+        AsymmetryOfTexture(std::make_shared<const SymmetryImage>(edges->maps, detection.box),
+                           sequence.CameraOf(detection), TextureOptions(), SymmetryOptions()));
   }
 }
 

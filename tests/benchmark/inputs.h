@@ -4,11 +4,11 @@
 #include <memory>
 #include <vector>
 
-#include "mapping/back_end.h"
-#include "model/estimates.h"
-#include "model/semantic_table.h"
-#include "model/sequence.h"
-#include "orientation/edge_alignment.h"
+#include "soslam/mapping/back_end.h"
+#include "soslam/model/estimates.h"
+#include "soslam/model/semantic_table.h"
+#include "soslam/model/sequence.h"
+#include "soslam/orientation/edge_alignment.h"
 
 namespace soslam {
 

@@ -3,7 +3,7 @@
 
 #include <opencv2/core/utility.hpp>
 
-#include "base/process.h"
+#include "soslam/system/process.h"
 
 // Like benchmark_main, with the settings of stages for memory and OpenCV's threads, and with the
 // processor's name in the result.

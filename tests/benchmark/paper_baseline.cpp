@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "benchmark/paper_residuals.h"
-#include "geometry/angles.h"
+#include "soslam/geometry/angles.h"
 
 namespace soslam::paper {
 namespace {

@@ -5,12 +5,12 @@
 #include <optional>
 #include <vector>
 
-#include "geometry/box.h"
-#include "geometry/camera.h"
-#include "geometry/landmark.h"
-#include "geometry/plane.h"
-#include "geometry/rigid3.h"
-#include "image/edge_maps.h"
+#include "soslam/geometry/box.h"
+#include "soslam/geometry/camera.h"
+#include "soslam/geometry/landmark.h"
+#include "soslam/geometry/plane.h"
+#include "soslam/geometry/rigid3.h"
+#include "soslam/image/edge_maps.h"
 
 // The paper's method as it describes it, to compare times with: ellipsoids of nine parameters,
 // residuals of its equations by their matrices, derivatives by central differences, dense

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "artefact/json_file.h"
+#include "soslam/artefact/json_file.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {

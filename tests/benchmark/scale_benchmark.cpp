@@ -30,7 +30,7 @@ double PeakMemoryMb() {
 void World(benchmark::State& state) {
   const auto size = static_cast<int>(state.range(0));
   const Drive drive(size, size);
-  const BackEndInput input{drive.sequence, drive.initial_landmarks, drive.priors, {}, {}};
+  const BackEndInput input{drive.sequence, drive.initial_landmarks, drive.priors};
   ForgetPeakMemory();
   MapEstimate map;
   for (auto _ : state) map = OptimiseMap(input, OptionsOfOursST());

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "dataset/dataset_content.h"
-#include "evaluation/statistics.h"
-#include "mapping/back_end.h"
+#include "soslam/dataset/dataset_content.h"
+#include "soslam/evaluation/statistics.h"
+#include "soslam/mapping/back_end.h"
 #include "support/real_data.h"
 
 namespace soslam {
@@ -37,7 +37,7 @@ BackEndInput InputOf(const Sequence& sequence) {
   std::mt19937 random(7);
   std::normal_distribution<double> gaussian;
   const auto error = [&](double sigma) { return sigma * gaussian(random); };
-  BackEndInput input{sequence, {}, {}, {}, {}};
+  BackEndInput input{sequence, {}, {}};
   input.priors.resize(sequence.objects.size());
   for (const Object& object : sequence.objects) {
     Landmark start = RotatedAboutZ(object.ground_truth->landmark_in_world, error(0.2));

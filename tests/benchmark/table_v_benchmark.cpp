@@ -10,8 +10,8 @@
 
 #include "benchmark/inputs.h"
 #include "benchmark/paper_baseline.h"
-#include "initialisation/initialise.h"
-#include "orientation/refine_by_profile.h"
+#include "soslam/initialisation/initialise.h"
+#include "soslam/orientation/refine_by_profile.h"
 
 namespace soslam {
 namespace {

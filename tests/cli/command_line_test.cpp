@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cli/command_line.h"
+#include "soslam/cli/command_line.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,8 +10,9 @@
 #include <functional>
 #include <new>
 
-#include "artefact/json_file.h"
-#include "base/error.h"
+#include "soslam/artefact/json_file.h"
+#include "soslam/artefact/options_json.h"
+#include "soslam/base/error.h"
 #include "support/folder_test.h"
 #include "support/printed.h"
 #include "support/temporary_folder.h"

@@ -7,12 +7,12 @@
 #include <filesystem>
 #include <functional>
 
-#include "artefact/atomic_file.h"
-#include "artefact/json_file.h"
-#include "artefact/run_file.h"
-#include "base/hash.h"
-#include "base/run_log.h"
-#include "cli/command_line.h"
+#include "soslam/artefact/atomic_file.h"
+#include "soslam/artefact/json_file.h"
+#include "soslam/artefact/run_file.h"
+#include "soslam/cli/command_line.h"
+#include "soslam/system/hash.h"
+#include "soslam/system/run_log.h"
 #include "support/folder_test.h"
 #include "support/lists.h"
 #include "support/temporary_folder.h"

@@ -3,8 +3,8 @@
 
 #include <limits>
 
-#include "constraints/landmark_cost.h"
-#include "constraints/parameters.h"
+#include "soslam/constraints/landmark_cost.h"
+#include "soslam/constraints/parameters.h"
 #include "support/jacobians.h"
 #include "support/random_scene.h"
 

@@ -8,7 +8,7 @@
 #include <memory>
 #include <numbers>
 
-#include "initialisation/upright.h"
+#include "soslam/initialisation/upright.h"
 #include "support/jacobians.h"
 #include "support/landmark_costs.h"
 #include "support/shape_exponents.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "constraints/loss.h"
+#include "soslam/constraints/loss.h"
 
 #include <gtest/gtest.h>
 

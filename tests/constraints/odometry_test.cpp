@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "constraints/odometry.h"
+#include "soslam/constraints/odometry.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "constraints/standing_on_plane.h"
+#include "soslam/constraints/standing_on_plane.h"
 #include "support/jacobians.h"
 #include "support/random.h"
 

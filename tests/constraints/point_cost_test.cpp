@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "constraints/point_cost.h"
+#include "soslam/constraints/point_cost.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <memory>
 
-#include "constraints/surface_distance.h"
+#include "soslam/constraints/surface_distance.h"
 #include "support/landmark_costs.h"
 #include "support/random.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "constraints/quadric_constraints.h"
+#include "soslam/constraints/quadric_constraints.h"
 #include "support/jacobians.h"
 #include "support/random.h"
 

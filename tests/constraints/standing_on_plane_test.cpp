@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "constraints/standing_on_plane.h"
+#include "soslam/constraints/standing_on_plane.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "constraints/surface_distance.h"
+#include "soslam/constraints/surface_distance.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/surface.h"
+#include "soslam/geometry/surface.h"
 #include "support/landmark_costs.h"
 #include "support/random.h"
 

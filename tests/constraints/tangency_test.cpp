@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "constraints/tangency.h"
+#include "soslam/constraints/tangency.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "base/error.h"
-#include "dataset/dataset_content.h"
+#include "soslam/base/error.h"
+#include "soslam/dataset/dataset_content.h"
 #include "support/dataset_fixture.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"

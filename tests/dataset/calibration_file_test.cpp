@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/calibration_file.h"
+#include "soslam/dataset/calibration_file.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -7,8 +7,8 @@
 
 #include <vector>
 
-#include "base/error.h"
-#include "dataset/yaml_fields.h"
+#include "soslam/base/error.h"
+#include "soslam/dataset/yaml_fields.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 

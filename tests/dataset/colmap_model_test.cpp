@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/colmap_model.h"
+#include "soslam/dataset/colmap_model.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
-#include "dataset/calibration_file.h"
+#include "soslam/base/error.h"
+#include "soslam/dataset/calibration_file.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/printed.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "dataset/trajectories.h"
+#include "soslam/dataset/trajectories.h"
 #include "support/dataset_checks_fixture.h"
 #include "support/drawn_photos.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The usual mistakes in cameras, planes and clocks, each in a dataset that is right but for it.
-#include "dataset/dataset_checks.h"
+#include "soslam/dataset/dataset_checks.h"
 
 #include <algorithm>
 #include <cmath>

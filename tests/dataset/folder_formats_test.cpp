@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "base/error.h"
-#include "dataset/class_names.h"
-#include "dataset/dataset_content.h"
-#include "model/occlusion.h"
+#include "soslam/base/error.h"
+#include "soslam/dataset/class_names.h"
+#include "soslam/dataset/dataset_content.h"
+#include "soslam/model/occlusion.h"
 #include "support/imported_folder.h"
 #include "support/labelled_boxes.h"
 #include "support/lists.h"

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-#include "base/error.h"
-#include "dataset/dataset_content.h"
-#include "dataset/dataset_files.h"
-#include "dataset/gate.h"
-#include "model/occlusion.h"
+#include "soslam/base/error.h"
+#include "soslam/dataset/dataset_content.h"
+#include "soslam/dataset/dataset_files.h"
+#include "soslam/dataset/gate.h"
+#include "soslam/model/occlusion.h"
 #include "support/dataset_fixture.h"
 #include "support/imported_folder.h"
 #include "support/level_sequence.h"

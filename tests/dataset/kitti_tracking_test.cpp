@@ -2,9 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "base/error.h"
-#include "dataset/dataset_content.h"
-#include "dataset/kitti_label.h"
+#include "soslam/base/error.h"
+#include "soslam/dataset/dataset_content.h"
+#include "soslam/dataset/kitti_label.h"
 #include "support/image_files.h"
 #include "support/imported_folder.h"
 #include "support/kitti_fixture.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/labelled_box.h"
+#include "soslam/dataset/labelled_box.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -10,9 +10,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "artefact/files.h"
-#include "base/error.h"
-#include "dataset/class_names.h"
+#include "soslam/artefact/files.h"
+#include "soslam/base/error.h"
+#include "soslam/dataset/class_names.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/labelled_boxes.h"

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
-#include "dataset/colmap_model.h"
-#include "geometry/distortion.h"
+#include "soslam/base/error.h"
+#include "soslam/dataset/colmap_model.h"
+#include "soslam/image/distort_pixels.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/image_files.h"

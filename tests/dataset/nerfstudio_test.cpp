@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/nerfstudio.h"
+#include "soslam/dataset/nerfstudio.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "base/error.h"
-#include "dataset/calibration_file.h"
+#include "soslam/base/error.h"
+#include "soslam/dataset/calibration_file.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/image_files.h"

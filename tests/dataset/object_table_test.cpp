@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "dataset/soslam_folder.h"
+#include "soslam/dataset/soslam_folder.h"
 #include "support/lists.h"
 
 namespace soslam {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/photo_folder.h"
+#include "soslam/dataset/photo_folder.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "base/options.h"
-#include "dataset/dataset_content.h"
+#include "soslam/artefact/options_json.h"
+#include "soslam/dataset/dataset_content.h"
 #include "support/real_data.h"
 
 namespace soslam {

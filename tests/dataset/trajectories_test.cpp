@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dataset/trajectories.h"
+#include "soslam/dataset/trajectories.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "base/error.h"
+#include "soslam/base/error.h"
 #include "support/expect_error.h"
 #include "support/random.h"
 #include "support/temporary_folder.h"

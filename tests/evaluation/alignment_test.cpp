@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluation/alignment.h"
+#include "soslam/evaluation/alignment.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluation/held_out.h"
+#include "soslam/evaluation/held_out.h"
 
 #include <gtest/gtest.h>
 
-#include "dataset/gate.h"
+#include "soslam/dataset/gate.h"
+#include "soslam/synthesis/simulate.h"
 #include "support/scene.h"
-#include "synthesis/simulate.h"
 
 namespace soslam {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluation/landmark_errors.h"
+#include "soslam/evaluation/landmark_errors.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "geometry/angles.h"
-#include "geometry/rigid3.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/geometry/rigid3.h"
 #include "support/random.h"
 
 namespace soslam {

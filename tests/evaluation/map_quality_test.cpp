@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluation/map_quality.h"
+#include "soslam/evaluation/map_quality.h"
 
 #include <gmock/gmock.h>
 
 #include <numbers>
 
-#include "base/assignment.h"
+#include "soslam/base/assignment.h"
 #include "support/map_quality_fixture.h"
 
 namespace soslam {

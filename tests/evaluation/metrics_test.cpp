@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluation/metrics.h"
+#include "soslam/evaluation/metrics.h"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include "evaluation/trajectory_error.h"
+#include "soslam/evaluation/trajectory_error.h"
+#include "soslam/synthesis/simulate.h"
 #include "support/random.h"
 #include "support/scene.h"
 #include "support/true_map.h"
-#include "synthesis/simulate.h"
 
 namespace soslam {
 namespace {

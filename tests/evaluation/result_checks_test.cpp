@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluation/result_checks.h"
+#include "soslam/evaluation/result_checks.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "geometry/angles.h"
+#include "soslam/geometry/angles.h"
 #include "support/lists.h"
 
 namespace soslam {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluation/statistics.h"
+#include "soslam/evaluation/statistics.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "exchange/exports.h"
+#include "soslam/exchange/exports.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "dataset/labelled_box.h"
-#include "dataset/text_file.h"
-#include "dataset/trajectories.h"
-#include "geometry/angles.h"
+#include "soslam/dataset/labelled_box.h"
+#include "soslam/dataset/text_file.h"
+#include "soslam/dataset/trajectories.h"
+#include "soslam/geometry/angles.h"
 #include "support/exported_world.h"
 #include "support/labelled_boxes.h"
 #include "support/lists.h"

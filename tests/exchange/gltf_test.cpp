@@ -8,11 +8,11 @@
 #include <sstream>
 #include <utility>
 
-#include "base/hash.h"
-#include "exchange/exports.h"
-#include "geometry/angles.h"
-#include "geometry/support_function.h"
-#include "geometry/surface.h"
+#include "soslam/exchange/exports.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/geometry/support_function.h"
+#include "soslam/geometry/surface.h"
+#include "soslam/system/hash.h"
 #include "support/exported_world.h"
 #include "support/gltf_document.h"
 #include "support/shape_exponents.h"

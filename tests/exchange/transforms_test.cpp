@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
-#include "dataset/nerfstudio.h"
-#include "exchange/exports.h"
+#include "soslam/base/error.h"
+#include "soslam/dataset/nerfstudio.h"
+#include "soslam/exchange/exports.h"
 #include "support/expect_error.h"
 #include "support/exported_world.h"
 #include "support/folder_test.h"

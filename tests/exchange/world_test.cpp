@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "exchange/world.h"
+#include "soslam/exchange/world.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "artefact/json_file.h"
+#include "soslam/artefact/json_file.h"
+#include "soslam/image/distort_pixels.h"
 #include "support/exported_world.h"
 #include "support/lists.h"
 #include "support/random_estimates.h"

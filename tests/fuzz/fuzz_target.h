@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "base/error.h"
+#include "soslam/base/error.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {

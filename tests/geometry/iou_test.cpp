@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "geometry/iou.h"
+#include "soslam/geometry/iou.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "geometry/landmark.h"
+#include "soslam/geometry/landmark.h"
 
 #include <gtest/gtest.h>
 

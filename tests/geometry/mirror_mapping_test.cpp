@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "geometry/mirror_mapping.h"
+#include "soslam/geometry/mirror_mapping.h"
 
 #include <gtest/gtest.h>
 

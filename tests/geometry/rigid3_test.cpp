@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "geometry/rigid3.h"
+#include "soslam/geometry/rigid3.h"
 
 #include <gtest/gtest.h>
 
-#include "geometry/angles.h"
-#include "geometry/box.h"
-#include "geometry/plane.h"
-#include "geometry/triangulation.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/geometry/box.h"
+#include "soslam/geometry/plane.h"
+#include "soslam/geometry/triangulation.h"
 #include "support/random.h"
 
 namespace soslam {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "geometry/similarity.h"
+#include "soslam/geometry/similarity.h"
 
 #include <gtest/gtest.h>
 

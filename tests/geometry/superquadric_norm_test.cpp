@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "geometry/support_function.h"
+#include "soslam/geometry/support_function.h"
 #include "support/numeric_derivatives.h"
 #include "support/shape_exponents.h"
 

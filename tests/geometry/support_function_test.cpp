@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "geometry/support_function.h"
+#include "soslam/geometry/support_function.h"
 
 #include <gtest/gtest.h>
 

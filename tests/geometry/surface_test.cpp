@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "geometry/surface.h"
+#include "soslam/geometry/surface.h"
 
 #include <gtest/gtest.h>
 

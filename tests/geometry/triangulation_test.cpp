@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "geometry/triangulation.h"
+#include "soslam/geometry/triangulation.h"
 
 #include <gtest/gtest.h>
 

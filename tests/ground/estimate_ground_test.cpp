@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ground/estimate_ground.h"
+#include "soslam/ground/estimate_ground.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -9,9 +9,9 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "geometry/angles.h"
-#include "ground/ground_checks.h"
-#include "ground/object_heights.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/ground/ground_checks.h"
+#include "soslam/ground/object_heights.h"
 #include "support/prior_scene.h"
 
 namespace soslam {

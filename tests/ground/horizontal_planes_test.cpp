@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ground/horizontal_planes.h"
+#include "soslam/ground/horizontal_planes.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "geometry/angles.h"
+#include "soslam/geometry/angles.h"
 #include "support/random.h"
 
 namespace soslam {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ground/scale_posterior.h"
+#include "soslam/ground/scale_posterior.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "model/sequence.h"
+#include "soslam/model/sequence.h"
 
 namespace soslam {
 namespace {

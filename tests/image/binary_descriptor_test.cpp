@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "image/binary_descriptor.h"
+#include "soslam/image/binary_descriptor.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "image/box_colours.h"
+#include "soslam/image/box_colours.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "image/detector.h"
+#include "soslam/image/detector.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <opencv2/core.hpp>
 
-#include "base/error.h"
+#include "soslam/base/error.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/labelled_boxes.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "image/feature_matches.h"
+#include "soslam/image/feature_matches.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
-#include "image/box_mask.h"
+#include "soslam/image/box_mask.h"
 #include "support/drawn_photos.h"
 
 namespace soslam {

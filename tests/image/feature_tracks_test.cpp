@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "image/feature_tracks.h"
+#include "soslam/image/feature_tracks.h"
 
 #include <gtest/gtest.h>
 

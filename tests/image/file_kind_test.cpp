@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "image/file_kind.h"
+#include "soslam/image/file_kind.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "image/read_image.h"
+#include "soslam/image/read_image.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/image_files.h"

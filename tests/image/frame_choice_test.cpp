@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "image/frame_choice.h"
+#include "soslam/image/frame_choice.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "image/image_format.h"
-#include "image/tiff_file.h"
+#include "soslam/image/image_format.h"
+#include "soslam/image/tiff_file.h"
 #include "support/drawn_photos.h"
 #include "support/folder_test.h"
 #include "support/image_files.h"

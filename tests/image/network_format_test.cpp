@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "base/error.h"
-#include "image/detector.h"
+#include "soslam/base/error.h"
+#include "soslam/image/detector.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/onnx_network.h"

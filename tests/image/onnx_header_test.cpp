@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "image/onnx_header.h"
+#include "soslam/image/onnx_header.h"
 
 #include <gtest/gtest.h>
 
-#include "base/error.h"
+#include "soslam/base/error.h"
 #include "support/expect_error.h"
 #include "support/lists.h"
 #include "support/onnx_network.h"

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "image/read_image.h"
+#include "soslam/image/read_image.h"
 
 #include <gtest/gtest.h>
 
-#include "base/error.h"
+#include "soslam/base/error.h"
+#include "soslam/image/distort_pixels.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/image_files.h"

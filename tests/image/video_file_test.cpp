@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "image/video_file.h"
+#include "soslam/image/video_file.h"
 
 #include <gtest/gtest.h>
 

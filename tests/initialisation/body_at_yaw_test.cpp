@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "initialisation/body_at_yaw.h"
+#include "soslam/initialisation/body_at_yaw.h"
 
 #include <gtest/gtest.h>
 

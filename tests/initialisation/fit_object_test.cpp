@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "initialisation/fit_object.h"
+#include "soslam/initialisation/fit_object.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "geometry/angles.h"
+#include "soslam/geometry/angles.h"
 #include "support/shape_exponents.h"
 #include "support/upright_bodies.h"
 

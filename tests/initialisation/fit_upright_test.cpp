@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "initialisation/upright.h"
+#include "soslam/initialisation/upright.h"
 #include "support/shape_exponents.h"
 #include "support/upright_bodies.h"
 

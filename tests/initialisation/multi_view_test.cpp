@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "geometry/angles.h"
-#include "geometry/iou.h"
-#include "initialisation/body_at_yaw.h"
-#include "initialisation/fit_object.h"
-#include "initialisation/initialise.h"
-#include "initialisation/svd.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/geometry/iou.h"
+#include "soslam/initialisation/body_at_yaw.h"
+#include "soslam/initialisation/fit_object.h"
+#include "soslam/initialisation/initialise.h"
+#include "soslam/initialisation/svd.h"
 #include "support/cuboid_map.h"
 #include "support/one_body.h"
 #include "support/shape_exponents.h"

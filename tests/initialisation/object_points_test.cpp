@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "initialisation/object_points.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "initialisation/initialise.h"
+#include "soslam/initialisation/initialise.h"
+#include "soslam/initialisation/points_in_frames.h"
 #include "support/cuboid_map.h"
 #include "support/points_on_objects.h"
 #include "support/random.h"

@@ -8,9 +8,9 @@
 #include <numbers>
 #include <numeric>
 
-#include "geometry/angles.h"
-#include "initialisation/fit_object.h"
-#include "initialisation/object_evidence.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/initialisation/fit_object.h"
+#include "soslam/initialisation/object_evidence.h"
 #include "support/one_body.h"
 #include "support/pictures.h"
 #include "support/scene.h"

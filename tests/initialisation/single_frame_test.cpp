@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "initialisation/single_frame.h"
+#include "soslam/initialisation/single_frame.h"
 
 #include <gtest/gtest.h>
 
-#include "geometry/angles.h"
-#include "geometry/iou.h"
-#include "initialisation/initialise.h"
-#include "initialisation/svd.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/geometry/iou.h"
+#include "soslam/initialisation/initialise.h"
+#include "soslam/initialisation/svd.h"
 #include "support/random.h"
 #include "support/scene.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "initialisation/upright.h"
+#include "soslam/initialisation/upright.h"
 #include "support/shape_exponents.h"
 #include "support/upright_bodies.h"
 

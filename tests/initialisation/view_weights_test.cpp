@@ -6,8 +6,8 @@
 #include <numeric>
 #include <vector>
 
-#include "geometry/angles.h"
-#include "initialisation/object_evidence.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/initialisation/object_evidence.h"
 #include "support/random.h"
 
 namespace soslam {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "initialisation/yaw_prior.h"
+#include "soslam/initialisation/yaw_prior.h"
 
 #include <gtest/gtest.h>
 
-#include "geometry/angles.h"
-#include "initialisation/initialise.h"
-#include "initialisation/object_evidence.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/initialisation/initialise.h"
+#include "soslam/initialisation/object_evidence.h"
 
 namespace soslam {
 namespace {

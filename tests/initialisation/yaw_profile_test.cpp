@@ -6,8 +6,8 @@
 #include <limits>
 #include <numbers>
 
-#include "geometry/angles.h"
-#include "initialisation/fit_object.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/initialisation/fit_object.h"
 #include "support/shape_exponents.h"
 #include "support/upright_bodies.h"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "initialisation/initialise.h"
+#include "soslam/initialisation/initialise.h"
 #include "support/level_sequence.h"
 #include "support/scene.h"
 #include "support/shape_exponents.h"

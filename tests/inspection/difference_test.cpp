@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "inspection/difference.h"
+#include "soslam/inspection/difference.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <limits>
 
-#include "artefact/files.h"
-#include "artefact/hdf5_artefact.h"
-#include "base/error.h"
+#include "soslam/artefact/files.h"
+#include "soslam/artefact/hdf5_artefact.h"
+#include "soslam/base/error.h"
 #include "support/expect_error.h"
 #include "support/random_estimates.h"
 #include "support/temporary_folder.h"

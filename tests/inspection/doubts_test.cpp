@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "inspection/doubts.h"
+#include "soslam/inspection/doubts.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

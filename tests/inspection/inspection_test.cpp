@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "inspection/inspection.h"
+#include "soslam/inspection/inspection.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -7,13 +7,13 @@
 
 #include <algorithm>
 
-#include "appearance/appearance_file.h"
-#include "artefact/files.h"
-#include "artefact/hdf5_artefact.h"
-#include "base/error.h"
-#include "geometry/angles.h"
-#include "inspection/doubts.h"
-#include "model/describe_estimates.h"
+#include "soslam/appearance/appearance_file.h"
+#include "soslam/artefact/files.h"
+#include "soslam/artefact/hdf5_artefact.h"
+#include "soslam/base/error.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/inspection/doubts.h"
+#include "soslam/model/describe_estimates.h"
 #include "support/expect_error.h"
 #include "support/head_file.h"
 #include "support/random.h"

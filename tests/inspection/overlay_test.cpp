@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "inspection/overlay.h"
+#include "soslam/inspection/overlay.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
-#include "inspection/canvas.h"
-#include "inspection/projection.h"
+#include "soslam/inspection/canvas.h"
+#include "soslam/inspection/projection.h"
 #include "support/exported_world.h"
 #include "support/random.h"
 #include "support/scene.h"

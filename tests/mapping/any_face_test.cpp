@@ -9,13 +9,13 @@
 #include <utility>
 #include <vector>
 
-#include "association/fit_track.h"
-#include "evaluation/landmark_errors.h"
-#include "evaluation/statistics.h"
-#include "geometry/angles.h"
-#include "initialisation/initialise.h"
-#include "mapping/back_end.h"
-#include "mapping/initial_landmarks.h"
+#include "soslam/association/fit_track.h"
+#include "soslam/evaluation/landmark_errors.h"
+#include "soslam/evaluation/statistics.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/initialisation/initialise.h"
+#include "soslam/mapping/back_end.h"
+#include "soslam/mapping/initial_landmarks.h"
 #include "support/one_body.h"
 #include "support/random.h"
 
@@ -74,7 +74,7 @@ Landmark Estimate(const Sequence& sequence, const ShapePrior& prior) {
   options.covariances = false;
   options.upright.axes_weight = 0.0;
   options.upright.view_correlation_deg = 0.0;  // errors are independent
-  BackEndInput input{sequence, {}, {prior}, {}, {}};
+  BackEndInput input{sequence, {}, {prior}};
   const LandmarkEstimates initial = InitialiseUpright(sequence, {prior}, UprightOptions(), 1);
   input.initial_landmarks = ChooseInitialUprightLandmarks(input, initial, options, 1);
   return OptimiseMap(input, options).objects[0].landmark_in_world.value_or(Landmark());

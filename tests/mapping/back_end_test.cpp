@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mapping/back_end.h"
+#include "soslam/mapping/back_end.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "base/error.h"
-#include "evaluation/metrics.h"
-#include "geometry/iou.h"
-#include "initialisation/initialise.h"
-#include "initialisation/single_frame.h"
-#include "mapping/initial_landmarks.h"
+#include "soslam/base/error.h"
+#include "soslam/evaluation/metrics.h"
+#include "soslam/geometry/iou.h"
+#include "soslam/initialisation/initialise.h"
+#include "soslam/initialisation/single_frame.h"
+#include "soslam/mapping/initial_landmarks.h"
 #include "support/cuboid_map.h"
 #include "support/scene.h"
 
@@ -18,7 +18,7 @@ namespace soslam {
 namespace {
 
 BackEndInput EllipsoidInput(const Sequence& sequence) {
-  BackEndInput input{sequence, {}, {}, {}, {}};
+  BackEndInput input{sequence, {}, {}};
   for (const Object& object : sequence.objects) {
     input.initial_landmarks.push_back(object.ground_truth->landmark_in_world);
   }

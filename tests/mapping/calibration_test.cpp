@@ -8,12 +8,13 @@
 #include <memory>
 #include <opencv2/imgproc.hpp>
 
-#include "evaluation/result_checks.h"
-#include "evaluation/statistics.h"
-#include "geometry/angles.h"
-#include "image/edge_maps.h"
-#include "mapping/back_end.h"
-#include "orientation/edge_alignment.h"
+#include "soslam/evaluation/result_checks.h"
+#include "soslam/evaluation/statistics.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/image/edge_maps.h"
+#include "soslam/mapping/back_end.h"
+#include "soslam/orientation/edge_alignment.h"
+#include "soslam/orientation/image_evidence.h"
 #include "support/one_body.h"
 #include "support/random.h"
 #include "support/simulated_points.h"
@@ -44,9 +45,6 @@ struct Truth {
   std::vector<Rigid3d> world_from_camera;
 };
 
-// Edge images by detection.
-using EdgeImages = std::map<int, std::shared_ptr<const EdgeImage>>;
-
 // What the errors are, and what the back end takes them for.
 struct Case {
   int scenes = 500;
@@ -59,7 +57,7 @@ struct Case {
   OptimiseOptions actual = ModelOptions();
   OptimiseOptions assumed = ModelOptions();
   // What is seen of the body's edges; nothing where it is empty.
-  std::function<EdgeImages(const Truth&)> edge_images;
+  std::function<EvidenceOfImages(const Truth&, const EdgeOptions&)> edge_images;
   // Sparse points; none where it is empty.
   std::function<PointsOfObject(const Truth&)> points;
   double ratio_log_sigma = 0.1;
@@ -124,8 +122,8 @@ Nees MeanNees(const Case& c) {
     const Sequence sequence = Observe(truth, c.actual);
     Landmark start = truth.landmark_in_world;
     start.shape_exponents = c.assumed_exponent;
-    BackEndInput input{sequence, {start}, {truth.prior}, {}, {}};
-    if (c.edge_images) input.edge_images = c.edge_images(truth);
+    BackEndInput input{sequence, {start}, {truth.prior}};
+    if (c.edge_images) input.images = c.edge_images(truth, c.assumed.edges);
     if (c.points) input.points = {c.points(truth)};
     const MapEstimate map = OptimiseMap(input, c.assumed);
     const Landmark& found = *map.objects[0].landmark_in_world;
@@ -194,7 +192,7 @@ int ScenesWithFarPoses(const OptimiseOptions& actual, const OptimiseOptions& ass
   for (int i = 0; i < 50; ++i) {
     const Truth truth = RandomTruth({}, actual);
     const Sequence sequence = Observe(truth, actual);
-    const BackEndInput input{sequence, {truth.landmark_in_world}, {truth.prior}, {}, {}};
+    const BackEndInput input{sequence, {truth.landmark_in_world}, {truth.prior}};
     const MapEstimate map = OptimiseMap(input, assumed);
     far += static_cast<int>(
         CheckPoseCorrections(sequence, map.world_from_camera, assumed.Odometry()).size());
@@ -280,13 +278,15 @@ EdgeImage DisplacedEdges(const Camera& camera, const Landmark& landmark_in_camer
   return {std::make_shared<const FrameEdges>(maps), *OutlineBox(camera, landmark_in_camera), {}};
 }
 
-EdgeImages DisplacedEdgesOfAllViews(const Truth& truth) {
-  EdgeImages images;
+EvidenceOfImages DisplacedEdgesOfAllViews(const Truth& truth, const EdgeOptions& options) {
+  EvidenceOfImages images;
   for (size_t i = 0; i < truth.world_from_camera.size(); ++i) {
     const Landmark in_camera =
         Transform(truth.world_from_camera[i].Inverse(), truth.landmark_in_world);
-    images[static_cast<int>(i)] =
-        std::make_shared<const EdgeImage>(DisplacedEdges(TestCamera(), in_camera));
+    images.emplace_back(
+        static_cast<int>(i),
+        AlignmentOfEdges(std::make_shared<const EdgeImage>(DisplacedEdges(TestCamera(), in_camera)),
+                         TestCamera(), options));
   }
   return images;
 }

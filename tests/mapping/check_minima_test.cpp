@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mapping/check_minima.h"
+#include "soslam/mapping/check_minima.h"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 #include <utility>
 
-#include "mapping/back_end_problem.h"
+#include "soslam/mapping/back_end_problem.h"
 #include "support/cuboid_map.h"
 
 namespace soslam {
@@ -51,7 +51,7 @@ TEST(CheckMinima, FindsTheMinimumAQuarterTurnAway) {
 TEST(CheckMinima, EdgesThatAreNotSeenCostAsMuchAsTheyWeigh) {
   const Sequence sequence = CuboidSequence(3, 4);
   BackEndInput input = TruthInput(sequence);
-  input.edge_images = DrawnEdges(sequence);
+  input.images = DrawnEdges(sequence);
   const OptimiseOptions options = Options();
   const auto constant_cost = [&] {
     BackEndProblem problem(input, options);
@@ -62,7 +62,7 @@ TEST(CheckMinima, EdgesThatAreNotSeenCostAsMuchAsTheyWeigh) {
   const auto truth = input.initial_landmarks;
   for (auto& landmark : input.initial_landmarks) landmark = RotatedAboutZ(*landmark, 0.5);
   const double by_own_weight = constant_cost();
-  input.edges_weighed_at = truth;
+  input.images_weighed_at = truth;
   const double by_weight_of_truth = constant_cost();
   EXPECT_GT(by_weight_of_truth, 3.0 * of_truth);
   EXPECT_GT(by_weight_of_truth, 3.0 * by_own_weight);

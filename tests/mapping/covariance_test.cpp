@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mapping/covariance.h"
+#include "soslam/mapping/covariance.h"
 
 #include <ceres/ceres.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "mapping/back_end_problem.h"
+#include "soslam/mapping/back_end_problem.h"
 #include "support/cuboid_map.h"
 #include "support/scene.h"
 

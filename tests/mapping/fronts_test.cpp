@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mapping/fronts.h"
+#include "soslam/mapping/fronts.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "geometry/angles.h"
-#include "mapping/back_end.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/mapping/back_end.h"
 #include "support/cuboid_map.h"
 #include "support/one_body.h"
 #include "support/pictures.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "geometry/iou.h"
-#include "initialisation/initialise.h"
-#include "mapping/initial_landmarks.h"
+#include "soslam/geometry/iou.h"
+#include "soslam/initialisation/initialise.h"
+#include "soslam/mapping/initial_landmarks.h"
 #include "support/cuboid_map.h"
 #include "support/random.h"
 
@@ -25,21 +25,19 @@ class UprightStarts : public testing::Test {
   }
   std::vector<std::optional<Landmark>> Choose(int threads = 1) const {
     BackEndInput input = TruthInput(sequence_);
-    input.edge_images = edge_images_;
-    input.symmetry_images = symmetry_images_;
+    input.images = images_;
     return ChooseInitialUprightLandmarks(input, estimates_, options_, threads);
   }
 
   OptimiseOptions options_ = TangencyOptions();
   Sequence sequence_ = CuboidSequence(4, 12);
   LandmarkEstimates estimates_;
-  std::map<int, std::shared_ptr<const EdgeImage>> edge_images_;
-  std::map<int, std::shared_ptr<const SymmetryImage>> symmetry_images_;
+  EvidenceOfImages images_;
 };
 
 TEST_F(UprightStarts, AreTheYawThatAllViewsAgreeOn) {
   for (const bool edges : {false, true}) {
-    if (edges) edge_images_ = DrawnEdges(sequence_);
+    if (edges) images_ = DrawnEdges(sequence_);
     const auto initial_landmarks = Choose();
     for (size_t i = 0; i < initial_landmarks.size(); ++i) {
       ASSERT_TRUE(initial_landmarks[i]);

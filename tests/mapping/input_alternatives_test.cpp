@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the boxes say of a focal length and of planes that are given wrongly.
-#include "mapping/input_alternatives.h"
+#include "soslam/mapping/input_alternatives.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -8,8 +8,8 @@
 
 #include <cmath>
 
-#include "evaluation/result_checks.h"
-#include "geometry/angles.h"
+#include "soslam/evaluation/result_checks.h"
+#include "soslam/geometry/angles.h"
 #include "support/cuboid_map.h"
 #include "support/looking_at.h"
 #include "support/one_body.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "evaluation/metrics.h"
-#include "initialisation/object_points.h"
+#include "soslam/evaluation/metrics.h"
+#include "soslam/initialisation/points_in_frames.h"
 #include "support/cuboid_map.h"
 #include "support/points_on_objects.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mapping/quarter_turns.h"
+#include "soslam/mapping/quarter_turns.h"
 
 #include <gtest/gtest.h>
 

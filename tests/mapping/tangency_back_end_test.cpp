@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "evaluation/metrics.h"
-#include "evaluation/result_checks.h"
-#include "geometry/angles.h"
-#include "initialisation/initialise.h"
-#include "mapping/initial_landmarks.h"
+#include "soslam/evaluation/metrics.h"
+#include "soslam/evaluation/result_checks.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/initialisation/initialise.h"
+#include "soslam/mapping/initial_landmarks.h"
 #include "support/cuboid_map.h"
 #include "support/one_body.h"
 #include "support/random.h"
@@ -245,7 +245,7 @@ TEST(TangencyBackEnd, EdgesImproveWhatBoxesSay) {
   const Sequence noisy = WithBoxNoise(sequence, 4.0);
   BackEndInput input = TruthInput(noisy, 0.2);
   const MapEstimate boxes = OptimiseMap(input, TangencyOptions());
-  input.edge_images = DrawnEdges(sequence);
+  input.images = DrawnEdges(sequence);
   const MapEstimate edges = OptimiseMap(input, TangencyOptions());
   EXPECT_EQ(edges.solver.residuals.at("edges"), static_cast<int>(sequence.detections.size()));
   const double with = MeanIou(sequence, edges);
@@ -257,7 +257,7 @@ TEST(TangencyBackEnd, AllSolvesTogetherKeepToTheLimitOfIterations) {
   const Sequence sequence = CuboidSequence(3, 8);
   const Sequence noisy = WithBoxNoise(sequence, 4.0);
   BackEndInput input = TruthInput(noisy, 0.2);
-  input.edge_images = DrawnEdges(sequence);
+  input.images = DrawnEdges(sequence);
   OptimiseOptions options = TangencyOptions();
   options.max_iterations = 3;
   const SolverSummary solver = OptimiseMap(input, options).solver;
@@ -319,7 +319,7 @@ TEST(TangencyBackEnd, SettlesWithEdges) {
   Sequence noisy = sequence;
   for (Detection& detection : noisy.detections) detection.box.y_min += RandomUniform(0.0, 6.0);
   BackEndInput input = TruthInput(noisy, 0.2);
-  input.edge_images = DrawnEdges(sequence);
+  input.images = DrawnEdges(sequence);
   Disturb(&input);
   const MapEstimate first = OptimiseMap(input, TangencyOptions());
   EXPECT_TRUE(first.solver.converged);
@@ -346,7 +346,7 @@ TEST(TangencyBackEnd, MovesWithTheWorld) {
   const Sequence exact = CuboidSequence(3, 8);
   const Sequence sequence = WithBoxNoise(exact, 3.0);
   BackEndInput input = TruthInput(sequence);
-  input.edge_images = DrawnEdges(exact);
+  input.images = DrawnEdges(exact);
   OptimiseOptions options = TangencyOptions();
   options.detector_bias_sigma_px = 2.0;
   ExpectThatTheMapMovesWithTheWorld(input, options, 0.02, 0.97);

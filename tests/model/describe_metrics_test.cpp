@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "model/describe_metrics.h"
+#include "soslam/model/describe_metrics.h"
 
 #include <gtest/gtest.h>
 
-#include "artefact/described_json.h"
+#include "soslam/artefact/described_json.h"
 
 namespace soslam {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "model/label_groups.h"
+#include "soslam/model/label_groups.h"
 
 #include <gtest/gtest.h>
 
-#include "base/error.h"
+#include "soslam/base/error.h"
 #include "support/expect_error.h"
 
 namespace soslam {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "model/metric_catalogue.h"
+#include "soslam/model/metric_catalogue.h"
 
 #include <gtest/gtest.h>
 
-#include "artefact/described_json.h"
-#include "base/table.h"
-#include "model/describe_metrics.h"
+#include "soslam/artefact/described_json.h"
+#include "soslam/base/table.h"
+#include "soslam/model/describe_metrics.h"
 
 namespace soslam {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "model/moving_things.h"
+#include "soslam/model/moving_things.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "model/occlusion.h"
+#include "soslam/model/occlusion.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "model/reasons.h"
+#include "soslam/model/reasons.h"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "model/segments.h"
+#include "soslam/model/segments.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "geometry/angles.h"
+#include "soslam/geometry/angles.h"
 
 namespace soslam {
 namespace {

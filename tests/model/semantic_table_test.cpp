@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "model/semantic_table.h"
+#include "soslam/model/semantic_table.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

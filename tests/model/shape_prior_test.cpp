@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "model/shape_prior.h"
+#include "soslam/model/shape_prior.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "orientation/edge_alignment.h"
+#include "soslam/orientation/edge_alignment.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "initialisation/upright.h"
+#include "soslam/initialisation/upright.h"
 #include "support/drawn_cuboids.h"
 #include "support/facing_view.h"
 #include "support/landmark_costs.h"

@@ -3,8 +3,8 @@
 
 #include <limits>
 
-#include "geometry/angles.h"
-#include "orientation/refine_by_profile.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/orientation/refine_by_profile.h"
 
 namespace soslam {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <set>
 
-#include "orientation/edge_alignment.h"
+#include "soslam/orientation/edge_alignment.h"
 #include "support/random.h"
 
 namespace soslam {

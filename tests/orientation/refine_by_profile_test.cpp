@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "orientation/refine_by_profile.h"
+#include "soslam/orientation/refine_by_profile.h"
 
 #include <gtest/gtest.h>
 
@@ -8,12 +8,12 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
-#include "geometry/angles.h"
-#include "geometry/iou.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/geometry/iou.h"
+#include "soslam/synthesis/render.h"
 #include "support/drawn_cuboids.h"
 #include "support/random.h"
 #include "support/scene.h"
-#include "synthesis/render.h"
 
 namespace soslam {
 namespace {

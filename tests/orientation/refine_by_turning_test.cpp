@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "orientation/refine_by_turning.h"
+#include "soslam/orientation/refine_by_turning.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-#include "geometry/angles.h"
-#include "orientation/texture_asymmetry.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/orientation/texture_asymmetry.h"
+#include "soslam/synthesis/render.h"
+#include "soslam/synthesis/scene.h"
 #include "support/random.h"
 #include "support/scene.h"
-#include "synthesis/render.h"
-#include "synthesis/scene.h"
 
 namespace soslam {
 namespace {

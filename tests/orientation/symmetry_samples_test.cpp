@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "geometry/mirror_mapping.h"
-#include "orientation/texture_asymmetry.h"
+#include "soslam/geometry/mirror_mapping.h"
+#include "soslam/orientation/texture_asymmetry.h"
 #include "support/random.h"
 
 namespace soslam {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "orientation/texture_asymmetry.h"
+#include "soslam/orientation/texture_asymmetry.h"
 
 #include <gtest/gtest.h>
 
-#include "base/error.h"
+#include "soslam/base/error.h"
 #include "support/facing_view.h"
 #include "support/landmark_costs.h"
 

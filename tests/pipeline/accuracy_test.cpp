@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "artefact/json_file.h"
+#include "soslam/artefact/json_file.h"
 #include "support/small_pipeline.h"
 
 namespace soslam {

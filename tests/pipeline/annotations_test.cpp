@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "base/hash.h"
+#include "soslam/system/hash.h"
 #include "support/folder_test.h"
 #include "support/run_command.h"
 #include "support/temporary_folder.h"

@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "base/hash.h"
+#include "soslam/system/hash.h"
 #include "support/http_server.h"
 #include "support/small_pipeline.h"
 

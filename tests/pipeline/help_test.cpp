@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <regex>
 
-#include "artefact/json_file.h"
+#include "soslam/artefact/json_file.h"
 #include "support/schema_violation.h"
 #include "support/small_pipeline.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <opencv2/imgcodecs.hpp>
 
-#include "base/hash.h"
+#include "soslam/system/hash.h"
 #include "support/image_files.h"
 #include "support/small_pipeline.h"
 

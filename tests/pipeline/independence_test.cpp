@@ -9,13 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "dataset/import_options.h"
-#include "evaluation/alignment.h"
-#include "image/edge_maps.h"
-#include "initialisation/options.h"
-#include "mapping/options.h"
-#include "orientation/options.h"
-#include "stage/stages.h"
+#include "soslam/dataset/import_options.h"
+#include "soslam/evaluation/alignment.h"
+#include "soslam/image/edge_maps.h"
+#include "soslam/initialisation/options.h"
+#include "soslam/mapping/options.h"
+#include "soslam/orientation/options.h"
+#include "soslam/stage/stages.h"
 #include "support/small_pipeline.h"
 
 namespace soslam {

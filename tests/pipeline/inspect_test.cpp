@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "artefact/files.h"
+#include "soslam/artefact/files.h"
 #include "support/random_estimates.h"
 #include "support/small_pipeline.h"
 

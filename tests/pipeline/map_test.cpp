@@ -15,10 +15,10 @@
 #include <thread>
 #include <vector>
 
-#include "artefact/json_file.h"
-#include "dataset/colmap_model.h"
-#include "dataset/labelled_box.h"
-#include "dataset/trajectories.h"
+#include "soslam/artefact/json_file.h"
+#include "soslam/dataset/colmap_model.h"
+#include "soslam/dataset/labelled_box.h"
+#include "soslam/dataset/trajectories.h"
 #include "support/fake_colmap.h"
 #include "support/image_files.h"
 #include "support/run_command.h"

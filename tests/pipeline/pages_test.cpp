@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "report/page_html.h"
+#include "soslam/report/page_html.h"
 #include "support/run_command.h"
 #include "support/small_pipeline.h"
 #include "support/temporary_folder.h"

@@ -6,9 +6,9 @@
 #include <functional>
 #include <set>
 
-#include "artefact/json_file.h"
-#include "artefact/run_file.h"
-#include "base/hash.h"
+#include "soslam/artefact/json_file.h"
+#include "soslam/artefact/run_file.h"
+#include "soslam/system/hash.h"
 #include "support/finished_run.h"
 
 namespace soslam {

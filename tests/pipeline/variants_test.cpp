@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "artefact/files.h"
-#include "artefact/hdf5_artefact.h"
+#include "soslam/artefact/files.h"
+#include "soslam/artefact/hdf5_artefact.h"
 #include "support/small_pipeline.h"
 
 namespace soslam {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "planes/estimate_planes.h"
+#include "soslam/planes/estimate_planes.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "geometry/angles.h"
-#include "planes/standing_body.h"
-#include "planes/up_prior.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/planes/standing_body.h"
+#include "soslam/planes/up_prior.h"
 #include "support/random.h"
 #include "support/scene.h"
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "planes/planes_and_holding.h"
+#include "soslam/planes/planes_and_holding.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "base/error.h"
-#include "geometry/angles.h"
-#include "planes/camera_holding.h"
-#include "planes/up_prior.h"
+#include "soslam/base/error.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/planes/camera_holding.h"
+#include "soslam/planes/up_prior.h"
 #include "support/expect_error.h"
 #include "support/scene.h"
 

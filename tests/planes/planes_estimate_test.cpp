@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "planes/planes_estimate.h"
+#include "soslam/planes/planes_estimate.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "geometry/angles.h"
-#include "initialisation/fit_object.h"
-#include "planes/plane_heights.h"
-#include "planes/standing_body.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/initialisation/fit_object.h"
+#include "soslam/planes/plane_heights.h"
+#include "soslam/planes/standing_body.h"
 #include "support/random.h"
 #include "support/scene.h"
 #include "support/shape_exponents.h"

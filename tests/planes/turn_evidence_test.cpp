@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "planes/turn_evidence.h"
+#include "soslam/planes/turn_evidence.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "planes/camera_holding.h"
+#include "soslam/planes/camera_holding.h"
 
 namespace soslam {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "planes/up_prior.h"
+#include "soslam/planes/up_prior.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <numbers>
 #include <vector>
 
-#include "geometry/angles.h"
-#include "planes/planes_and_holding.h"
-#include "planes/scene_axis.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/planes/planes_and_holding.h"
+#include "soslam/planes/scene_axis.h"
 #include "support/looking_at.h"
 #include "support/random.h"
 

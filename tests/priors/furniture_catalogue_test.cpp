@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "priors/furniture_catalogue.h"
+#include "soslam/priors/furniture_catalogue.h"
 
 #include <gtest/gtest.h>
 
-#include "base/error.h"
+#include "soslam/base/error.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 

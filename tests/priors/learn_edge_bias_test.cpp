@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "priors/learn_priors.h"
+#include "soslam/priors/learn_priors.h"
 #include "support/views_of_bodies.h"
 
 namespace soslam {

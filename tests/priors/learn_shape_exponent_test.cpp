@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "priors/learn_priors.h"
+#include "soslam/priors/learn_priors.h"
 #include "support/shape_exponents.h"
 #include "support/views_of_bodies.h"
 

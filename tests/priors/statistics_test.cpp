@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "priors/learn_priors.h"
+#include "soslam/priors/learn_priors.h"
 
 namespace soslam {
 namespace {

@@ -6,15 +6,15 @@
 #include <ostream>
 #include <vector>
 
-#include "association/association.h"
-#include "base/error.h"
-#include "initialisation/initialise.h"
-#include "initialisation/single_frame.h"
-#include "initialisation/svd.h"
-#include "mapping/back_end.h"
-#include "mapping/initial_landmarks.h"
-#include "planes/estimate_planes.h"
-#include "planes/up_prior.h"
+#include "soslam/association/association.h"
+#include "soslam/base/error.h"
+#include "soslam/initialisation/initialise.h"
+#include "soslam/initialisation/single_frame.h"
+#include "soslam/initialisation/svd.h"
+#include "soslam/mapping/back_end.h"
+#include "soslam/mapping/initial_landmarks.h"
+#include "soslam/planes/estimate_planes.h"
+#include "soslam/planes/up_prior.h"
 #include "support/association_scenes.h"
 #include "support/random.h"
 #include "support/scene.h"
@@ -252,7 +252,7 @@ TEST_P(DegenerateTest, SeveralViews) {
 
 TEST_P(DegenerateTest, BackEndWithEllipsoids) {
   ExpectAnswerOrRefusal([](const Sequence& sequence, const Priors& priors) {
-    BackEndInput input{sequence, {}, priors, {}, {}};
+    BackEndInput input{sequence, {}, priors};
     for (const Object& object : sequence.objects) {
       input.initial_landmarks.emplace_back(object.ground_truth->landmark_in_world);
     }
@@ -265,7 +265,7 @@ TEST_P(DegenerateTest, BackEndWithBodiesOfAnyShape) {
   ExpectAnswerOrRefusal([](const Sequence& sequence, const Priors& priors) {
     OptimiseOptions options;
     options.detection_model = DetectionModel::kTangency;
-    BackEndInput input{sequence, {}, priors, {}, {}};
+    BackEndInput input{sequence, {}, priors};
     input.initial_landmarks = ChooseInitialUprightLandmarks(
         input, InitialiseUpright(sequence, priors, UprightOptions(), 1), options, 1);
     ExpectDefined(OptimiseMap(input, options), options.max_iterations);

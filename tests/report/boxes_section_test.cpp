@@ -4,8 +4,8 @@
 
 #include <opencv2/core.hpp>
 
-#include "artefact/files.h"
-#include "report/page_parts.h"
+#include "soslam/artefact/files.h"
+#include "soslam/report/page_parts.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/scene.h"

@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "association/association.h"
-#include "report/page_parts.h"
+#include "soslam/association/association.h"
+#include "soslam/report/page_parts.h"
 #include "support/expect_error.h"
 #include "support/scene.h"
 #include "support/true_map.h"

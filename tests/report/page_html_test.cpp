@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/page_html.h"
+#include "soslam/report/page_html.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "artefact/described_json.h"
+#include "soslam/artefact/described_json.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/page_parts.h"
+#include "soslam/report/page_parts.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,11 +11,11 @@
 #include <opencv2/imgcodecs.hpp>
 #include <set>
 
-#include "base/error.h"
-#include "geometry/angles.h"
-#include "model/segments.h"
-#include "report/page.h"
-#include "report/page_html.h"
+#include "soslam/base/error.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/model/segments.h"
+#include "soslam/report/page.h"
+#include "soslam/report/page_html.h"
 #include "support/random.h"
 #include "support/scene.h"
 

@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "report/page.h"
-#include "report/page_parts.h"
+#include "soslam/report/page.h"
+#include "soslam/report/page_parts.h"
 
 namespace soslam {
 namespace {

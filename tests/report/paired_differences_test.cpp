@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "base/error.h"
-#include "report/tables.h"
+#include "soslam/base/error.h"
+#include "soslam/report/tables.h"
 #include "support/expect_error.h"
 #include "support/results_folder.h"
 

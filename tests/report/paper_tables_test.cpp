@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "artefact/json_file.h"
-#include "report/tables.h"
+#include "soslam/artefact/json_file.h"
+#include "soslam/report/tables.h"
 #include "support/expect_error.h"
 #include "support/results_folder.h"
 #include "support/temporary_folder.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/plan_view.h"
+#include "soslam/report/plan_view.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/results_tree.h"
+#include "soslam/report/results_tree.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

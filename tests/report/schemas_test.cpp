@@ -6,19 +6,19 @@
 #include <cstdlib>
 #include <map>
 
-#include "artefact/described_json.h"
-#include "artefact/json_file.h"
-#include "artefact/kinds.h"
-#include "artefact/run_file.h"
-#include "base/error.h"
-#include "model/describe_estimates.h"
-#include "model/edits.h"
-#include "priors/furniture_catalogue.h"
-#include "report/tables.h"
+#include "soslam/artefact/described_json.h"
+#include "soslam/artefact/json_file.h"
+#include "soslam/artefact/kinds.h"
+#include "soslam/artefact/run_file.h"
+#include "soslam/base/error.h"
+#include "soslam/model/describe_estimates.h"
+#include "soslam/model/edits.h"
+#include "soslam/priors/furniture_catalogue.h"
+#include "soslam/report/tables.h"
+#include "soslam/synthesis/scene.h"
 #include "support/random_estimates.h"
 #include "support/schema_violation.h"
 #include "support/temporary_folder.h"
-#include "synthesis/scene.h"
 
 namespace soslam {
 namespace {

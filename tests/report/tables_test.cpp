@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/tables.h"
+#include "soslam/report/tables.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "artefact/files.h"
-#include "base/error.h"
-#include "base/hash.h"
-#include "report/results_tree.h"
+#include "soslam/artefact/files.h"
+#include "soslam/base/error.h"
+#include "soslam/report/results_tree.h"
+#include "soslam/system/hash.h"
 #include "support/edited_json.h"
 #include "support/expect_error.h"
 #include "support/random_estimates.h"

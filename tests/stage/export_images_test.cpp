@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "stage/export_images.h"
+#include "soslam/stage/export_images.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "artefact/files.h"
-#include "base/error.h"
-#include "dataset/colmap_model.h"
-#include "dataset/nerfstudio.h"
-#include "inspection/canvas.h"
-#include "stage/stages.h"
+#include "soslam/artefact/files.h"
+#include "soslam/base/error.h"
+#include "soslam/dataset/colmap_model.h"
+#include "soslam/dataset/nerfstudio.h"
+#include "soslam/inspection/canvas.h"
+#include "soslam/stage/stages.h"
 #include "support/expect_error.h"
 #include "support/image_files.h"
 #include "support/printed.h"

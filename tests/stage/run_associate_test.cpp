@@ -4,13 +4,13 @@
 
 #include <algorithm>
 
-#include "artefact/files.h"
-#include "artefact/json_file.h"
-#include "association/options.h"
-#include "base/error.h"
-#include "base/hash.h"
-#include "report/page_parts.h"
-#include "stage/stages.h"
+#include "soslam/artefact/files.h"
+#include "soslam/artefact/json_file.h"
+#include "soslam/association/options.h"
+#include "soslam/base/error.h"
+#include "soslam/report/page_parts.h"
+#include "soslam/stage/stages.h"
+#include "soslam/system/hash.h"
 #include "support/association_scenes.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"

@@ -2,11 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "base/error.h"
-#include "dataset/labelled_box.h"
-#include "image/detector_options.h"
-#include "image/network.h"
-#include "stage/stages.h"
+#include "soslam/artefact/options_json.h"
+#include "soslam/base/error.h"
+#include "soslam/dataset/labelled_box.h"
+#include "soslam/image/detector_options.h"
+#include "soslam/image/network.h"
+#include "soslam/stage/stages.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/image_files.h"

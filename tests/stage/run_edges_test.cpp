@@ -4,12 +4,12 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "artefact/files.h"
-#include "artefact/hdf5_artefact.h"
-#include "base/error.h"
-#include "image/edge_maps.h"
-#include "image/read_image.h"
-#include "stage/stages.h"
+#include "soslam/artefact/files.h"
+#include "soslam/artefact/hdf5_artefact.h"
+#include "soslam/base/error.h"
+#include "soslam/image/edge_maps.h"
+#include "soslam/image/read_image.h"
+#include "soslam/stage/stages.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/image_files.h"

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "artefact/files.h"
-#include "base/error.h"
-#include "dataset/trajectories.h"
-#include "evaluation/alignment.h"
-#include "stage/stages.h"
+#include "soslam/artefact/files.h"
+#include "soslam/base/error.h"
+#include "soslam/dataset/trajectories.h"
+#include "soslam/evaluation/alignment.h"
+#include "soslam/stage/stages.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/gltf_document.h"

@@ -2,11 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "artefact/json_file.h"
-#include "dataset/labelled_box.h"
-#include "image/frame_choice.h"
-#include "image/read_image.h"
-#include "stage/stages.h"
+#include "soslam/artefact/json_file.h"
+#include "soslam/dataset/labelled_box.h"
+#include "soslam/image/frame_choice.h"
+#include "soslam/image/read_image.h"
+#include "soslam/stage/stages.h"
 #include "support/drawn_photos.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"

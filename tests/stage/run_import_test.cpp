@@ -2,12 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "artefact/files.h"
-#include "artefact/json_file.h"
-#include "base/error.h"
-#include "base/hash.h"
-#include "dataset/import_options.h"
-#include "stage/stages.h"
+#include "soslam/artefact/files.h"
+#include "soslam/artefact/json_file.h"
+#include "soslam/base/error.h"
+#include "soslam/dataset/import_options.h"
+#include "soslam/stage/stages.h"
+#include "soslam/system/hash.h"
 #include "support/dataset_fixture.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"

@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <functional>
 
-#include "artefact/files.h"
-#include "artefact/hdf5_artefact.h"
-#include "base/error.h"
-#include "geometry/iou.h"
-#include "initialisation/options.h"
-#include "mapping/options.h"
-#include "orientation/options.h"
-#include "stage/stages.h"
+#include "soslam/artefact/files.h"
+#include "soslam/artefact/hdf5_artefact.h"
+#include "soslam/base/error.h"
+#include "soslam/geometry/iou.h"
+#include "soslam/initialisation/options.h"
+#include "soslam/mapping/options.h"
+#include "soslam/orientation/options.h"
+#include "soslam/stage/stages.h"
 #include "support/drawn_cuboids.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"

@@ -4,23 +4,23 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "artefact/files.h"
-#include "artefact/hdf5_artefact.h"
-#include "artefact/json_file.h"
-#include "base/error.h"
-#include "base/options.h"
-#include "ground/ground_checks.h"
-#include "ground/options.h"
-#include "inspection/canvas.h"
-#include "inspection/overlay.h"
-#include "stage/stages.h"
+#include "soslam/artefact/files.h"
+#include "soslam/artefact/hdf5_artefact.h"
+#include "soslam/artefact/json_file.h"
+#include "soslam/artefact/options_json.h"
+#include "soslam/base/error.h"
+#include "soslam/ground/ground_checks.h"
+#include "soslam/ground/options.h"
+#include "soslam/inspection/canvas.h"
+#include "soslam/inspection/overlay.h"
+#include "soslam/stage/stages.h"
+#include "soslam/synthesis/simulate.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/image_files.h"
 #include "support/scene.h"
 #include "support/temporary_folder.h"
 #include "support/true_map.h"
-#include "synthesis/simulate.h"
 
 namespace soslam {
 namespace {

@@ -2,10 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "artefact/files.h"
-#include "base/error.h"
-#include "priors/learn_priors.h"
-#include "stage/stages.h"
+#include "soslam/artefact/files.h"
+#include "soslam/base/error.h"
+#include "soslam/priors/learn_priors.h"
+#include "soslam/stage/stages.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/lists.h"

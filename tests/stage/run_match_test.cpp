@@ -4,13 +4,13 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "artefact/files.h"
-#include "base/error.h"
-#include "geometry/distortion.h"
-#include "image/box_colours.h"
-#include "image/feature_matches.h"
-#include "stage/read_evidence.h"
-#include "stage/stages.h"
+#include "soslam/artefact/files.h"
+#include "soslam/base/error.h"
+#include "soslam/geometry/distortion.h"
+#include "soslam/image/box_colours.h"
+#include "soslam/image/feature_matches.h"
+#include "soslam/stage/read_evidence.h"
+#include "soslam/stage/stages.h"
 #include "support/expect_error.h"
 #include "support/printed.h"
 #include "support/temporary_folder.h"

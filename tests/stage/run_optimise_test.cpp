@@ -3,13 +3,13 @@
 
 #include <cmath>
 
-#include "artefact/files.h"
-#include "base/error.h"
-#include "evaluation/alignment.h"
-#include "evaluation/metrics.h"
-#include "mapping/options.h"
-#include "orientation/options.h"
-#include "stage/stages.h"
+#include "soslam/artefact/files.h"
+#include "soslam/base/error.h"
+#include "soslam/evaluation/alignment.h"
+#include "soslam/evaluation/metrics.h"
+#include "soslam/mapping/options.h"
+#include "soslam/orientation/options.h"
+#include "soslam/stage/stages.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/scene.h"

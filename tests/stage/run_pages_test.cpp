@@ -8,12 +8,12 @@
 #include <string>
 #include <utility>
 
-#include "artefact/files.h"
-#include "artefact/hdf5_artefact.h"
-#include "base/error.h"
-#include "report/page_html.h"
-#include "report/page_parts.h"
-#include "stage/stages.h"
+#include "soslam/artefact/files.h"
+#include "soslam/artefact/hdf5_artefact.h"
+#include "soslam/base/error.h"
+#include "soslam/report/page_html.h"
+#include "soslam/report/page_parts.h"
+#include "soslam/stage/stages.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/image_files.h"

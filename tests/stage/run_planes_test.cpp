@@ -7,13 +7,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "artefact/files.h"
-#include "artefact/json_file.h"
-#include "association/association.h"
-#include "base/error.h"
-#include "ground/options.h"
-#include "planes/options.h"
-#include "stage/stages.h"
+#include "soslam/artefact/files.h"
+#include "soslam/artefact/json_file.h"
+#include "soslam/association/association.h"
+#include "soslam/base/error.h"
+#include "soslam/ground/options.h"
+#include "soslam/planes/options.h"
+#include "soslam/stage/stages.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/prior_scene.h"

@@ -5,13 +5,13 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 
-#include "appearance/appearance_file.h"
-#include "artefact/files.h"
-#include "artefact/hdf5_artefact.h"
-#include "base/error.h"
-#include "geometry/angles.h"
-#include "orientation/options.h"
-#include "stage/stages.h"
+#include "soslam/appearance/appearance_file.h"
+#include "soslam/artefact/files.h"
+#include "soslam/artefact/hdf5_artefact.h"
+#include "soslam/base/error.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/orientation/options.h"
+#include "soslam/stage/stages.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/one_body.h"

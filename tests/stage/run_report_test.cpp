@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include "base/error.h"
-#include "stage/stages.h"
+#include "soslam/base/error.h"
+#include "soslam/stage/stages.h"
 #include "support/expect_error.h"
 #include "support/printed.h"
 #include "support/results_folder.h"

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "artefact/files.h"
-#include "geometry/distortion.h"
-#include "image/feature_tracks.h"
-#include "stage/stages.h"
+#include "soslam/artefact/files.h"
+#include "soslam/geometry/distortion.h"
+#include "soslam/image/distort_pixels.h"
+#include "soslam/image/feature_tracks.h"
+#include "soslam/stage/stages.h"
 #include "support/printed.h"
 #include "support/temporary_folder.h"
 #include "support/wall_sequence.h"

@@ -9,18 +9,18 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-#include "appearance/inner_layers.h"
-#include "artefact/hdf5_file.h"
-#include "base/error.h"
-#include "base/hash.h"
-#include "geometry/angles.h"
-#include "stage/stages.h"
+#include "soslam/appearance/inner_layers.h"
+#include "soslam/artefact/hdf5_file.h"
+#include "soslam/base/error.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/stage/stages.h"
+#include "soslam/system/hash.h"
+#include "soslam/training/parametric_models.h"
+#include "soslam/training/training_crops.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/onnx_network.h"
 #include "support/printed.h"
-#include "training/parametric_models.h"
-#include "training/training_crops.h"
 
 namespace soslam {
 namespace {

@@ -2,10 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "base/error.h"
-#include "dataset/trajectories.h"
-#include "image/frame_choice.h"
-#include "stage/stages.h"
+#include "soslam/base/error.h"
+#include "soslam/dataset/trajectories.h"
+#include "soslam/image/frame_choice.h"
+#include "soslam/stage/stages.h"
 #include "support/drawn_photos.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"

@@ -5,8 +5,8 @@
 #include <string>
 #include <tuple>
 
-#include "association/agreement.h"
-#include "association/association.h"
+#include "soslam/association/agreement.h"
+#include "soslam/association/association.h"
 #include "support/random.h"
 #include "support/scene.h"
 

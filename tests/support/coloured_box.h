@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "training/furniture_model.h"
+#include "soslam/training/furniture_model.h"
 
 namespace soslam {
 

@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
 #include <memory>
 
-#include "geometry/iou.h"
-#include "mapping/back_end.h"
+#include "soslam/geometry/iou.h"
+#include "soslam/mapping/back_end.h"
+#include "soslam/orientation/image_evidence.h"
 #include "support/drawn_cuboids.h"
 #include "support/random.h"
 #include "support/scene.h"
@@ -16,7 +16,7 @@ namespace soslam {
 
 // From the truth, with priors that say nearly the same.
 inline BackEndInput TruthInput(const Sequence& sequence, double ratio_log_sigma = 0.02) {
-  BackEndInput input{sequence, {}, TrueCuboidPriors(sequence, ratio_log_sigma), {}, {}};
+  BackEndInput input{sequence, {}, TrueCuboidPriors(sequence, ratio_log_sigma)};
   for (const Object& object : sequence.objects) {
     input.initial_landmarks.push_back(object.ground_truth->landmark_in_world);
   }
@@ -33,15 +33,18 @@ inline void Disturb(BackEndInput* input) {
 }
 
 // Images in which each object's visible faces are drawn, for all of its detections.
-inline std::map<int, std::shared_ptr<const EdgeImage>> DrawnEdges(const Sequence& sequence) {
-  std::map<int, std::shared_ptr<const EdgeImage>> images;
+inline EvidenceOfImages DrawnEdges(const Sequence& sequence) {
+  EvidenceOfImages images;
   for (size_t i = 0; i < sequence.detections.size(); ++i) {
     const Detection& detection = sequence.detections[i];
     const cv::Mat image =
         DrawCuboids(sequence.camera, {*TrueLandmarkInCamera(sequence, detection)});
     const EdgeMaps maps = ComputeEdgeMaps(image, EdgesOptions());
-    images[static_cast<int>(i)] = std::make_shared<const EdgeImage>(
-        EdgeImage{std::make_shared<const FrameEdges>(maps), detection.box, {}});
+    images.emplace_back(
+        static_cast<int>(i),
+        AlignmentOfEdges(std::make_shared<const EdgeImage>(EdgeImage{
+                             std::make_shared<const FrameEdges>(maps), detection.box, {}}),
+                         sequence.camera, EdgeOptions()));
   }
   return images;
 }
@@ -65,7 +68,7 @@ inline void ExpectThatTheMapMovesWithTheWorld(const BackEndInput& input,
   const MapEstimate before = OptimiseMap(input, options);
   const Rigid3d motion = RandomRigid();
   const Sequence moved = Moved(motion, input.sequence);
-  BackEndInput moved_input{moved, input.initial_landmarks, input.priors, {}, input.edge_images};
+  BackEndInput moved_input{moved, input.initial_landmarks, input.priors, input.images};
   for (auto& start : moved_input.initial_landmarks) *start = Transform(motion, *start);
   const MapEstimate after = OptimiseMap(moved_input, options);
 

@@ -15,13 +15,13 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
-#include "dataset/dataset_content.h"
-#include "dataset/dataset_json.h"
-#include "geometry/angles.h"
-#include "geometry/box.h"
-#include "geometry/camera.h"
-#include "geometry/rigid3.h"
+#include "soslam/base/error.h"
+#include "soslam/dataset/dataset_content.h"
+#include "soslam/dataset/dataset_json.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/geometry/box.h"
+#include "soslam/geometry/camera.h"
+#include "soslam/geometry/rigid3.h"
 #include "support/image_files.h"
 #include "support/imported_folder.h"
 #include "support/lists.h"

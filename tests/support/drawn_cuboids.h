@@ -5,9 +5,9 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "geometry/camera.h"
-#include "geometry/landmark.h"
-#include "image/edge_maps.h"
+#include "soslam/geometry/camera.h"
+#include "soslam/geometry/landmark.h"
+#include "soslam/image/edge_maps.h"
 
 namespace soslam {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/error.h"
+#include "soslam/base/error.h"
 
 namespace soslam {
 

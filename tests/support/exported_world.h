@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "exchange/world.h"
+#include "soslam/exchange/world.h"
 #include "support/random.h"
 
 namespace soslam {

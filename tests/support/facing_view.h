@@ -5,7 +5,7 @@
 #include <functional>
 #include <numbers>
 
-#include "constraints/symmetry.h"
+#include "soslam/orientation/symmetry.h"
 #include "support/random_scene.h"
 
 namespace soslam {

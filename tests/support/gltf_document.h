@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "exchange/exports.h"
+#include "soslam/exchange/exports.h"
 
 namespace soslam {
 

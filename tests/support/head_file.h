@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "artefact/hdf5_artefact.h"
-#include "model/appearance.h"
+#include "soslam/artefact/hdf5_artefact.h"
+#include "soslam/model/appearance.h"
 #include "support/random.h"
 
 namespace soslam {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "image/image_format.h"
+#include "soslam/image/image_format.h"
 
 namespace soslam {
 

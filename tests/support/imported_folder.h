@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
-#include "dataset/dataset_content.h"
+#include "soslam/base/error.h"
+#include "soslam/dataset/dataset_content.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 

@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "constraints/parameters.h"
+#include "soslam/constraints/parameters.h"
 #include "support/numeric_derivatives.h"
 
 namespace soslam {

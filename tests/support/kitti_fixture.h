@@ -9,7 +9,7 @@
 #include <map>
 #include <string>
 
-#include "geometry/box.h"
+#include "soslam/geometry/box.h"
 
 namespace soslam {
 

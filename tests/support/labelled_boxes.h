@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "dataset/labelled_box.h"
+#include "soslam/dataset/labelled_box.h"
 
 namespace soslam {
 

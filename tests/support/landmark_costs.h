@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "constraints/landmark_cost.h"
+#include "soslam/constraints/landmark_cost.h"
 #include "support/numeric_derivatives.h"
 
 namespace soslam {

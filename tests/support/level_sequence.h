@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "model/sequence.h"
+#include "soslam/model/sequence.h"
 
 namespace soslam {
 

@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-#include "geometry/rigid3.h"
+#include "soslam/geometry/rigid3.h"
 
 namespace soslam {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/map_quality.h"
-#include "geometry/angles.h"
+#include "soslam/evaluation/map_quality.h"
+#include "soslam/geometry/angles.h"
 #include "support/random.h"
 
 namespace soslam {

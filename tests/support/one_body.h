@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "geometry/landmark.h"
-#include "model/sequence.h"
+#include "soslam/geometry/landmark.h"
+#include "soslam/model/sequence.h"
 #include "support/looking_at.h"
 #include "support/random.h"
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <memory>
 
-#include "geometry/angles.h"
-#include "geometry/landmark.h"
-#include "model/appearance.h"
-#include "model/sequence.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/geometry/landmark.h"
+#include "soslam/model/appearance.h"
+#include "soslam/model/sequence.h"
 
 namespace soslam {
 

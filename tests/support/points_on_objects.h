@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "model/map_points.h"
-#include "model/sequence.h"
+#include "soslam/model/map_points.h"
+#include "soslam/model/sequence.h"
 #include "support/random.h"
 
 namespace soslam {

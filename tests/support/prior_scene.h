@@ -12,14 +12,14 @@
 #include <utility>
 #include <vector>
 
-#include "artefact/files.h"
-#include "base/upper_median.h"
-#include "geometry/angles.h"
-#include "geometry/triangulation.h"
-#include "ground/estimate_ground.h"
+#include "soslam/artefact/files.h"
+#include "soslam/base/upper_median.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/geometry/triangulation.h"
+#include "soslam/ground/estimate_ground.h"
+#include "soslam/synthesis/simulate.h"
 #include "support/lists.h"
 #include "support/looking_at.h"
-#include "synthesis/simulate.h"
 
 namespace soslam {
 

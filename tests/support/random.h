@@ -5,10 +5,10 @@
 #include <numbers>
 #include <random>
 
-#include "geometry/camera.h"
-#include "geometry/landmark.h"
-#include "geometry/plane.h"
-#include "geometry/rigid3.h"
+#include "soslam/geometry/camera.h"
+#include "soslam/geometry/landmark.h"
+#include "soslam/geometry/plane.h"
+#include "soslam/geometry/rigid3.h"
 
 namespace soslam {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "model/estimates.h"
-#include "model/sequence.h"
+#include "soslam/model/estimates.h"
+#include "soslam/model/sequence.h"
 #include "support/random.h"
 
 namespace soslam {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "constraints/parameters.h"
+#include "soslam/constraints/parameters.h"
 #include "support/random.h"
 
 namespace soslam {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "artefact/files.h"
-#include "base/table.h"
-#include "evaluation/statistics.h"
+#include "soslam/artefact/files.h"
+#include "soslam/base/table.h"
+#include "soslam/evaluation/statistics.h"
 #include "support/temporary_folder.h"
 
 namespace soslam {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scenes and sequences for tests, made with lib/synthesis, and what may be done to them.
+// Scenes and sequences for tests, made with lib/soslam/synthesis, and what may be done to them.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "model/semantic_table.h"
-#include "model/sequence.h"
-#include "synthesis/simulate.h"
+#include "soslam/model/semantic_table.h"
+#include "soslam/model/sequence.h"
+#include "soslam/synthesis/simulate.h"
 
 namespace soslam {
 

@@ -9,8 +9,8 @@
 #include <ostream>
 #include <vector>
 
-#include "geometry/landmark.h"
-#include "geometry/wireframe.h"
+#include "soslam/geometry/landmark.h"
+#include "soslam/geometry/wireframe.h"
 #include "support/random.h"
 
 namespace soslam {

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "constraints/surface_distance.h"
-#include "geometry/rigid3.h"
-#include "initialisation/object_points.h"
+#include "soslam/constraints/surface_distance.h"
+#include "soslam/geometry/rigid3.h"
+#include "soslam/initialisation/object_points.h"
 #include "support/random.h"
 
 namespace soslam {

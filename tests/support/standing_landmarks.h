@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "constraints/parameters.h"
+#include "soslam/constraints/parameters.h"
 #include "support/random.h"
 
 namespace soslam {

@@ -8,8 +8,8 @@
 #include <limits>
 #include <numbers>
 
-#include "initialisation/body_at_yaw.h"
-#include "initialisation/object_evidence.h"
+#include "soslam/initialisation/body_at_yaw.h"
+#include "soslam/initialisation/object_evidence.h"
 #include "support/drawn_cuboids.h"
 #include "support/random.h"
 #include "support/shape_exponents.h"

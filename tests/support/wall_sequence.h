@@ -4,8 +4,8 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
-#include "cli/command_line.h"
-#include "model/sequence.h"
+#include "soslam/cli/command_line.h"
+#include "soslam/model/sequence.h"
 #include "support/drawn_photos.h"
 #include "support/folder_test.h"
 #include "support/image_files.h"

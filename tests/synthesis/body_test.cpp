@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "synthesis/body.h"
+#include "soslam/synthesis/body.h"
 
 #include <gtest/gtest.h>
 

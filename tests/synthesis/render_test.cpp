@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "synthesis/render.h"
+#include "soslam/synthesis/render.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "soslam/synthesis/simulate.h"
 #include "support/random.h"
 #include "support/scene.h"
-#include "synthesis/simulate.h"
 
 namespace soslam {
 namespace {

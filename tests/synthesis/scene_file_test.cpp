@@ -6,14 +6,14 @@
 #include <limits>
 #include <numbers>
 
-#include "base/error.h"
-#include "geometry/angles.h"
+#include "soslam/base/error.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/synthesis/scene.h"
 #include "support/edited_json.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/random.h"
 #include "support/scene.h"
-#include "synthesis/scene.h"
 
 namespace soslam {
 namespace {

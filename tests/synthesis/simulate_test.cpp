@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "synthesis/simulate.h"
+#include "soslam/synthesis/simulate.h"
 
 #include <gtest/gtest.h>
 

@@ -6,11 +6,11 @@
 #include <map>
 #include <opencv2/imgcodecs.hpp>
 
-#include "base/error.h"
-#include "dataset/dataset_content.h"
+#include "soslam/base/error.h"
+#include "soslam/dataset/dataset_content.h"
+#include "soslam/synthesis/simulate.h"
 #include "support/scene.h"
 #include "support/temporary_folder.h"
-#include "synthesis/simulate.h"
 
 namespace soslam {
 namespace {

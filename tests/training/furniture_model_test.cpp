@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "training/furniture_model.h"
+#include "soslam/training/furniture_model.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 
-#include "base/error.h"
+#include "soslam/base/error.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/image_files.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "training/furniture_view.h"
+#include "soslam/training/furniture_view.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <opencv2/core.hpp>
 
-#include "geometry/angles.h"
+#include "soslam/geometry/angles.h"
 #include "support/coloured_box.h"
 
 namespace soslam {

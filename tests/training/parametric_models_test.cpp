@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "training/parametric_models.h"
+#include "soslam/training/parametric_models.h"
 
 #include <gtest/gtest.h>
 

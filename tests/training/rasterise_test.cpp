@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "training/rasterise.h"
+#include "soslam/training/rasterise.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "workflow/plan_state.h"
+#include "soslam/workflow/plan_state.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,13 +7,13 @@
 #include <filesystem>
 #include <set>
 
-#include "base/error.h"
+#include "soslam/base/error.h"
+#include "soslam/workflow/pipeline_settings.h"
+#include "soslam/workflow/pipeline_stages.h"
+#include "soslam/workflow/plan.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/lists.h"
-#include "workflow/pipeline_settings.h"
-#include "workflow/pipeline_stages.h"
-#include "workflow/plan.h"
 
 namespace soslam {
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "workflow/plan.h"
+#include "soslam/workflow/plan.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,18 +10,19 @@
 #include <functional>
 #include <map>
 
-#include "base/error.h"
-#include "dataset/import_options.h"
-#include "ground/options.h"
-#include "initialisation/options.h"
-#include "mapping/options.h"
-#include "orientation/options.h"
-#include "planes/options.h"
-#include "stage/stages.h"
+#include "soslam/artefact/options_json.h"
+#include "soslam/base/error.h"
+#include "soslam/dataset/import_options.h"
+#include "soslam/ground/options.h"
+#include "soslam/initialisation/options.h"
+#include "soslam/mapping/options.h"
+#include "soslam/orientation/options.h"
+#include "soslam/planes/options.h"
+#include "soslam/stage/stages.h"
+#include "soslam/workflow/pipeline_settings.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/temporary_folder.h"
-#include "workflow/pipeline_settings.h"
 
 namespace soslam {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "workflow/verify.h"
+#include "soslam/workflow/verify.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 #include <csignal>
 #include <filesystem>
 
-#include "base/error.h"
-#include "base/hash.h"
+#include "soslam/base/error.h"
+#include "soslam/system/hash.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"
 #include "support/temporary_folder.h"

@@ -13,9 +13,9 @@
 #include <string>
 #include <string_view>
 
-#include "artefact/json_file.h"
-#include "base/table.h"
-#include "report/tables.h"
+#include "soslam/artefact/json_file.h"
+#include "soslam/base/table.h"
+#include "soslam/report/tables.h"
 
 namespace soslam {
 namespace {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <optional>
 
-#include "appearance/appearance_file.h"
-#include "appearance/head.h"
-#include "artefact/files.h"
-#include "artefact/hdf5_artefact.h"
 #include "fuzz/fuzz_target.h"
-#include "inspection/difference.h"
-#include "inspection/inspection.h"
-#include "priors/furniture_catalogue.h"
-#include "synthesis/scene.h"
+#include "soslam/appearance/appearance_file.h"
+#include "soslam/appearance/head.h"
+#include "soslam/artefact/files.h"
+#include "soslam/artefact/hdf5_artefact.h"
+#include "soslam/inspection/difference.h"
+#include "soslam/inspection/inspection.h"
+#include "soslam/priors/furniture_catalogue.h"
+#include "soslam/synthesis/scene.h"
 
 namespace soslam {
 namespace {

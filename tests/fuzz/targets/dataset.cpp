@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <nlohmann/json.hpp>
 
-#include "artefact/files.h"
-#include "base/options.h"
-#include "dataset/calibration_file.h"
-#include "dataset/class_names.h"
-#include "dataset/colmap_model.h"
-#include "dataset/dataset_content.h"
-#include "dataset/dataset_json.h"
-#include "dataset/kitti_label.h"
-#include "dataset/labelled_box.h"
-#include "dataset/nerfstudio.h"
-#include "dataset/trajectories.h"
-#include "dataset/yolo_boxes.h"
 #include "fuzz/fuzz_target.h"
+#include "soslam/artefact/files.h"
+#include "soslam/artefact/options_json.h"
+#include "soslam/dataset/calibration_file.h"
+#include "soslam/dataset/class_names.h"
+#include "soslam/dataset/colmap_model.h"
+#include "soslam/dataset/dataset_content.h"
+#include "soslam/dataset/dataset_json.h"
+#include "soslam/dataset/kitti_label.h"
+#include "soslam/dataset/labelled_box.h"
+#include "soslam/dataset/nerfstudio.h"
+#include "soslam/dataset/trajectories.h"
+#include "soslam/dataset/yolo_boxes.h"
 
 namespace soslam {
 namespace {

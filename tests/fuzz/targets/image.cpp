@@ -2,9 +2,9 @@
 #include <stdexcept>
 
 #include "fuzz/fuzz_target.h"
-#include "image/image_format.h"
-#include "image/onnx_header.h"
-#include "image/read_image.h"
+#include "soslam/image/image_format.h"
+#include "soslam/image/onnx_header.h"
+#include "soslam/image/read_image.h"
 
 namespace soslam {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "artefact/run_file.h"
 #include "fuzz/fuzz_target.h"
-#include "report/results_tree.h"
-#include "report/tables.h"
-#include "workflow/pipeline_settings.h"
-#include "workflow/plan.h"
-#include "workflow/verify.h"
+#include "soslam/artefact/run_file.h"
+#include "soslam/report/results_tree.h"
+#include "soslam/report/tables.h"
+#include "soslam/workflow/pipeline_settings.h"
+#include "soslam/workflow/plan.h"
+#include "soslam/workflow/verify.h"
 
 namespace soslam {
 namespace {

@@ -1,0 +1,24 @@
+# The packages of soslam::soslam, for building it and for programs that link it. Libraries without a package file of
+# their own become targets here, so that what is installed names no path of the machine that built it.
+find_dependency(OpenCV COMPONENTS core imgproc imgcodecs calib3d dnn features2d video)
+find_dependency(nlohmann_json 3.10.5)
+find_dependency(fmt)
+find_dependency(OpenSSL)
+find_dependency(HDF5 COMPONENTS C)
+find_dependency(LibArchive)
+find_dependency(ZLIB)
+find_dependency(yaml-cpp)
+if(NOT TARGET yaml-cpp::yaml-cpp)  # before 0.8
+  add_library(yaml-cpp::yaml-cpp ALIAS yaml-cpp)
+endif()
+# FFmpeg's, those of ONNX files, and a second backend of detector networks, where its package is there
+# (libonnxruntime-dev of Debian 13).
+foreach(library avformat avcodec swscale avutil onnx_proto protobuf onnxruntime)
+  find_library(SOSLAM_${library} ${library})
+  if(SOSLAM_${library} AND NOT TARGET soslam_needs::${library})
+    add_library(soslam_needs::${library} UNKNOWN IMPORTED)
+    set_target_properties(soslam_needs::${library} PROPERTIES IMPORTED_LOCATION ${SOSLAM_${library}})
+  elseif(NOT SOSLAM_${library} AND NOT library STREQUAL onnxruntime)
+    message(FATAL_ERROR "soslam needs the library ${library}; its development package is not installed")
+  endif()
+endforeach()

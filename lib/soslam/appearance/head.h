@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <map>
+#include <opencv2/core/mat.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "soslam/appearance/crop.h"
+#include "soslam/model/appearance.h"
+
+namespace soslam {
+
+// A small network on the inner layers of a detector network, trained on rendered furniture
+// (docs/appearance.md). File: kind "head", layout in schemas/hdf5-layout.md.
+class Head {
+ public:
+  // Throws InputError when the file is missing, damaged, not of kind "head" or too new.
+  explicit Head(const std::filesystem::path& path);
+
+  const std::string& NetworkSha256() const { return network_sha256_; }
+  // True if the features of the ProbeImage are those of the network that the head was trained on,
+  // but for rounding: files of the same weights by other programs differ in their bytes.
+  bool KnowsFeatures(const cv::Mat& of_probe) const;
+  const std::vector<std::string>& Layers() const { return layers_; }
+  int Side() const { return side_; }      // of the network's input, pixels
+  bool IsRgb() const { return is_rgb_; }  // red, green, blue in 0 .. 1
+  int Channels() const { return static_cast<int>(narrow_weights_.cols()); }
+
+  // Index of the group of things that a label belongs to; none: the head says nothing of it, as of
+  // groups of which it learned neither azimuths nor ratios.
+  std::optional<int> GroupOf(const std::string& label) const;
+
+  // What the features (InnerLayers::Features) of a crop and of its mirror image say.
+  BoxAppearance Appearance(const cv::Mat& features, const cv::Mat& mirrored,
+                           const BoxDirection& direction, int group) const;
+
+  // Mean features, less those of the training and scaled by their spread, of unit length.
+  Eigen::VectorXf Descriptor(const cv::Mat& features) const;
+  // Root mean square of the same before it is of unit length: about 1 for crops as those of the
+  // training, more for others.
+  float Distance(const cv::Mat& features) const;
+
+ private:
+  struct Output {
+    AzimuthCosts log_probabilities;
+    LogRatios log_ratios;  // relative to the mean of the group's models
+  };
+  Output Evaluate(const cv::Mat& features, const BoxDirection& direction, int group) const;
+  // What the head says of a picture's ratios, `relative` to the mean of the group's models, over
+  // what these alone would say: its answer is a posterior, of which they are the prior. None if it
+  // is no surer than they are, or does not tell ratios of the group.
+  std::optional<LogRatios> RatioLikelihood(const LogRatios& relative, int group) const;
+  Eigen::VectorXf ScaledMeans(const cv::Mat& features) const;
+
+  std::string network_sha256_;
+  std::vector<std::string> layers_;
+  int side_ = 0;
+  bool is_rgb_ = false;
+  std::map<std::string, int> group_of_label_;
+  struct Group {
+    float ratio_sigma_scale = 0.0F;  // of sigmas; 0: tells no ratios
+    float exponent = 0.0F;  // of likelihoods, which are less sure than they say; 0: tell nothing
+  };
+  std::vector<Group> groups_;
+  float floor_ = 0.0F;            // probability that the head is wrong altogether
+  float correlation_deg_ = 0.0F;  // see BoxAppearance
+  Eigen::MatrixXf narrow_weights_, hidden_weights_, output_weights_;
+  // Log ratios of the models that it was trained on, by group.
+  Eigen::MatrixXf ratio_mean_, ratio_sigma_;
+  Eigen::MatrixXf probe_;  // features of the ProbeImage
+  Eigen::VectorXf narrow_bias_, hidden_bias_, output_bias_, feature_mean_, feature_scale_;
+};
+
+}  // namespace soslam

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <istream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "soslam/artefact/described_json.h"
+#include "soslam/base/error.h"
+#include "soslam/model/finding.h"
+
+// Absent values are null in every artefact.
+template <typename Value>
+struct nlohmann::adl_serializer<std::optional<Value>> {
+  static void to_json(json& json, const std::optional<Value>& value) {
+    json = value ? nlohmann::json(*value) : nlohmann::json();
+  }
+  static void from_json(const json& json, std::optional<Value>& value) {
+    value = json.is_null() ? std::nullopt : std::optional(json.get<Value>());
+  }
+};
+
+// Vectors are lists of numbers, matrices lists of their rows.
+template <int kRows, int kColumns, int kOptions>
+struct nlohmann::adl_serializer<Eigen::Matrix<double, kRows, kColumns, kOptions>> {
+  static_assert(kRows > 1 && kColumns > 0, "a list of known length");
+  using Matrix = Eigen::Matrix<double, kRows, kColumns, kOptions>;
+
+  static void to_json(json& json, const Matrix& matrix) {
+    json = nlohmann::json::array();
+    for (int i = 0; i < kRows; ++i) {
+      const auto row = matrix.row(i);
+      json.push_back(kColumns == 1 ? nlohmann::json(row[0])
+                                   : nlohmann::json(std::vector<double>(row.begin(), row.end())));
+    }
+  }
+  static void from_json(const json& json, Matrix& matrix) {
+    for (int i = 0; i < kRows; ++i) {
+      for (int k = 0; k < kColumns; ++k) {
+        (kColumns == 1 ? json.at(i) : json.at(i).at(k)).get_to(matrix(i, k));
+      }
+    }
+  }
+};
+
+namespace soslam {
+
+// Provenance of an artefact.
+struct ArtefactInfo {
+  nlohmann::json settings;                         // every option of the stage, resolved
+  std::vector<std::filesystem::path> inputs = {};  // files that were read
+  std::vector<Finding> findings = {};              // findings of the stage that writes it
+  std::string stage = {};                          // its name: "planes"; empty for other programs
+};
+
+// Parses any JSON file. Throws InputError with file and line when it is missing, empty or
+// malformed, nested deeper than any artefact, or has the same key twice in an object.
+nlohmann::json ParseJsonFile(const std::filesystem::path& path);
+// ParseJsonFile for a text that is not a file of its own; `name` stands for it in error messages.
+nlohmann::json ParseJsonText(std::istream& text, const std::string& name);
+
+// The document as text, on one line or with this indent. Bytes that are not UTF-8, as names of
+// files may have, become U+FFFD.
+std::string JsonText(const nlohmann::json& document, int indent = -1);
+
+// The list "findings" of an artefact of any kind, which is absent when empty. Throws InputError.
+std::vector<Finding> FindingsOf(const nlohmann::json& artefact);
+
+// The header of an artefact, a FileHeader. JSON artefacts hold it as "artefact", HDF5 artefacts as
+// an attribute.
+nlohmann::json ArtefactHeader(const std::string& kind, const ArtefactInfo& info);
+
+// Throws InputError, naming `file`, when the header is not of this kind, or its schema version is
+// newer than this software supports.
+void CheckArtefactHeader(const nlohmann::json& header, const std::string& kind,
+                         const std::string& file);
+
+// A value as ASCII text, truncated to fit on a line.
+std::string Excerpt(const nlohmann::json& value);
+
+// What keeps the field sha256 from being a digest, in words; empty if nothing does.
+std::string DigestViolation(const std::string& sha256);
+
+// [major, minor] of all schemas. A reader refuses newer ones, and files that lack what is required.
+inline constexpr std::array<int, 2> kSchemaVersion = {1, 12};
+inline constexpr const char* kSchemaVersionField = "schema_version";
+extern const char* const kSoftware;  // name and version of this software
+
+// What an artefact of any kind begins with.
+struct FileHeader {
+  struct Input {
+    std::string file;
+    std::string sha256;
+  };
+  std::string kind;
+  std::array<int, 2> schema_version = {};
+  std::string software;
+  std::string stage;
+  nlohmann::json settings;
+  std::vector<Input> inputs;
+};
+template <typename Visitor>
+void Describe(Visitor& visit, FileHeader::Input& input) {
+  visit.Field("file", &input.file, "name without folder");
+  visit.Field("sha256", &input.sha256, "SHA-256 of its bytes, 64 hexadecimal digits");
+  visit.Check([&] { return DigestViolation(input.sha256); });
+}
+template <typename Visitor>
+void Describe(Visitor& visit, FileHeader& header) {
+  visit.Field("kind", &header.kind, "what the file is");
+  visit.Field(kSchemaVersionField, &header.schema_version, "major, minor", kNotNegative);
+  visit.Field("software", &header.software, "name and version of what wrote the file");
+  visit.OrAbsent(
+      "stage", &header.stage,
+      "name of the stage that wrote the file, such as planes; absent also in older files",
+      kNotEmpty);
+  visit.Field("settings", &header.settings, "every option of the stage that wrote it");
+  visit.Check([&] {
+    return header.settings.is_object()
+               ? std::string()
+               : "settings is " + Excerpt(header.settings) + "; expected an object with fields";
+  });
+  visit.Field("inputs", &header.inputs, "files that were read");
+}
+
+// An artefact with its body: the result of a stage, which has a description.
+template <typename Body>
+struct Artefact {
+  FileHeader header;
+  std::vector<Finding> findings;
+  Body body;
+};
+template <typename Visitor, typename Body>
+void Describe(Visitor& visit, Artefact<Body>& artefact) {
+  visit.Field("artefact", &artefact.header, "what this file is and what shaped it");
+  visit.OrAbsent("findings", &artefact.findings, "what does not fit what it should be");
+  Describe(visit, artefact.body);
+}
+
+namespace internal {
+
+// Parses a file and checks its header.
+nlohmann::json ParseArtefact(const std::filesystem::path& path, const std::string& kind);
+// Calls `read`, and adds to its InputErrors the file's name and, where that is another one, its
+// schema version.
+void ReadInFile(const std::filesystem::path& path, const nlohmann::json& document,
+                const std::function<void()>& read);
+// Throws InputError for rows of the same ids.
+void RefuseRowsTwice(const nlohmann::json& document, const std::string& kind);
+
+}  // namespace internal
+
+// What a document without a header holds. Throws InputError, naming `where` and the field.
+template <typename Value>
+Value ReadDocument(const nlohmann::json& document, const std::string& where) {
+  Value value = {};
+  internal::ReadInFile(where, document, [&] { value = DescribedFromJson<Value>(document); });
+  return value;
+}
+
+// Reads an artefact of this kind by the description of its body. Throws InputError, naming file and
+// field.
+template <typename Body>
+Artefact<Body> ReadDescribed(const std::filesystem::path& path, const std::string& kind,
+                             const Sequence* sequence = nullptr) {
+  const nlohmann::json document = internal::ParseArtefact(path, kind);
+  Artefact<Body> artefact;
+  internal::ReadInFile(path, document, [&] {
+    artefact = DescribedFromJson<Artefact<Body>>(document, sequence);
+    internal::RefuseRowsTwice(document, kind);
+  });
+  return artefact;
+}
+
+// Reads an artefact of this kind, as its kind describes it, without rows of the same ids, with its
+// header under "artefact". Throws InputError.
+nlohmann::json ReadArtefact(const std::filesystem::path& path, const std::string& kind);
+
+// The text of an artefact: {"artefact": header, "findings": if any, ...body}. `path` is for error
+// messages. Throws NumericalError, naming the place, for a number that is not finite;
+// std::logic_error when the schema does not allow it.
+std::string ArtefactText(const std::filesystem::path& path, const std::string& kind,
+                         const ArtefactInfo& info, nlohmann::json body);
+
+// Writes this text atomically; an existing file with the same bytes keeps its modification time.
+// Errors as ArtefactText; SettingsError when the file cannot be written.
+void WriteArtefact(const std::filesystem::path& path, const std::string& kind,
+                   const ArtefactInfo& info, nlohmann::json body);
+
+}  // namespace soslam

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "soslam/artefact/undistorted_points.h"
+
+#include "soslam/image/distort_pixels.h"
+
+namespace soslam {
+
+std::optional<Eigen::Vector2d> UndistortedPixel(const Sequence& sequence,
+                                                const PointObservation& observation) {
+  if (!sequence.image_distortion) return observation.pixel;
+  return UndistortPixels(sequence.camera, *sequence.image_distortion, {observation.pixel}).front();
+}
+
+std::vector<MapPoint> WithoutDistortion(const Sequence& sequence, std::vector<MapPoint> points) {
+  for (MapPoint& point : points) {
+    std::erase_if(point.observations, [&](PointObservation& observation) {
+      const auto pixel = UndistortedPixel(sequence, observation);
+      if (pixel) observation.pixel = *pixel;
+      return !pixel;
+    });
+  }
+  return points;
+}
+
+}  // namespace soslam

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "soslam/model/map_points.h"
+#include "soslam/model/sequence.h"
+
+namespace soslam {
+
+// Image point without lens distortion; none where that has no inverse.
+std::optional<Eigen::Vector2d> UndistortedPixel(const Sequence& sequence,
+                                                const PointObservation& observation);
+
+// The same points. Observations whose lens distortion has no inverse are left out.
+std::vector<MapPoint> WithoutDistortion(const Sequence& sequence, std::vector<MapPoint> points);
+
+}  // namespace soslam

@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "soslam/planes/planes_and_holding.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "soslam/base/error.h"
+#include "soslam/geometry/angles.h"
+#include "soslam/geometry/landmark.h"
+#include "soslam/planes/estimate_planes.h"
+
+namespace soslam {
+namespace {
+
+constexpr double kMaxLevelTilt = 12.0 * kRadPerDeg;
+constexpr int kMaxLevelRounds = 50;
+constexpr double kLevelTolerance = 1e-7;  // rad
+
+using Basis = Eigen::Matrix<double, 3, 2>;
+
+Basis LevelAxes(const Eigen::Vector3d& up) {
+  return UprightRotation(up, 0.0).toRotationMatrix().leftCols<2>();
+}
+
+// Chain of tilts, each with its own cost 0.5 tilt^T information tilt - tilt^T right_side, and tied
+// to the previous one by `stiffness` (1 / rad^2). Returns them; `information` becomes that of each
+// with all later ones.
+std::vector<Eigen::Vector2d> SolveChain(double stiffness, std::vector<Eigen::Vector2d> right_side,
+                                        std::vector<Eigen::Matrix2d>* information) {
+  const auto tied = [&](size_t i) -> Eigen::Matrix2d {
+    return (*information)[i] + stiffness * Eigen::Matrix2d::Identity();
+  };
+  for (size_t i = information->size() - 1; i > 0; --i) {
+    const Eigen::Matrix2d share = stiffness * tied(i).inverse();
+    (*information)[i - 1] += stiffness * (Eigen::Matrix2d::Identity() - share);
+    right_side[i - 1] += share * right_side[i];
+  }
+  std::vector<Eigen::Vector2d> tilts = {information->front().inverse() * right_side[0]};
+  for (size_t i = 1; i < right_side.size(); ++i) {
+    tilts.push_back(tied(i).inverse() * (right_side[i] + stiffness * tilts.back()));
+  }
+  return tilts;
+}
+
+constexpr double kSameAxis = 1e-9;  // one minus a cosine
+// Hypotheses whose cost after the fit of bodies is higher than this are dropped before planes are
+// estimated.
+const double kMaxHypothesisCost = std::log(1e4);
+
+struct Hypothesis {
+  HoldingEvidence evidence;
+  double expected_cost = 0.0;
+  LevelTrajectory trajectory;
+  std::optional<PlanesAndHolding> planes;
+};
+
+LevelTrajectory LevelFrames(const Sequence& sequence, const std::vector<SegmentView>& views,
+                            const PlanesOptions& options, CameraHolding holding) {
+  if (!views.empty()) return Level(views, holding, options);
+  const std::vector<Rigid3d> poses = PosesOf(sequence);
+  return {poses,
+          UpPriorFromCameras(poses, options.tilt, options.upright.ViewCorrelation(), holding)};
+}
+
+Sequence WithPoses(Sequence sequence, const std::vector<Rigid3d>& world_from_camera) {
+  for (size_t i = 0; i < sequence.frames.size(); ++i) {
+    sequence.frames[i].world_from_camera = world_from_camera[i];
+  }
+  return sequence;
+}
+
+// Adds the hypothesis of one camera holding with the costs of upright bodies of free height, unless
+// an earlier hypothesis has the same up.
+void AddHypothesis(const Sequence& sequence, const LevelTrajectory& trajectory,
+                   const HoldingEvidence& holding,
+                   const std::vector<std::optional<ShapePrior>>& priors,
+                   const PlanesOptions& options, int threads, std::vector<Hypothesis>* hypotheses) {
+  const Eigen::Vector3d& up = trajectory.up_prior.up_in_world;
+  const bool is_known = std::ranges::any_of(*hypotheses, [&](const Hypothesis& other) {
+    return IsSameUp(other.evidence.up_in_world, up);
+  });
+  if (is_known) return;
+  Hypothesis hypothesis{holding, 0.0, trajectory, std::nullopt};
+  hypothesis.evidence.up_in_world = up;
+  // Upright bodies have no up or down side: the costs of the opposite up direction are equal.
+  const auto opposite = std::ranges::find_if(*hypotheses, [&](const Hypothesis& other) {
+    return !(other.evidence.up_in_world.dot(-up) < 1.0 - kSameAxis);
+  });
+  if (opposite != hypotheses->end()) {
+    hypothesis.evidence.object_costs = opposite->evidence.object_costs;
+    hypothesis.expected_cost = opposite->expected_cost;
+  } else {
+    const BodyCosts costs = CostsOfUprightBodies(WithPoses(sequence, trajectory.world_from_camera),
+                                                 priors, trajectory.up_prior, options, threads);
+    hypothesis.evidence.object_costs = costs.of_objects;
+    hypothesis.expected_cost = costs.expected;
+  }
+  hypotheses->push_back(std::move(hypothesis));
+}
+
+HoldingChoice Choose(const std::vector<Hypothesis>& hypotheses) {
+  std::vector<HoldingEvidence> evidence;
+  for (const Hypothesis& hypothesis : hypotheses) evidence.push_back(hypothesis.evidence);
+  double expected_cost = 0.0;
+  for (const Hypothesis& hypothesis : hypotheses) {
+    expected_cost = std::max(expected_cost, hypothesis.expected_cost);
+  }
+  return ChooseHolding(evidence, expected_cost);
+}
+
+// Estimates the planes of a hypothesis. If no object's views determine the height of its base, the
+// hypothesis counts as having one plane and cannot be chosen.
+void EstimatePlanesOf(const Sequence& sequence,
+                      const std::vector<std::optional<ShapePrior>>& priors,
+                      const PlanesOptions& options, int threads, Hypothesis* hypothesis) {
+  PlanesAndHolding held;
+  held.level = WithPoses(sequence, hypothesis->trajectory.world_from_camera);
+  auto estimate = FindPlanes(held.level, priors, hypothesis->trajectory.up_prior, options, threads);
+  if (!estimate) {
+    hypothesis->evidence.other_cost = options.new_plane_cost;
+    hypothesis->evidence.can_be_chosen = false;
+    return;
+  }
+  held.estimate = std::move(*estimate);
+  HoldingEvidence& evidence = hypothesis->evidence;
+  evidence.up_in_world = held.estimate.planes.front().plane_in_world.normal;
+  for (size_t i = 0; i < evidence.object_costs.size(); ++i) {
+    // A body of free height may not be found again when it must stand on its plane.
+    const ObjectSupport& support = held.estimate.objects[i];
+    if (support.cost || support.reason != SupportReason::kOwnHeight) {
+      evidence.object_costs[i] = support.cost;
+    }
+  }
+  evidence.other_cost = static_cast<double>(held.estimate.planes.size()) * options.new_plane_cost;
+  int below = 0, seen = 0;
+  for (const Detection& detection : held.level.detections) {
+    const ObjectSupport& support = held.estimate.objects[detection.object_index];
+    if (support.reason == SupportReason::kNone) continue;
+    const Plane& plane = held.estimate.planes[support.plane_index].plane_in_world;
+    const Rigid3d& camera = held.level.FrameOf(detection).world_from_camera;
+    if (plane.SignedDistance(camera.translation) < 0.0) ++below;
+    ++seen;
+  }
+  evidence.share_from_below = seen == 0 ? 0.0 : static_cast<double>(below) / seen;
+  evidence.can_be_chosen = true;
+  hypothesis->expected_cost = held.estimate.expected_cost;
+  hypothesis->planes = std::move(held);
+}
+
+// True if the same holding with its vertical edges leads to planes and fits bodies at no higher
+// cost.
+bool IsIgnoringVerticalsUseless(const std::vector<Hypothesis>& hypotheses, size_t doubting,
+                                const std::vector<double>& costs_of_bodies) {
+  const HoldingEvidence& evidence = hypotheses[doubting].evidence;
+  if (!evidence.ignores_verticals) return false;
+  for (size_t i = 0; i < doubting; ++i) {
+    const HoldingEvidence& other = hypotheses[i].evidence;
+    if (other.holding != evidence.holding || other.ignores_verticals) continue;
+    return hypotheses[i].planes && costs_of_bodies[i] <= costs_of_bodies[doubting];
+  }
+  return false;
+}
+
+// `tried`: all hypotheses, including those dropped for the cost of their bodies, which are not in
+// `followed`; `place_in_tried`: the place of each followed one.
+PlanesAndHolding MostProbable(std::vector<TriedHolding> tried,
+                              const std::vector<size_t>& place_in_tried,
+                              const std::vector<Hypothesis>& followed) {
+  const HoldingChoice choice = Choose(followed);
+  for (size_t i = 0; i < followed.size(); ++i) {
+    TriedHolding& one = tried[place_in_tried[i]];
+    one.cost = choice.costs[i];
+    one.probability = choice.probabilities[i];
+    if (const auto& held = followed[i].planes) {
+      one.planes = static_cast<int>(held->estimate.planes.size());
+    }
+  }
+  PlanesAndHolding best = *followed[choice.best].planes;
+  best.estimate.holding = tried[place_in_tried[choice.best]].holding;
+  best.estimate.verticals = tried[place_in_tried[choice.best]].verticals;
+  best.estimate.holding_tilt_variance = choice.tilt_variance;
+  best.estimate.holdings = std::move(tried);
+  return best;
+}
+
+}  // namespace
+
+void ThrowNoPlane(const std::string& sequence) {
+  throw NothingUsableError(fmt::format(
+      "{}: no object's boxes determine the height of the plane that it stands on or hangs from; "
+      "expected an object seen from several places, or planes = given",
+      sequence));
+}
+
+LevelTrajectory Level(const std::vector<SegmentView>& views, CameraHolding holding,
+                      const PlanesOptions& options) {
+  const double correlation = options.upright.ViewCorrelation();
+  const double vertical_sigma = options.verticals.Sigma();
+  const double odometry_sigma = options.odometry_rotation_sigma_deg * kRadPerDeg;
+  const std::vector<Rigid3d> poses = PosesOf(views);
+  const UpPrior mean = WithVerticals(UpPriorFromCameras(poses, options.tilt, correlation, holding),
+                                     views, vertical_sigma, correlation, kMaxLevelTilt);
+  if (!(odometry_sigma > 0.0)) return {poses, mean};
+
+  const std::vector<double> shares = CameraWeights(poses, correlation);
+  const Basis level = LevelAxes(mean.up_in_world);
+  const double stiffness = 1.0 / (odometry_sigma * odometry_sigma);
+  std::vector<Eigen::Vector3d> ups(views.size(), mean.up_in_world);
+  Eigen::Matrix2d information_of_first;
+  for (int round = 0; round < kMaxLevelRounds; ++round) {
+    std::vector<Eigen::Matrix2d> information;
+    std::vector<Eigen::Vector2d> right_side;
+    for (size_t i = 0; i < views.size(); ++i) {
+      const Eigen::Matrix3d all =
+          shares[i] * (UpPriorFromCameras({poses[i]}, options.tilt, 0.0, holding).information +
+                       InformationOfVerticals(views[i], vertical_sigma, ups[i]));
+      information.push_back(level.transpose() * all * level);
+      right_side.push_back(-level.transpose() * all * mean.up_in_world);
+    }
+    const std::vector<Eigen::Vector2d> tilts =
+        SolveChain(stiffness, std::move(right_side), &information);
+    information_of_first = information.front();
+    double largest = 0.0;
+    for (size_t i = 0; i < ups.size(); ++i) {
+      const Eigen::Vector3d before = ups[i];
+      ups[i] = (mean.up_in_world + level * tilts[i]).normalized();
+      largest = std::max(largest, (ups[i] - before).norm());
+    }
+    if (largest < kLevelTolerance) break;
+  }
+  const Basis about_first = LevelAxes(ups.front());
+  const Eigen::Matrix2d turned = about_first.transpose() * level;
+  std::vector<Rigid3d> levelled = {poses.front()};
+  for (size_t i = 1; i < poses.size(); ++i) {
+    const Rigid3d motion = poses[i - 1].Inverse() * poses[i];
+    const Eigen::Quaterniond turn = RotationBetween(ups[i], ups.front());
+    levelled.push_back(
+        {(turn * poses[i].rotation).normalized(), levelled.back() * motion.translation});
+  }
+  return {
+      levelled,
+      {about_first * (turned * information_of_first * turned.transpose()) * about_first.transpose(),
+       ups.front()}};
+}
+
+PlanesAndHolding EstimatePlanesAndHolding(const Sequence& sequence,
+                                          const std::vector<SegmentView>& views,
+                                          const std::vector<std::optional<ShapePrior>>& priors,
+                                          const PlanesOptions& options, int threads) {
+  std::vector<Hypothesis> hypotheses;
+  for (const CameraHolding holding : kCameraHoldings) {
+    HoldingEvidence evidence;
+    evidence.holding = holding;
+    AddHypothesis(sequence, LevelFrames(sequence, views, options, holding), evidence, priors,
+                  options, threads, &hypotheses);
+    if (views.empty()) continue;
+    // Vertical edges are doubted because, when all cameras look the same way, the up direction
+    // around which they are searched is uncertain.
+    evidence.ignores_verticals = true;
+    AddHypothesis(sequence, LevelFrames(sequence, {}, options, holding), evidence, priors, options,
+                  threads, &hypotheses);
+  }
+  const HoldingChoice by_bodies = Choose(hypotheses);
+  std::vector<TriedHolding> tried;
+  std::vector<Hypothesis> followed;
+  std::vector<size_t> place_in_tried;  // of each followed one
+  for (size_t i = 0; i < hypotheses.size(); ++i) {
+    const HoldingEvidence& evidence = hypotheses[i].evidence;
+    tried.push_back({evidence.holding, !views.empty() && !evidence.ignores_verticals,
+                     by_bodies.costs[i], 0.0, std::nullopt});
+    if (by_bodies.costs[i] > kMaxHypothesisCost) continue;
+    if (IsIgnoringVerticalsUseless(hypotheses, i, by_bodies.costs)) continue;
+    EstimatePlanesOf(sequence, priors, options, threads, &hypotheses[i]);
+    // Different holdings may converge to one up.
+    const bool is_known = std::ranges::any_of(followed, [&](const Hypothesis& other) {
+      return other.planes && hypotheses[i].planes &&
+             IsSameUp(other.evidence.up_in_world, hypotheses[i].evidence.up_in_world);
+    });
+    if (is_known) continue;
+    followed.push_back(hypotheses[i]);
+    place_in_tried.push_back(i);
+  }
+  const bool has_planes = std::ranges::any_of(
+      followed, [](const Hypothesis& hypothesis) { return hypothesis.planes.has_value(); });
+  if (!has_planes) {
+    ThrowNoPlane(sequence.name);
+  }
+  return MostProbable(std::move(tried), place_in_tried, followed);
+}
+
+}  // namespace soslam

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <opencv2/core/types.hpp>
+#include <string>
+#include <vector>
+
+#include "soslam/dataset/photo_folder.h"
+#include "soslam/image/frame_choice.h"
+#include "soslam/image/frames_record.h"
+#include "soslam/model/finding.h"
+
+namespace soslam {
+
+// Frames with what they were chosen from.
+struct ChosenFrames {
+  FramesRecord record;
+  cv::Size source_size;  // of the images that were chosen from, upright
+  std::vector<std::filesystem::path> inputs;
+  std::vector<Finding> findings;  // about the video
+  PhotoOrder order;               // of photos
+};
+
+// True if the frame is not among the chosen ones.
+inline bool IsLeftOut(const SourceFrame& frame) { return frame.rejection.has_value(); }
+
+// True if the image of a chosen photo is its file, unchanged; otherwise it is a new JPEG.
+bool IsCopied(const Photo& photo, const FrameOptions& options);
+
+// Chooses among the photos of a folder. `photos` becomes all of them, one per frame of the record.
+// Throws InputError as ListPhotos and FindCommonCamera.
+ChosenFrames ChoosePhotos(const FrameOptions& options, const std::filesystem::path& folder,
+                          int threads, std::vector<Photo>* photos);
+
+// Chooses among the frames of a video that are whole and of the size that most have. Throws
+// InputError as VideoReader, and when there are none.
+ChosenFrames ChooseFromVideo(const FrameOptions& options, const std::filesystem::path& path);
+
+// The text of detections.csv: the boxes of the chosen images among those of all images in the file
+// `path`, which are of the upright ones. Prints how many boxes there are. Throws InputError as
+// ReadDetectionsCsv, when there are none, and for a file of other images.
+std::string FrameBoxesText(const std::filesystem::path& path, const ChosenFrames& chosen);
+
+}  // namespace soslam

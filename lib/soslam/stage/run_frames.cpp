@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <map>
+#include <opencv2/core/mat.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "soslam/artefact/dataset_folder.h"
+#include "soslam/artefact/json_file.h"
+#include "soslam/artefact/options_json.h"
+#include "soslam/base/error.h"
+#include "soslam/base/parallel.h"
+#include "soslam/base/paths.h"
+#include "soslam/base/text.h"
+#include "soslam/cli/command_line.h"
+#include "soslam/dataset/photo_folder.h"
+#include "soslam/dataset/text_file.h"
+#include "soslam/image/frame_choice.h"
+#include "soslam/image/read_image.h"
+#include "soslam/image/tiff_file.h"
+#include "soslam/image/video_file.h"
+#include "soslam/model/finding.h"
+#include "soslam/model/reasons.h"
+#include "soslam/stage/choose_frames.h"
+#include "soslam/stage/stages.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Number of frames that were left out, by reason.
+std::map<std::string, int> CountLeftOut(const std::vector<SourceFrame>& frames) {
+  std::map<std::string, int> counts;
+  for (const SourceFrame& frame : frames) {
+    if (frame.rejection) ++counts[NameOf(*frame.rejection)];
+  }
+  return counts;
+}
+
+constexpr int kFewestToJudge = 6;
+
+bool IsMoreThanAThird(int part, int all) { return all >= kFewestToJudge && 3 * part > all; }
+
+// The findings about the video, more than a third of the images left out for one reason, and times
+// that contradict the order of more than a third of the photos.
+std::vector<Finding> CheckFrames(const ChosenFrames& chosen, const std::vector<Photo>& photos) {
+  const FramesRecord& record = chosen.record;
+  std::vector<Finding> findings = chosen.findings;
+  const int all = static_cast<int>(record.frames.size());
+  const auto counts = CountLeftOut(record.frames);
+  for (const auto rejection : {FrameRejection::kUnreadable, FrameRejection::kOtherSize,
+                               FrameRejection::kOtherFocalLength, FrameRejection::kBlurred}) {
+    const std::string name = NameOf(rejection);
+    const Reason reason = ReasonOf(name);
+    const auto found = counts.find(name);
+    if (found == counts.end() || !IsMoreThanAThird(found->second, all)) continue;
+    const bool are_raw = rejection == FrameRejection::kUnreadable &&
+                         2 * std::ranges::count_if(photos, &Photo::is_raw) > found->second;
+    findings.push_back(
+        {"frames_" + name, Severity::kWarning,
+         fmt::format("{} of {} images are left out as {}", found->second, all, name),
+         "at most a third left out for one reason",
+         are_raw ? "RAW photos, which are not read" : reason.cause,
+         are_raw ? fmt::format("{}; nothing if these are here", kRawRemedy) : reason.remedy});
+  }
+  const PhotoOrder& order = chosen.order;
+  if (!order.is_by_time && IsMoreThanAThird(order.steps_back, order.usable)) {
+    findings.push_back(
+        {"photo_order", Severity::kWarning,
+         fmt::format("in the order of their names, {} of {} photos were taken before the photo "
+                     "that precedes them, by their EXIF times",
+                     order.steps_back, order.usable),
+         "names that count in the order in which photos were taken",
+         "numbers in names that do not count, or clocks that were set",
+         "if the times are right, rename the photos: exiftool '-FileName<DateTimeOriginal' -d "
+         "%Y%m%d_%H%M%S%%-c.%%e FOLDER"});
+  }
+  return findings;
+}
+
+// `focal_over_diagonal`, if known, becomes part of the file, where reconstructions look for it.
+void WriteJpeg(const cv::Mat& image, int max_image_px,
+               const std::optional<double>& focal_over_diagonal, const std::string& name,
+               const DatasetFolder& output) {
+  constexpr int kQuality = 95;
+  std::vector<uchar> bytes;
+  cv::imencode(".jpg", ScaledDown(image, max_image_px), bytes,
+               {cv::IMWRITE_JPEG_QUALITY, kQuality});
+  std::string jpeg(bytes.begin(), bytes.end());
+  constexpr size_t kAfterStart = 2;
+  if (focal_over_diagonal) jpeg.insert(kAfterStart, FocalLengthSegment(*focal_over_diagonal));
+  output.Write(name, jpeg);
+}
+
+void CheckEnough(const FramesRecord& record, const fs::path& images) {
+  const auto left_out = std::ranges::count_if(record.frames, IsLeftOut);
+  if (std::ssize(record.frames) - left_out >= 2) return;
+  throw NothingUsableError(fmt::format(
+      "{}: {} of {} images can be used ({}); expected at least 2 from different places: move the "
+      "camera sideways, not only turn it",
+      images.string(), std::ssize(record.frames) - left_out, record.frames.size(),
+      CountsInWords(ReasonsInWords(CountLeftOut(record.frames)))));
+}
+
+void WriteVideoFrames(const FramesRecord& record, const fs::path& path, int max_image_px,
+                      const DatasetFolder& output) {
+  VideoReader video(path);
+  for (const SourceFrame& frame : record.frames) {
+    if (!video.Next()) throw InputError(path.string() + ": cannot be decoded a second time");
+    if (IsLeftOut(frame)) continue;
+    WriteJpeg(video.Image(cv::IMREAD_COLOR), max_image_px, {}, frame.image, output);
+  }
+}
+
+std::string ReadmeText(const DatasetFolder& output) {
+  return output.Mark() +
+         "; the next run into this folder replaces it. -->\n\n"
+         "Images that were chosen from photos or a video: `rgb/`, listed in `rgb.txt` in the "
+         "order\n"
+         "in which they were taken; times are seconds for videos, and count from 0 for photos.\n"
+         "`frames.json` says where each image comes from, and what was left out, and why. Its\n"
+         "`focal_hint` is no calibration.\n";
+}
+
+}  // namespace
+
+void RunFrames(const FrameOptions& options, const StageFiles& files, int threads) {
+  const fs::path &images = files.at("images"), &folder = files.at("output");
+  DatasetFolder output(folder, "soslam-frames");
+  std::vector<Photo> photos;
+  const bool is_video = !IsFolder(images);
+  ChosenFrames chosen =
+      is_video ? ChooseFromVideo(options, images) : ChoosePhotos(options, images, threads, &photos);
+  const FramesRecord& record = chosen.record;
+  CheckEnough(record, images);
+  const std::vector<Finding> findings = CheckFrames(chosen, photos);
+  ReportFindings("frames", findings);
+  fs::create_directory(output.Temporary() / "rgb");
+  if (is_video) WriteVideoFrames(record, images, options.max_image_px, output);
+  ParallelFor("images", photos.size(), threads, [&](size_t i) {
+    if (IsLeftOut(record.frames[i])) return;
+    const Photo& photo = photos[i];
+    const std::string& name = record.frames[i].image;
+    if (IsCopied(photo, options)) {
+      output.Write(name, ReadWholeFile(photo.path, "photo"));
+    } else {
+      WriteJpeg(ReadImage(photo.path, cv::IMREAD_COLOR), options.max_image_px,
+                photo.header.focal_over_diagonal, name, output);
+    }
+  });
+  if (files.contains("detections")) {
+    output.Write("detections.csv", FrameBoxesText(files.at("detections"), chosen));
+    chosen.inputs.push_back(files.at("detections"));
+  }
+  output.Write("README.md", ReadmeText(output));
+  std::string list = "# timestamp filename\n";
+  int count = 0;
+  for (const SourceFrame& frame : record.frames) {
+    if (IsLeftOut(frame)) continue;
+    list += fmt::format("{} {}\n", frame.time_s.value_or(count), frame.image);
+    ++count;
+  }
+  output.Write("rgb.txt", list);
+  output.Write("frames.json",
+               ArtefactText(folder / "frames.json", "frames",
+                            {OptionsToJson(options), chosen.inputs, findings, "frames"},
+                            DescribedToJson(record)));
+  output.Commit();
+  const auto left_out = std::ranges::count_if(record.frames, IsLeftOut);
+  fmt::print(
+      "{}: {} of {} images chosen, {} x {} px; left out: {}{}\n", record.name,
+      std::ssize(record.frames) - left_out, record.frames.size(), record.width, record.height,
+      CountsInWords(ReasonsInWords(CountLeftOut(record.frames))),
+      chosen.order.is_by_time ? "; in the order of their EXIF times, not of their names" : "");
+}
+
+}  // namespace soslam

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "soslam/artefact/files.h"
+#include "soslam/artefact/options_json.h"
+#include "soslam/base/parallel.h"
+#include "soslam/base/text.h"
+#include "soslam/cli/command_line.h"
+#include "soslam/evaluation/statistics.h"
+#include "soslam/image/box_colours.h"
+#include "soslam/image/distort_pixels.h"
+#include "soslam/image/feature_matches.h"
+#include "soslam/model/occlusion.h"
+#include "soslam/stage/read_evidence.h"
+#include "soslam/stage/stages.h"
+
+namespace soslam {
+namespace {
+
+// A track through images of a sequence, with the pixels as they are stored.
+PointTrack AsStored(const Sequence& sequence, const std::vector<FrameImage>& images,
+                    const FeatureTrack& track) {
+  PointTrack result;
+  for (const FeatureTrack::Place& place : track.places) {
+    const Frame& frame = *images[place.image].frame;
+    const auto& distortion = sequence.image_distortion;
+    result.observations.push_back(
+        {frame.id, distortion
+                       ? DistortPixels(sequence.CameraOf(frame), *distortion, {place.pixel}).front()
+                       : place.pixel});
+  }
+  return result;
+}
+
+}  // namespace
+
+void RunMatch(const MatchOptions& options, const StageFiles& files, int threads) {
+  const std::filesystem::path& sequence_file = files.at("sequence");
+  const Sequence sequence = ReadSequence(sequence_file, PlaneNeed::kNotNeeded);
+  const std::vector<FrameImage> images = FrameImages(sequence, files.at("dataset"), sequence_file);
+  ArtefactInfo info = {
+      .settings = OptionsToJson(options), .inputs = {sequence_file}, .stage = "match"};
+  std::vector<int> segments;
+  for (const FrameImage& image : images) {
+    info.inputs.push_back(image.path);
+    segments.push_back(image.frame->segment);
+  }
+  const FrameImageReader reader(sequence);
+  std::vector<FeatureView> views(images.size());
+  ImageMatches found;
+  found.colours.resize(sequence.detections.size(), BoxColours::Zero());
+  ParallelFor("images", images.size(), threads, [&](size_t i) {
+    const Frame& frame = *images[i].frame;
+    views[i] = {sequence.CameraOf(frame), frame.world_from_camera,
+                FindFeatures(reader.Read(images[i], cv::IMREAD_GRAYSCALE), options)};
+    const cv::Mat colour = reader.Read(images[i], cv::IMREAD_COLOR);
+    for (const Detection& detection :
+         DetectionsIn(sequence, static_cast<int>(&frame - sequence.frames.data()))) {
+      found.colours[&detection - sequence.detections.data()] = ColoursIn(colour, detection.box);
+    }
+  });
+  const std::vector<std::pair<int, int>> pairs = ImagePairs(segments);
+  std::vector<std::vector<FeatureMatch>> matches(pairs.size());
+  ParallelFor("pairs", pairs.size(), threads, [&](size_t i) {
+    matches[i] = MatchFeatures(views[pairs[i].first], views[pairs[i].second], options);
+  });
+  std::vector<PointTrack>& tracks = found.tracks;
+  for (const FeatureTrack& track : JoinMatches(views, pairs, matches, options)) {
+    tracks.push_back(AsStored(sequence, images, track));
+  }
+  if (tracks.empty()) {
+    info.findings = {{"no_shared_points", Severity::kWarning,
+                      fmt::format("no two of {} share a point", Counted(images.size(), "image")),
+                      "some",
+                      "the images show little texture or have little in common, or the poses do "
+                      "not fit them",
+                      "check that poses and images have the same order and time stamps"}};
+  }
+  ReportFindings("match", info.findings);
+  WriteMatches(files.at("output"), found, info);
+  std::vector<double> lengths;
+  for (const PointTrack& track : tracks) {
+    lengths.push_back(static_cast<double>(track.observations.size()));
+  }
+  fmt::print(
+      "{}: {} points from {} pairs of {} images{}\n", sequence.name, tracks.size(), pairs.size(),
+      images.size(),
+      tracks.empty() ? "" : fmt::format(", each in {:.0f} images (median)", *MedianOf(lengths)));
+}
+
+}  // namespace soslam

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "soslam/workflow/pipeline_settings.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+
+#include "soslam/artefact/json_file.h"
+#include "soslam/artefact/options_json.h"
+#include "soslam/base/error.h"
+#include "soslam/base/paths.h"
+#include "soslam/cli/command_line.h"
+#include "soslam/report/results_tree.h"
+#include "soslam/workflow/pipeline_stages.h"
+#include "soslam/workflow/unused_settings.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+void CheckStageList(const json& stages, const std::string& file) {
+  std::set<std::string> seen;
+  if (!stages.is_array() || stages.empty()) {
+    throw SettingsError(file + ": 'stages' is " + stages.dump() + "; expected a list of stages");
+  }
+  std::vector<std::string> listed;
+  for (const PipelineStage& stage : Stages()) {
+    if (stage.asked_by == nullptr) listed.emplace_back(stage.name);
+  }
+  for (const json& stage : stages) {
+    if (!stage.is_string() || std::ranges::find(listed, stage.get<std::string>()) == listed.end()) {
+      throw SettingsError(fmt::format("{}: 'stages' has {}; expected one of {}", file, stage.dump(),
+                                      fmt::join(listed, ", ")));
+    }
+    if (!seen.insert(stage).second) {
+      throw SettingsError(fmt::format("{}: 'stages' has {} twice", file, stage.dump()));
+    }
+  }
+}
+
+bool HasSetting(const PipelineStage& stage, const std::string& name) {
+  const auto rows = stage.rows();
+  return std::ranges::find(rows, name, &OptionRow::name) != rows.end();
+}
+
+// Throws SettingsError if only other stages have a setting of this name. `stage` is that in whose
+// section it is; null for none.
+void RefuseOfOtherStages(const std::string& name, const PipelineStage* stage,
+                         const std::string& where) {
+  if (stage != nullptr && HasSetting(*stage, name)) return;
+  std::vector<std::string> stages;
+  for (const PipelineStage& other : Stages()) {
+    if (HasSetting(other, name)) stages.emplace_back(other.name);
+  }
+  if (stages.empty()) return;
+  throw SettingsError(fmt::format("{}: '{}' is a setting of {}; expected it in the section {}",
+                                  where, name, fmt::join(stages, ", "),
+                                  stages.size() == 1 ? "of this stage" : "of one of these stages"));
+}
+
+// Checks one file separately, so that a message can name it.
+void CheckLayer(const json& layer, const std::string& file) {
+  for (const auto& [key, value] : layer.items()) {
+    if (value.is_null()) continue;  // null in a merge patch removes the value of a lower layer
+    if (const PipelineStage* stage = FindStage(key)) {
+      json without_nulls = json::object();
+      if (value.is_object()) without_nulls.merge_patch(value);
+      for (const auto& setting : without_nulls.items()) {
+        RefuseOfOtherStages(setting.key(), stage, file + ": " + key);
+      }
+      stage->resolve(value.is_object() ? without_nulls : value, file + ": " + key);
+    } else if (key == "stages") {
+      CheckStageList(value, file);
+    } else if (key == "description" || key == "semantic_table" || key == "extends") {
+      if (!value.is_string()) {
+        throw SettingsError(
+            fmt::format("{}: '{}' is {}; expected a string", file, key, value.dump()));
+      }
+    } else if (key == "about") {
+      try {
+        ReadDocument<DatasetFacts>(value, file + ": about");
+      } catch (const InputError& error) {
+        throw SettingsError(error.what());
+      }
+    } else {
+      RefuseOfOtherStages(key, nullptr, file);
+      throw SettingsError(fmt::format(
+          "{}: unknown key '{}'; known are description, about, extends, stages, semantic_table and "
+          "the stages {}",
+          file, key, fmt::join(PipelineStages(), ", ")));
+    }
+  }
+}
+
+json ReadLayer(const fs::path& file) {
+  json layer = ReadSettingsFile(file);
+  CheckLayer(layer, file.string());
+  return layer;
+}
+
+// Reads a layer shared by all variants.
+json ReadBaseLayer(const fs::path& file) {
+  json layer = ReadLayer(file);
+  if (layer.contains("extends")) {
+    throw SettingsError(file.string() + ": 'extends' is for variants only");
+  }
+  return layer;
+}
+
+// Layers of the variant in `file`, preceded by those that it extends.
+std::vector<SettingsOfFile> ReadVariantLayers(fs::path file) {
+  std::vector<SettingsOfFile> layers;
+  std::set<fs::path> seen;
+  for (;;) {
+    if (!seen.insert(file).second) {
+      throw SettingsError(file.string() + ": 'extends' leads back to this file");
+    }
+    layers.push_back({file, ReadLayer(file)});
+    const json extends = layers.back().settings.value("extends", json());
+    if (extends.is_null()) break;
+    const fs::path extended =
+        (file.parent_path() / (extends.get<std::string>() + ".json")).lexically_normal();
+    if (!Exists(extended)) {
+      throw SettingsError(fmt::format("{}: 'extends' is {}, but {} does not exist", file.string(),
+                                      extends.dump(), extended.string()));
+    }
+    file = extended;
+  }
+  std::reverse(layers.begin(), layers.end());
+  return layers;
+}
+
+void CheckNeeds(const VariantSettings& settings, const std::string& file) {
+  for (const auto& [name, options] : settings.options) {
+    for (const StageInput& input : FindStage(name)->inputs) {
+      // The last of the makers; the others read what it writes.
+      const std::string& needed = input.makers.back();
+      const std::optional<std::string> asking = AskingSetting(input, options);
+      if (!asking || settings.options.contains(needed)) continue;
+      throw SettingsError(fmt::format("{}: stage '{}'{}{} needs stage '{}' in 'stages'", file, name,
+                                      asking->empty() ? "" : " with ", *asking, needed));
+    }
+  }
+}
+
+// A variant's own settings of a stage that it does not run would change nothing, without a word.
+void CheckSectionsAreUsed(const VariantSettings& settings, const json& own_layer,
+                          const std::string& file) {
+  for (const auto& [key, value] : own_layer.items()) {
+    const PipelineStage* stage = FindStage(key);
+    if (stage == nullptr || value.is_null() || settings.options.contains(key)) continue;
+    if (stage->asked_by != nullptr && value.contains(stage->asked_by)) continue;
+    throw SettingsError(
+        fmt::format("{}: has settings of stage '{}', which does not run", file, key));
+  }
+}
+
+// Resolved options of the stages that run.
+StageOptions OptionsOf(const json& merged, const std::string& file) {
+  const auto listed = merged.at("stages").get<std::set<std::string>>();
+  const auto resolve = [&](const PipelineStage& stage) {
+    return stage.resolve(merged.value(stage.name, json::object()),
+                         fmt::format("{}: {}", file, stage.name));
+  };
+  StageOptions options;
+  std::set<std::string> added;
+  for (const PipelineStage& stage : Stages()) {
+    const bool is_listed = listed.contains(stage.name);
+    if (!is_listed && stage.asked_by == nullptr) continue;
+    const json resolved = resolve(stage);
+    if (!is_listed && resolved.at(stage.asked_by) == "given") continue;
+    options[stage.name] = resolved;
+    for (const StageInput& input : stage.inputs) {
+      if (input.adds_maker && AskingSetting(input, resolved)) added.insert(input.makers.back());
+    }
+  }
+  for (const std::string& name : added) options[name] = resolve(*FindStage(name));
+  return options;
+}
+
+}  // namespace
+
+std::vector<std::string> VariantNames(const fs::path& pipelines) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(pipelines / "variants", error)) {
+    if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
+  }
+  if (names.empty()) {
+    throw SettingsError((pipelines / "variants").string() + ": no variants; expected <name>.json");
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+VariantSettings ReadVariant(const fs::path& pipelines, const std::string& dataset,
+                            const std::string& variant) {
+  const fs::path variant_file = pipelines / "variants" / (variant + ".json");
+  if (!Exists(variant_file)) {
+    throw SettingsError(fmt::format("{}: no such variant; known are {}", variant_file.string(),
+                                    fmt::join(VariantNames(pipelines), ", ")));
+  }
+  const fs::path base_file = pipelines / "base.json";
+  const fs::path dataset_file = pipelines / "datasets" / (dataset + ".json");
+  const SettingsOfFile of_dataset = {
+      dataset_file, Exists(dataset_file) ? ReadBaseLayer(dataset_file) : json::object()};
+  std::vector<SettingsOfFile> layers = {{base_file, ReadBaseLayer(base_file)}, of_dataset};
+  std::ranges::move(ReadVariantLayers(variant_file), std::back_inserter(layers));
+
+  VariantSettings settings;
+  json merged = json::object(), without_dataset = merged, dataset_alone = merged;
+  for (const SettingsOfFile& layer : layers) {
+    merged.merge_patch(layer.settings);
+    (layer.file == dataset_file ? dataset_alone : without_dataset).merge_patch(layer.settings);
+    if (layer.settings.contains("semantic_table") || settings.semantic_table_file.empty()) {
+      settings.semantic_table_file = layer.file.string();
+    }
+  }
+  const std::string file = variant_file.string();
+  CheckStageList(merged.value("stages", json()), file);
+  settings.semantic_table = merged.value("semantic_table", "priors/semantic_table.json");
+  settings.options = OptionsOf(merged, file);
+  CheckNeeds(settings, file);
+  CheckSectionsAreUsed(settings, layers.back().settings, file);
+  without_dataset["stages"] = dataset_alone["stages"] = merged.at("stages");
+  CheckUnusedSettings(layers.back(), OptionsOf(without_dataset, file), false, &settings);
+  CheckUnusedSettings(of_dataset, OptionsOf(dataset_alone, file), true, &settings);
+  return settings;
+}
+
+}  // namespace soslam
