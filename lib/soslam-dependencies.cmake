@@ -4,16 +4,16 @@ find_dependency(OpenCV COMPONENTS core imgproc imgcodecs calib3d dnn features2d 
 find_dependency(nlohmann_json 3.10.5)
 find_dependency(fmt)
 find_dependency(OpenSSL)
-find_dependency(HDF5 COMPONENTS C)
 find_dependency(LibArchive)
 find_dependency(ZLIB)
 find_dependency(yaml-cpp)
 if(NOT TARGET yaml-cpp::yaml-cpp)  # before 0.8
   add_library(yaml-cpp::yaml-cpp ALIAS yaml-cpp)
 endif()
-# FFmpeg's, those of ONNX files, and a second backend of detector networks, where its package is there
+# HDF5, FFmpeg's, those of ONNX files, and a second backend of detector networks, where its package is there
 # (libonnxruntime-dev of Debian 13).
-foreach(library avformat avcodec swscale avutil onnx_proto protobuf onnxruntime)
+find_library(SOSLAM_hdf5 NAMES hdf5_serial hdf5)
+foreach(library hdf5 avformat avcodec swscale avutil onnx_proto protobuf onnxruntime)
   find_library(SOSLAM_${library} ${library})
   if(SOSLAM_${library} AND NOT TARGET soslam_needs::${library})
     add_library(soslam_needs::${library} UNKNOWN IMPORTED)

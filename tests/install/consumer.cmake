@@ -1,6 +1,8 @@
-# Installs the build in BINARY_DIR, then configures, builds and runs the project in consumer/ with
-# nothing but what was installed. cmake -DBINARY_DIR=... -DGENERATOR=... -P consumer.cmake
+# Installs the build in BINARY_DIR, then configures, builds and runs the programs of consumers with nothing but what was
+# installed. cmake -DBINARY_DIR=... -DGENERATOR=... -P consumer.cmake
 set(folder ${BINARY_DIR}/tests/install)
+set(prefix ${folder}/prefix)
+get_filename_component(source ${CMAKE_CURRENT_LIST_DIR}/../.. ABSOLUTE)
 file(REMOVE_RECURSE ${folder})
 
 function(run)
@@ -8,11 +10,62 @@ function(run)
   if(NOT result EQUAL 0)
     message(FATAL_ERROR "${ARGN}\nended with ${result}:\n${output}")
   endif()
+  set(output "${output}" PARENT_SCOPE)
 endfunction()
 
-run(${CMAKE_COMMAND} --install ${BINARY_DIR} --prefix ${folder}/prefix)
-run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${folder}/build -G ${GENERATOR}
-    -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH=${folder}/prefix)
-run(${CMAKE_COMMAND} --build ${folder}/build)
-run(${folder}/build/consumer ${folder}/prefix/share/soslam/pipelines/priors/semantic_table.json)
-run(${folder}/prefix/bin/soslam-optimise --version)
+# Builds one of them, with more arguments for its configuration.
+function(build consumer)
+  run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/${consumer} -B ${folder}/${consumer} -G ${GENERATOR}
+      -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH=${prefix} ${ARGN})
+  run(${CMAKE_COMMAND} --build ${folder}/${consumer})
+endfunction()
+
+run(${CMAKE_COMMAND} --install ${BINARY_DIR} --prefix ${prefix})
+
+# Nothing that was installed for CMake names a place on this machine.
+file(GLOB package_files ${prefix}/lib/*/cmake/soslam/*.cmake ${prefix}/lib/cmake/soslam/*.cmake)
+foreach(file ${package_files})
+  file(STRINGS ${file} paths REGEX "[;\"]/(usr|home|root|tmp|work|opt)/|${source}")
+  if(paths)
+    message(FATAL_ERROR "${file} has paths of this machine: ${paths}")
+  endif()
+endforeach()
+
+# The core needs Eigen and Ceres alone: no other package is found, and no other header of the system is read.
+set(others OpenCV fmt nlohmann_json HDF5 LibArchive ZLIB yaml-cpp OpenSSL)
+list(TRANSFORM others PREPEND -DCMAKE_DISABLE_FIND_PACKAGE_)
+list(TRANSFORM others APPEND =ON)
+build(core_consumer ${others} -DCMAKE_CXX_FLAGS=-MD)
+file(GLOB_RECURSE read_files ${folder}/core_consumer/*.d)
+foreach(file ${read_files})
+  file(STRINGS ${file} headers REGEX "opencv2|/fmt/|nlohmann|hdf5|openssl")
+  if(headers)
+    message(FATAL_ERROR "soslam::core includes ${headers}")
+  endif()
+endforeach()
+run(${folder}/core_consumer/make_map)
+
+# docs/library.md shows this program, and what it prints.
+file(READ ${source}/docs/library.md library)
+file(READ ${CMAKE_CURRENT_LIST_DIR}/core_consumer/make_map.cpp program)
+string(REGEX REPLACE "^// SPDX[^\n]+" "" program "${program}")  # the licence
+string(REGEX REPLACE "\n([^\n])" "\n    \\1" program "${program}")
+string(FIND "${library}" "${program}" at)
+if(at EQUAL -1)
+  message(FATAL_ERROR "docs/library.md does not show tests/install/core_consumer/make_map.cpp as it is")
+endif()
+string(STRIP "${output}" output)
+string(FIND "${library}" "${output}" at)
+if(at EQUAL -1)
+  message(FATAL_ERROR "docs/library.md does not have what the program prints: ${output}")
+endif()
+
+# A map of installed programs, read and evaluated by a program of somebody else.
+build(consumer)
+set(table ${prefix}/share/soslam/pipelines/priors/semantic_table.json)
+run(${prefix}/bin/soslam-import --dataset ${source}/data/room_a --output ${folder}/sequence.json)
+run(${prefix}/bin/soslam-initialise --sequence ${folder}/sequence.json --table ${table}
+    --output ${folder}/initial.json)
+run(${prefix}/bin/soslam-optimise --landmarks ${folder}/initial.json --sequence ${folder}/sequence.json
+    --table ${table} --output ${folder}/map.json)
+run(${folder}/consumer/evaluate_map ${folder}/sequence.json ${folder}/map.json)

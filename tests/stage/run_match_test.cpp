@@ -5,6 +5,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "soslam/artefact/files.h"
+#include "soslam/artefact/undistorted_points.h"
 #include "soslam/base/error.h"
 #include "soslam/geometry/distortion.h"
 #include "soslam/image/box_colours.h"

@@ -38,8 +38,9 @@ int main() {
         OutlineBox(sequence.camera, Transform(frame.world_from_camera.Inverse(), crate)).value();
   }
 
-  ShapePrior prior;  // of crates: about as deep and wide as high, to a factor of 1.6
-  prior.log_sigma.setConstant(0.5);
+  ShapePrior prior;  // of crates: depth and width relative to the height, to a third
+  prior.ratio = {0.7, 1.0};
+  prior.log_sigma.setConstant(0.3);
   prior.shape_exponents = kCuboidExponent;
   OptimiseOptions options;
   options.detection_model = DetectionModel::kTangency;  // bodies of any shape
