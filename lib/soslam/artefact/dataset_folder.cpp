@@ -33,44 +33,25 @@ fs::path Sibling(const fs::path& folder, const std::string& purpose) {
          fmt::format(".{}.{}-{}", folder.filename().string(), purpose, getpid());
 }
 
-// Atomic, so that there is a folder of that name at any moment. Not all file systems support it.
-bool Exchange(const fs::path& one, const fs::path& other) {
-  return ::renameat2(AT_FDCWD, one.c_str(), AT_FDCWD, other.c_str(), RENAME_EXCHANGE) == 0;
-}
-
-// In the format of sha256sum.
+// Digests of files, in the format of sha256sum.
 constexpr const char* kSums = "SHA256SUMS";
 
-// Files that a folder has besides those that kSums lists: itself, and the record of the last run.
-bool IsRecord(const fs::path& name) {
-  return name == kSums || name == "run.json" || name == "timing.json";
-}
-
-// The files of a folder and of those in it, except records, relative to it. Links count as files.
+// Paths, relative to the folder, of all files in it and in its folders that kSums lists: all but
+// itself and the record of the last run. Links count as files.
 std::vector<fs::path> FilesIn(const fs::path& folder) {
   std::vector<fs::path> names;
   try {
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
       fs::path name = entry.path().lexically_relative(folder);
       const bool is_folder = fs::is_directory(entry.symlink_status());
-      if (!is_folder && !IsRecord(name)) names.push_back(std::move(name));
+      const bool is_record = name == kSums || name == "run.json" || name == "timing.json";
+      if (!is_folder && !is_record) names.push_back(std::move(name));
     }
   } catch (const fs::filesystem_error& error) {
     Refuse(folder, "cannot be listed: " + error.code().message());
   }
   std::ranges::sort(names);
   return names;
-}
-
-// Digests by the name of the file.
-std::map<fs::path, std::string> ReadSums(const fs::path& folder) {
-  constexpr size_t kDigest = 64, kName = kDigest + 2;
-  std::map<fs::path, std::string> sums;
-  std::ifstream stream(folder / kSums);
-  for (std::string line; std::getline(stream, line);) {
-    if (line.size() > kName) sums[line.substr(kName)] = line.substr(0, kDigest);
-  }
-  return sums;
 }
 
 }  // namespace
@@ -104,7 +85,12 @@ void DatasetFolder::CheckReplaceable() const {
                                 "expected a new folder",
                                 writer_));
   }
-  const auto sums = ReadSums(folder_);
+  constexpr size_t kDigest = 64, kName = kDigest + 2;
+  std::map<fs::path, std::string> sums;  // digests by the name of the file
+  std::ifstream listing(folder_ / kSums);
+  for (std::string line; std::getline(listing, line);) {
+    if (line.size() > kName) sums[line.substr(kName)] = line.substr(0, kDigest);
+  }
   for (const fs::path& file : files) {
     const auto sum = sums.find(file);
     const bool is_own = sum != sums.end() && IsFile(folder_ / file);
@@ -138,7 +124,11 @@ void DatasetFolder::Commit() {
   if (const int error = SyncWith(::syncfs, temporary_)) {
     Refuse(folder_, fmt::format("cannot be written: {}", std::strerror(error)));
   }
-  if (!Exists(folder_) || !Exchange(temporary_, folder_)) Replace();
+  // The exchange is atomic, so that there is a folder of that name at any moment. Not all file
+  // systems support it.
+  const bool is_exchanged = Exists(folder_) && ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD,
+                                                           folder_.c_str(), RENAME_EXCHANGE) == 0;
+  if (!is_exchanged) Replace();
   for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
     if (entry.is_regular_file()) RecordOutput(entry.path());
   }

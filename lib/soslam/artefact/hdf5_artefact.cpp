@@ -18,7 +18,7 @@ namespace soslam {
 namespace {
 
 // The header as JSON; null where there is none.
-nlohmann::json HeaderOf(const Hdf5File& file) {
+nlohmann::json ReadHdf5Header(const Hdf5File& file) {
   if (!file.HasAttribute("/", kHeaderAttribute)) return {};
   std::istringstream text(file.ReadText("/", kHeaderAttribute));
   return ParseJsonText(text,
@@ -36,7 +36,7 @@ Hdf5File CreateArtefact(const std::filesystem::path& path, const std::string& ki
 
 Hdf5File OpenArtefact(const std::filesystem::path& path, const std::string& kind) {
   Hdf5File file = Hdf5File::Open(path);
-  CheckArtefactHeader(HeaderOf(file), kind, path.string());
+  CheckArtefactHeader(ReadHdf5Header(file), kind, path.string());
   return file;
 }
 
@@ -50,7 +50,7 @@ bool IsHdf5(const std::filesystem::path& path) {
 nlohmann::json ReadArtefactHeader(const std::filesystem::path& path) {
   nlohmann::json header;
   if (IsHdf5(path)) {
-    header = HeaderOf(Hdf5File::Open(path));
+    header = ReadHdf5Header(Hdf5File::Open(path));
   } else {
     const nlohmann::json document = ParseJsonFile(path);
     if (document.is_object()) header = document.value("artefact", nlohmann::json());
@@ -69,21 +69,6 @@ constexpr const char* kEdgesKind = "edges";
 constexpr const char* kFrames = "/frames";
 
 std::string FrameGroup(int frame_id) { return fmt::format("{}/{:06d}", kFrames, frame_id); }
-
-// Checks that all values are pixels of the maps, as they are used as indices.
-void CheckNearestEdges(const cv::Mat& nearest_edge, const std::string& where) {
-  const cv::Rect image(0, 0, nearest_edge.cols, nearest_edge.rows);
-  for (int y = 0; y < nearest_edge.rows; ++y) {
-    for (int x = 0; x < nearest_edge.cols; ++x) {
-      const auto& edge = nearest_edge.at<cv::Vec2s>(y, x);
-      const cv::Point pixel(edge[0], edge[1]);
-      if (image.contains(pixel) || pixel == cv::Point(-1, -1)) continue;
-      throw InputError(
-          fmt::format("{}: found ({}, {}) at ({}, {}); expected a pixel of the image or (-1, -1)",
-                      where, pixel.x, pixel.y, x, y));
-    }
-  }
-}
 
 }  // namespace
 
@@ -130,7 +115,19 @@ EdgeMaps EdgesReader::Read(int frame_id) const {
   maps.edges = read("/edges", CV_8UC1);
   maps.distance = read("/distance", CV_32FC1);
   maps.nearest_edge = read("/nearest_edge", CV_16SC2);
-  CheckNearestEdges(maps.nearest_edge, file_.path().string() + ": " + group + "/nearest_edge");
+  // These values are used as indices.
+  const cv::Rect image(0, 0, maps.nearest_edge.cols, maps.nearest_edge.rows);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const auto& edge = maps.nearest_edge.at<cv::Vec2s>(y, x);
+      const cv::Point pixel(edge[0], edge[1]);
+      if (image.contains(pixel) || pixel == cv::Point(-1, -1)) continue;
+      throw InputError(
+          fmt::format("{}: {}/nearest_edge: found ({}, {}) at ({}, {}); expected a pixel of the "
+                      "image or (-1, -1)",
+                      file_.path().string(), group, pixel.x, pixel.y, x, y));
+    }
+  }
   maps.corners = file_.ReadRows<Eigen::Vector2f>(group + "/corners");
   return maps;
 }
@@ -140,65 +137,30 @@ namespace {
 constexpr const char* kSymmetryKind = "symmetry";
 constexpr const char* kObservations = "/observations";
 
-void WriteRecord(const SymmetryRecord& record, Hdf5File* file) {
-  const std::string group =
-      fmt::format("{}/{:06d}_{:06d}", kObservations, record.frame_id, record.object_id);
-  file->WriteVector(group + "/yaw", record.yaw);
-  file->WriteGroup(group + "/cost");
-  for (const auto& [descriptor, cost] : record.cost) {
-    file->WriteVector(group + "/cost/" + descriptor, cost);
-  }
-  file->WriteRows(group + "/samples", record.samples);
-  file->WriteRows(group + "/mirrored", record.mirrored);
-  file->WriteNumber(group, "frame_id", record.frame_id);
-  file->WriteNumber(group, "object_id", record.object_id);
-  file->WriteNumber(group, "initial_yaw", record.initial_yaw);
-  file->WriteNumber(group, "refined_yaw", record.refined_yaw);
-  if (record.yaw_sigma) file->WriteNumber(group, "yaw_sigma", *record.yaw_sigma);
-  if (record.mirror_planes) file->WriteNumber(group, "mirror_planes", *record.mirror_planes);
-  if (record.true_yaw) file->WriteNumber(group, "true_yaw", *record.true_yaw);
-}
-
-int ReadMirrorPlanes(const Hdf5File& file, const std::string& group) {
-  const double value = file.ReadNumber(group, "mirror_planes");
-  for (const int planes : {0, 1, 2}) {
-    if (value == planes) return planes;
-  }
-  throw InputError(fmt::format("{}: {}/mirror_planes: found {}; expected 0, 1 or 2",
-                               file.path().string(), group, value));
-}
-
-SymmetryRecord ReadRecord(const Hdf5File& file, const std::string& group) {
-  SymmetryRecord record;
-  record.frame_id = static_cast<int>(std::lround(file.ReadNumber(group, "frame_id")));
-  record.object_id = static_cast<int>(std::lround(file.ReadNumber(group, "object_id")));
-  record.yaw = file.ReadVector<double>(group + "/yaw");
-  const int yaws = static_cast<int>(record.yaw.size());
-  for (const std::string& descriptor : file.Children(group + "/cost")) {
-    record.cost[descriptor] = file.ReadVector<double>(group + "/cost/" + descriptor, yaws);
-  }
-  record.samples = file.ReadRows<Eigen::Vector2f>(group + "/samples");
-  record.mirrored =
-      file.ReadRows<Eigen::Vector2f>(group + "/mirrored", static_cast<int>(record.samples.size()));
-  record.initial_yaw = file.ReadNumber(group, "initial_yaw");
-  record.refined_yaw = file.ReadNumber(group, "refined_yaw");
-  if (file.HasAttribute(group, "yaw_sigma")) {
-    record.yaw_sigma = file.ReadNumber(group, "yaw_sigma");
-  }
-  if (file.HasAttribute(group, "mirror_planes")) {
-    record.mirror_planes = ReadMirrorPlanes(file, group);
-  }
-  if (file.HasAttribute(group, "true_yaw")) record.true_yaw = file.ReadNumber(group, "true_yaw");
-  return record;
-}
-
 }  // namespace
 
 void WriteSymmetry(const std::filesystem::path& path, const std::vector<SymmetryRecord>& records,
                    const ArtefactInfo& info) {
   Hdf5File file = CreateArtefact(path, kSymmetryKind, info);
   file.WriteGroup(kObservations);
-  for (const SymmetryRecord& record : records) WriteRecord(record, &file);
+  for (const SymmetryRecord& record : records) {
+    const std::string group =
+        fmt::format("{}/{:06d}_{:06d}", kObservations, record.frame_id, record.object_id);
+    file.WriteVector(group + "/yaw", record.yaw);
+    file.WriteGroup(group + "/cost");
+    for (const auto& [descriptor, cost] : record.cost) {
+      file.WriteVector(group + "/cost/" + descriptor, cost);
+    }
+    file.WriteRows(group + "/samples", record.samples);
+    file.WriteRows(group + "/mirrored", record.mirrored);
+    file.WriteNumber(group, "frame_id", record.frame_id);
+    file.WriteNumber(group, "object_id", record.object_id);
+    file.WriteNumber(group, "initial_yaw", record.initial_yaw);
+    file.WriteNumber(group, "refined_yaw", record.refined_yaw);
+    if (record.yaw_sigma) file.WriteNumber(group, "yaw_sigma", *record.yaw_sigma);
+    if (record.mirror_planes) file.WriteNumber(group, "mirror_planes", *record.mirror_planes);
+    if (record.true_yaw) file.WriteNumber(group, "true_yaw", *record.true_yaw);
+  }
   file.Close();
 }
 
@@ -206,7 +168,32 @@ std::vector<SymmetryRecord> ReadSymmetry(const std::filesystem::path& path) {
   const Hdf5File file = OpenArtefact(path, kSymmetryKind);
   std::vector<SymmetryRecord> records;
   for (const std::string& name : file.Children(kObservations)) {
-    records.push_back(ReadRecord(file, fmt::format("{}/{}", kObservations, name)));
+    const std::string group = fmt::format("{}/{}", kObservations, name);
+    SymmetryRecord& record = records.emplace_back();
+    record.frame_id = static_cast<int>(std::lround(file.ReadNumber(group, "frame_id")));
+    record.object_id = static_cast<int>(std::lround(file.ReadNumber(group, "object_id")));
+    record.yaw = file.ReadVector<double>(group + "/yaw");
+    const int yaws = static_cast<int>(record.yaw.size());
+    for (const std::string& descriptor : file.Children(group + "/cost")) {
+      record.cost[descriptor] = file.ReadVector<double>(group + "/cost/" + descriptor, yaws);
+    }
+    record.samples = file.ReadRows<Eigen::Vector2f>(group + "/samples");
+    record.mirrored = file.ReadRows<Eigen::Vector2f>(group + "/mirrored",
+                                                     static_cast<int>(record.samples.size()));
+    record.initial_yaw = file.ReadNumber(group, "initial_yaw");
+    record.refined_yaw = file.ReadNumber(group, "refined_yaw");
+    if (file.HasAttribute(group, "yaw_sigma")) {
+      record.yaw_sigma = file.ReadNumber(group, "yaw_sigma");
+    }
+    if (file.HasAttribute(group, "mirror_planes")) {
+      const double planes = file.ReadNumber(group, "mirror_planes");
+      if (planes != 0.0 && planes != 1.0 && planes != 2.0) {
+        throw InputError(fmt::format("{}: {}/mirror_planes: found {}; expected 0, 1 or 2",
+                                     file.path().string(), group, planes));
+      }
+      record.mirror_planes = static_cast<int>(planes);
+    }
+    if (file.HasAttribute(group, "true_yaw")) record.true_yaw = file.ReadNumber(group, "true_yaw");
   }
   const auto key = [](const SymmetryRecord& r) { return std::pair(r.frame_id, r.object_id); };
   std::ranges::sort(records, [&](const auto& a, const auto& b) { return key(a) < key(b); });

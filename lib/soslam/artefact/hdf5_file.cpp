@@ -57,15 +57,8 @@ herr_t AppendName(hid_t /*owner*/, const char* name, const Info* /*info*/, void*
   return 0;
 }
 
-size_t CountOf(const ArrayShape& shape) {
+size_t CountValues(const ArrayShape& shape) {
   return std::accumulate(shape.begin(), shape.end(), size_t{1}, std::multiplies<>());
-}
-
-bool Matches(const ArrayShape& shape, const std::vector<int>& expected) {
-  return std::equal(shape.begin(), shape.end(), expected.begin(), expected.end(),
-                    [](std::uint64_t size, int wanted) {
-                      return wanted == Hdf5File::kAny || size == static_cast<std::uint64_t>(wanted);
-                    });
 }
 
 // Lock on the library for one thread. A thread-safe build of the library has an error stack per
@@ -268,7 +261,12 @@ ArrayShape Hdf5File::CheckedShape(const std::string& name, const Hdf5Handle& dat
   const Hdf5Handle type{H5Dget_type(data_set.id()), &H5Tclose};
   ArrayShape shape = ShapeOf(name, data_set);
   const bool same_type = H5Tequal(type.id(), element.type) > 0;
-  if (!same_type || !Matches(shape, expected)) {
+  const bool same_shape =
+      std::equal(shape.begin(), shape.end(), expected.begin(), expected.end(),
+                 [](std::uint64_t size, int wanted) {
+                   return wanted == kAny || size == static_cast<std::uint64_t>(wanted);
+                 });
+  if (!same_type || !same_shape) {
     FailReading(name, fmt::format("is {} of {}; expected {}", fmt::join(shape, " x "),
                                   same_type ? element.name : "another type",
                                   Describe(expected, element.name)));
@@ -290,7 +288,7 @@ void Hdf5File::ReadArray(const std::string& name, int depth, const std::vector<i
     shape = CheckedShape(name, data_set, depth, expected);
     chunk = ReadChunk(data_set, shape, Size());
   }
-  const size_t bytes = CountOf(shape) * element_size;
+  const size_t bytes = CountValues(shape) * element_size;
   if (bytes > 0 && !chunk) {
     FailReading(name,
                 "is not stored in this file as one chunk, shuffled and deflated; the file is of "
@@ -318,7 +316,7 @@ Hdf5File::Numbers Hdf5File::ReadNumbers(const std::string& name) const {
     cv::Mat stored;
     ReadArray(name, depth, {numbers.shape.begin(), numbers.shape.end()},
               [&](const ArrayShape& shape) {
-                stored.create(1, static_cast<int>(CountOf(shape)), depth);
+                stored.create(1, static_cast<int>(CountValues(shape)), depth);
                 return stored.data;
               });
     stored.convertTo(numbers.values, CV_64F);

@@ -77,23 +77,21 @@ H5Z_filter_t Filter(const Hdf5Handle& creation, unsigned int index) {
   return H5Pget_filter2(creation.id(), index, &flags, &parameters, nullptr, 0, nullptr, nullptr);
 }
 
-// True for the properties of Hdf5DataSetCreation.
-bool IsOneChunk(const Hdf5Handle& data_set, const ArrayShape& shape) {
-  const Hdf5Handle creation{H5Dget_create_plist(data_set.id()), &H5Pclose};
-  if (H5Pget_layout(creation.id()) != H5D_CHUNKED || H5Pget_nfilters(creation.id()) != 2) {
-    return false;
-  }
-  std::vector<hsize_t> chunk(shape.size());
-  H5Pget_chunk(creation.id(), static_cast<int>(chunk.size()), chunk.data());
-  return std::ranges::equal(chunk, shape) && Filter(creation, 0) == H5Z_FILTER_SHUFFLE &&
-         Filter(creation, 1) == H5Z_FILTER_DEFLATE;
-}
-
 }  // namespace
 
 std::optional<std::string> ReadChunk(const Hdf5Handle& data_set, const ArrayShape& shape,
                                      std::uint64_t max_bytes) {
-  if (!IsOneChunk(data_set, shape)) return std::nullopt;
+  // Only what has the properties of Hdf5DataSetCreation is read.
+  const Hdf5Handle creation{H5Dget_create_plist(data_set.id()), &H5Pclose};
+  if (H5Pget_layout(creation.id()) != H5D_CHUNKED || H5Pget_nfilters(creation.id()) != 2) {
+    return std::nullopt;
+  }
+  std::vector<hsize_t> chunk(shape.size());
+  H5Pget_chunk(creation.id(), static_cast<int>(chunk.size()), chunk.data());
+  if (!std::ranges::equal(chunk, shape) || Filter(creation, 0) != H5Z_FILTER_SHUFFLE ||
+      Filter(creation, 1) != H5Z_FILTER_DEFLATE) {
+    return std::nullopt;
+  }
   const std::vector<hsize_t> begin(shape.size());
   hsize_t size = 0;
   if (H5Dget_chunk_storage_size(data_set.id(), begin.data(), &size) < 0 || size > max_bytes) {

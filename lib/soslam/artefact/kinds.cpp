@@ -18,7 +18,7 @@ namespace soslam {
 namespace {
 
 template <typename Body>
-ArtefactKind KindOf(const char* name, const char* title) {
+ArtefactKind MakeKind(const char* name, const char* title) {
   return {name, title, [] { return SchemaWriter::Of<Artefact<Body>>(); },
           [](const nlohmann::json& document) { DescribedFromJson<Artefact<Body>>(document); }};
 }
@@ -34,19 +34,19 @@ nlohmann::ordered_json SemanticTableSchema() {
 
 const std::vector<ArtefactKind>& ArtefactKinds() {
   static const std::vector<ArtefactKind> kinds = {
-      KindOf<Associations>("associations", "which detections are of the same object, and why"),
-      KindOf<FramesRecord>("frames", "images chosen from photos or a video"),
-      KindOf<LandmarkEstimates>("landmarks", "estimated landmarks"),
-      KindOf<MapEstimate>("map", "landmarks and trajectory of the back end"),
-      KindOf<Metrics>("metrics", "errors against ground truth"),
-      KindOf<PlanesReport>("planes", "estimated support planes"),
-      KindOf<ReconstructionSummary>("reconstruction",
-                                    "poses, camera and points by structure from motion"),
+      MakeKind<Associations>("associations", "which detections are of the same object, and why"),
+      MakeKind<FramesRecord>("frames", "images chosen from photos or a video"),
+      MakeKind<LandmarkEstimates>("landmarks", "estimated landmarks"),
+      MakeKind<MapEstimate>("map", "landmarks and trajectory of the back end"),
+      MakeKind<Metrics>("metrics", "errors against ground truth"),
+      MakeKind<PlanesReport>("planes", "estimated support planes"),
+      MakeKind<ReconstructionSummary>("reconstruction",
+                                      "poses, camera and points by structure from motion"),
       {"semantic_table", "sizes and shapes by label", &SemanticTableSchema,
        [](const nlohmann::json& document) { DescribedFromJson<Artefact<SemanticRows>>(document); }},
-      KindOf<Sequence>("sequence", "a dataset, checked and gated"),
-      KindOf<ImageTurns>("turns", "what a detector finds in turned images"),
-      KindOf<WorldReport>("world", "up, scale and support planes of a world that had neither")};
+      MakeKind<Sequence>("sequence", "a dataset, checked and gated"),
+      MakeKind<ImageTurns>("turns", "what a detector finds in turned images"),
+      MakeKind<WorldReport>("world", "up, scale and support planes of a world that had neither")};
   return kinds;
 }
 

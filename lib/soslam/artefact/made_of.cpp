@@ -51,29 +51,23 @@ std::string Differences(const fs::path& before, const fs::path& now) {
   return files.empty() ? "was made anew" : "was made of another " + NamesInWords(files);
 }
 
-// The message of the refusal.
-std::string WasNotMadeOf(const fs::path& artefact, const FileHeader& header,
-                         const fs::path& input) {
-  const std::string name = input.filename().string();
-  const std::set<std::string> expected = HashesOfInputs(header, name);
-  const fs::path beside = artefact.parent_path() / name;
-  const bool is_beside = Exists(beside) && expected.contains(DigestOfInput(beside));
-  return fmt::format(
-      "{}: was not made of {} (SHA-256 {}{}), which {}; expected {}", artefact.string(),
-      input.string(), Shortened(DigestOfInput(input)),
-      expected.empty() ? "" : fmt::format(", expected {}", Shortened(*expected.begin())),
-      is_beside ? Differences(beside, input) : "is of another dataset, or was made anew since",
-      is_beside ? beside.string() + ", or the later stages run again"
-                : "the file that it was made of, or the later stages run again");
-}
-
 }  // namespace
 
 void CheckWasMadeOf(const fs::path& artefact, const std::string& kind, const fs::path& input) {
   CheckArtefactHeader(ReadArtefactHeader(artefact), kind, artefact.string());
   const FileHeader header = ReadHeader(artefact);
   if (HashesOfInputs(header).contains(DigestOfInput(input))) return;
-  throw InputError(WasNotMadeOf(artefact, header, input));
+  const std::string name = input.filename().string();
+  const std::set<std::string> expected = HashesOfInputs(header, name);
+  const fs::path beside = artefact.parent_path() / name;
+  const bool is_beside = Exists(beside) && expected.contains(DigestOfInput(beside));
+  throw InputError(fmt::format(
+      "{}: was not made of {} (SHA-256 {}{}), which {}; expected {}", artefact.string(),
+      input.string(), Shortened(DigestOfInput(input)),
+      expected.empty() ? "" : fmt::format(", expected {}", Shortened(*expected.begin())),
+      is_beside ? Differences(beside, input) : "is of another dataset, or was made anew since",
+      is_beside ? beside.string() + ", or the later stages run again"
+                : "the file that it was made of, or the later stages run again"));
 }
 
 }  // namespace soslam

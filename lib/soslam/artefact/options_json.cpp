@@ -103,7 +103,7 @@ struct UnitSuffix {
 constexpr UnitSuffix kUnitSuffixes[] = {{"_px", "px"}, {"_deg", "deg"},    {"_m", "m"},
                                         {"_s", "s"},   {"_deg2", "deg^2"}, {"_dm4", "dm^4"}};
 
-std::string UnitOf(const std::string& name) {
+std::string FindUnit(const std::string& name) {
   for (const auto& [suffix, unit] : kUnitSuffixes) {
     if (name.ends_with(suffix)) return unit;
   }
@@ -143,7 +143,7 @@ class Lister : public OptionVisitor {
  private:
   OptionRow& Add(const char* name, const char* type, const nlohmann::json& value, const char* doc) {
     return rows.emplace_back(
-        OptionRow{name, type, value, {}, {}, UnitOf(name), group_, doc, only_where_});
+        OptionRow{name, type, value, {}, {}, FindUnit(name), group_, doc, only_where_});
   }
 
   std::string group_;

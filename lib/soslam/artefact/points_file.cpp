@@ -40,21 +40,6 @@ void CheckFinite(const Hdf5File& file, const char* name, const std::vector<Vecto
   }
 }
 
-// Throws InputError unless the indices ascend from 0 to the number of observations.
-void CheckBegins(const Hdf5File& file, const std::vector<int>& begins, size_t observations) {
-  if (begins.empty() || begins.front() != 0) {
-    Refuse(file, kBegin, 0, begins.empty() ? "none" : std::to_string(begins.front()), "0");
-  }
-  for (size_t i = 1; i < begins.size(); ++i) {
-    if (begins[i] >= begins[i - 1]) continue;
-    Refuse(file, kBegin, i, std::to_string(begins[i]), "at least the index above it");
-  }
-  if (static_cast<size_t>(begins.back()) != observations) {
-    Refuse(file, kBegin, begins.size() - 1, std::to_string(begins.back()),
-           "the number of rows of observation_frame");
-  }
-}
-
 void CheckNotNegative(const Hdf5File& file, const char* name, const auto& values) {
   for (size_t i = 0; i < values.size(); ++i) {
     if (values[i] >= 0 && values[i] <= std::numeric_limits<int>::max()) continue;
@@ -87,7 +72,17 @@ std::vector<std::vector<PointObservation>> ReadObservations(const Hdf5File& file
   const auto pixels = file.ReadRows<Eigen::Vector2d>(kPixel, static_cast<int>(frames.size()));
   CheckFinite(file, kPixel, pixels);
   CheckNotNegative(file, kFrame, frames);
-  CheckBegins(file, begins, frames.size());
+  if (begins.empty() || begins.front() != 0) {
+    Refuse(file, kBegin, 0, begins.empty() ? "none" : std::to_string(begins.front()), "0");
+  }
+  for (size_t i = 1; i < begins.size(); ++i) {
+    if (begins[i] >= begins[i - 1]) continue;
+    Refuse(file, kBegin, i, std::to_string(begins[i]), "at least the index above it");
+  }
+  if (static_cast<size_t>(begins.back()) != frames.size()) {
+    Refuse(file, kBegin, begins.size() - 1, std::to_string(begins.back()),
+           "the number of rows of observation_frame");
+  }
   std::vector<std::vector<PointObservation>> observations(begins.size() - 1);
   for (size_t i = 0; i + 1 < begins.size(); ++i) {
     for (int k = begins[i]; k < begins[i + 1]; ++k) {

@@ -84,22 +84,19 @@ std::vector<double> Padded(const std::vector<double>& costs) {
   return padded;
 }
 
-// The lowest value of the cubic between the middle two of four values.
-double LowestBetween(const double* values) {
-  const double slope = 0.5 * (values[2] - values[0]);
-  const double square = values[0] - 2.5 * values[1] + 2.0 * values[2] - 0.5 * values[3];
-  const double cube = 0.5 * (values[3] - values[0]) + 1.5 * (values[1] - values[2]);
-  const double root = std::sqrt(std::max(0.0, square * square - 3.0 * cube * slope));
-  const double at = square > 0.0 ? -slope / (square + root) : (root - square) / (3.0 * cube);
-  const double ends = std::min(values[1], values[2]);
-  if (!(at > 0.0 && at < 1.0)) return ends;
-  return std::min(ends, values[1] + at * (slope + at * (square + at * cube)));
-}
-
-double Lowest(const std::vector<double>& padded) {
+// The lowest value of the interpolation, which is a cubic between the middle two of four values.
+double FindLowest(const std::vector<double>& padded) {
   double lowest = std::numeric_limits<double>::infinity();
   for (size_t i = 0; i + 3 < padded.size(); ++i) {
-    lowest = std::min(lowest, LowestBetween(&padded[i]));
+    const double* values = &padded[i];
+    const double slope = 0.5 * (values[2] - values[0]);
+    const double square = values[0] - 2.5 * values[1] + 2.0 * values[2] - 0.5 * values[3];
+    const double cube = 0.5 * (values[3] - values[0]) + 1.5 * (values[1] - values[2]);
+    const double root = std::sqrt(std::max(0.0, square * square - 3.0 * cube * slope));
+    const double at = square > 0.0 ? -slope / (square + root) : (root - square) / (3.0 * cube);
+    lowest = std::min(lowest, std::min(values[1], values[2]));
+    if (!(at > 0.0 && at < 1.0)) continue;
+    lowest = std::min(lowest, values[1] + at * (slope + at * (square + at * cube)));
   }
   return lowest;
 }
@@ -113,7 +110,7 @@ YawCostTerm::YawCostTerm(const Plane& plane, const std::vector<double>& costs)
       padded_(Padded(costs)),
       grid_(padded_.data(), 0, static_cast<int>(padded_.size())),
       interpolator_(grid_),
-      raise_(kLeast - std::min(0.0, Lowest(padded_))) {}
+      raise_(kLeast - std::min(0.0, FindLowest(padded_))) {}
 
 void YawCostTerm::Evaluate(const Landmark& landmark, Residuals residuals,
                            Jacobian* jacobian) const {

@@ -59,9 +59,9 @@ struct EdgeSupport {
   Eigen::Vector3d from_centre;  // the support point, along the axes of the camera
 };
 
-double TangencyOf(const EdgeSupport& support, const BoxEdge& edge,
-                  const Landmark& landmark_in_camera, const TangentDepth& depth, double bias_px,
-                  LandmarkJacobian1* jacobian) {
+double EvaluateTangency(const EdgeSupport& support, const BoxEdge& edge,
+                        const Landmark& landmark_in_camera, const TangentDepth& depth,
+                        double bias_px, LandmarkJacobian1* jacobian) {
   const double weight = 1.0 / (depth.depth_m * edge.sigma_px);
   const double outside =
       weight * (edge.plane.dot(landmark_in_camera.Centre()) + support.value.extent);
@@ -82,7 +82,8 @@ double TangencyOf(const EdgeSupport& support, const BoxEdge& edge,
 
 double Tangency(const BoxEdge& edge, const Landmark& landmark_in_camera, const TangentDepth& depth,
                 double bias_px, LandmarkJacobian1* jacobian) {
-  return TangencyOf({edge, landmark_in_camera}, edge, landmark_in_camera, depth, bias_px, jacobian);
+  return EvaluateTangency({edge, landmark_in_camera}, edge, landmark_in_camera, depth, bias_px,
+                          jacobian);
 }
 
 std::optional<double> TangencyAtOwnDepth(const BoxEdge& edge, const Landmark& landmark_in_camera,
@@ -90,7 +91,7 @@ std::optional<double> TangencyAtOwnDepth(const BoxEdge& edge, const Landmark& la
   const EdgeSupport support(edge, landmark_in_camera);
   const double depth_m = landmark_in_camera.Centre().z() + support.from_centre.z();
   if (!(depth_m > 0.0)) return std::nullopt;
-  return TangencyOf(support, edge, landmark_in_camera, {depth_m}, 0.0, jacobian);
+  return EvaluateTangency(support, edge, landmark_in_camera, {depth_m}, 0.0, jacobian);
 }
 
 // A rotation w of the body in its own frame turns the plane's normal m by m x w.

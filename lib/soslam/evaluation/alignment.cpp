@@ -40,7 +40,7 @@ struct Centres {
   Eigen::Matrix3Xd CentredTruth() const { return truth.colwise() - mean_truth; }
 };
 
-CameraPath PathOf(const Centres& centres) {
+CameraPath ClassifyPath(const Centres& centres) {
   if (centres.truth.cols() < 2) return CameraPath::kFewPoses;
   const auto count = static_cast<double>(centres.truth.cols());
   const Eigen::Matrix3Xd truth = centres.CentredTruth();
@@ -81,7 +81,7 @@ bool HaveOtherScale(const Alignment& rigid, const Alignment& similarity) {
          2.0 * *similarity.rmse_m < *rigid.rmse_m;
 }
 
-AlignmentKind ChosenKind(AlignmentKind choice, const Sequence& sequence,
+AlignmentKind ChooseKind(AlignmentKind choice, const Sequence& sequence,
                          const std::vector<PosePair>& odometry) {
   if (choice != AlignmentKind::kAuto) return choice;
   if (sequence.odometry_world == OdometryWorld::kOwnWithScale) return AlignmentKind::kSimilarity;
@@ -93,26 +93,12 @@ AlignmentKind ChosenKind(AlignmentKind choice, const Sequence& sequence,
              : AlignmentKind::kRigid;
 }
 
-// Up of a segment's true world: the z axis of the standing true object that has the least sum of
-// angles to those of the others, as single ones may lean. None without one.
-std::optional<Eigen::Vector3d> TrueUp(const Sequence& sequence, int segment) {
-  std::vector<Eigen::Vector3d> axes;
-  for (const TrueObject& object : sequence.true_objects) {
-    const Landmark& landmark = object.truth.landmark_in_world;
-    if (object.segment != segment || landmark.rests_on != RestingFace::kBottom) continue;
-    axes.emplace_back(landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ());
-  }
-  if (axes.empty()) return std::nullopt;
-  return *std::ranges::min_element(axes, {}, [&](const Eigen::Vector3d& axis) {
-    double sum = 0.0;
-    for (const Eigen::Vector3d& other : axes) sum += AngleBetween(axis, other);
-    return sum;
-  });
-}
-
-// The normal of the support plane of most detections in a segment, however the cameras are held.
-// None without one.
-std::optional<Eigen::Vector3d> EstimatedUp(const Sequence& sequence, int segment) {
+// Angle between the estimated and the true up of a segment; none where one of them is unknown.
+std::optional<double> UpErrorDeg(const Sequence& sequence, int segment,
+                                 const std::vector<PosePair>& pairs) {
+  if (sequence.odometry_world == OdometryWorld::kOfTruth || pairs.empty()) return std::nullopt;
+  // The estimate is the normal of the support plane of most detections, however the cameras are
+  // held.
   std::map<int, int> detections;  // number by plane
   for (const Detection& detection : sequence.detections) {
     const int plane = sequence.ObjectOf(detection).plane_index;
@@ -121,16 +107,22 @@ std::optional<Eigen::Vector3d> EstimatedUp(const Sequence& sequence, int segment
   if (detections.empty()) return std::nullopt;
   const auto most =
       std::ranges::max_element(detections, {}, [](const auto& entry) { return entry.second; });
-  return sequence.planes[most->first].plane_in_world.normal;
-}
-
-std::optional<double> UpErrorDeg(const Sequence& sequence, int segment,
-                                 const std::vector<PosePair>& pairs) {
-  if (sequence.odometry_world == OdometryWorld::kOfTruth || pairs.empty()) return std::nullopt;
-  const auto estimated_up = EstimatedUp(sequence, segment);
-  const auto true_up = TrueUp(sequence, segment);
-  if (!estimated_up || !true_up) return std::nullopt;
-  return AngleBetweenDeg(MeanRotation(pairs) * *estimated_up, *true_up);
+  const Eigen::Vector3d& estimated_up = sequence.planes[most->first].plane_in_world.normal;
+  // The truth is the z axis of the standing true object that has the least sum of angles to those
+  // of the others, as single ones may lean.
+  std::vector<Eigen::Vector3d> axes;
+  for (const TrueObject& object : sequence.true_objects) {
+    const Landmark& landmark = object.truth.landmark_in_world;
+    if (object.segment != segment || landmark.rests_on != RestingFace::kBottom) continue;
+    axes.emplace_back(landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ());
+  }
+  if (axes.empty()) return std::nullopt;
+  const auto true_up = std::ranges::min_element(axes, {}, [&](const Eigen::Vector3d& axis) {
+    double sum = 0.0;
+    for (const Eigen::Vector3d& other : axes) sum += AngleBetween(axis, other);
+    return sum;
+  });
+  return AngleBetweenDeg(MeanRotation(pairs) * estimated_up, *true_up);
 }
 
 }  // namespace
@@ -140,7 +132,7 @@ Alignment Align(const std::vector<PosePair>& pairs, AlignmentKind kind) {
   alignment.frames = static_cast<int>(pairs.size());
   if (pairs.empty()) return alignment;
   const Centres centres(pairs);
-  alignment.path = PathOf(centres);
+  alignment.path = ClassifyPath(centres);
   if (kind != AlignmentKind::kNone) {
     const bool is_general = alignment.path == CameraPath::kGeneral;
     const bool has_scale = is_general || alignment.path == CameraPath::kLine;
@@ -187,7 +179,7 @@ Alignments AlignSegments(const Sequence& sequence, const std::vector<Rigid3d>& w
   }
   Alignments alignments;
   for (const auto& [segment, poses] : segments) {
-    const AlignmentKind asked = ChosenKind(choice, sequence, poses.odometry);
+    const AlignmentKind asked = ChooseKind(choice, sequence, poses.odometry);
     Alignment alignment = Align(poses.estimated, asked);
     alignment.up_error_deg = UpErrorDeg(sequence, segment, poses.estimated);
     alignments.of_segment[segment] = alignment;

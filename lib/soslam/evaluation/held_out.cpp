@@ -52,7 +52,24 @@ void Compare(const Sequence& sequence, const HeldOutFrame& held_out,
   }
 }
 
-HeldOutMetrics Summarise(const Sequence& sequence, const std::vector<Judged>& judged) {
+}  // namespace
+
+std::optional<HeldOutMetrics> EvaluateHeldOut(const Sequence& sequence,
+                                              const std::vector<ObjectEstimate>& estimates,
+                                              const std::vector<Rigid3d>& world_from_camera) {
+  if (sequence.held_out.empty() || estimates.empty()) return std::nullopt;
+  const auto detections = DetectionsByObject(sequence);
+  std::vector<Judged> judged;
+  for (const ObjectEstimate& estimate : estimates) {
+    const std::vector<int>& own = detections[estimate.object_index];
+    if (!estimate.landmark_in_world || own.empty()) continue;
+    const int segment = sequence.FrameOf(sequence.detections[own.front()]).segment;
+    judged.push_back({estimate.object_index, *estimate.landmark_in_world, segment});
+  }
+  const double border_px = SmallestDistanceToBorder(sequence);
+  for (size_t i = 0; i < sequence.held_out.size(); ++i) {
+    Compare(sequence, sequence.held_out[i], world_from_camera[i], border_px, &judged);
+  }
   HeldOutMetrics metrics;
   metrics.frames = static_cast<int>(sequence.held_out.size());
   for (const HeldOutFrame& held_out : sequence.held_out) {
@@ -73,27 +90,6 @@ HeldOutMetrics Summarise(const Sequence& sequence, const std::vector<Judged>& ju
   ious.resize(static_cast<size_t>(metrics.detections), 0.0);
   metrics.iou_mean_of_detections = MeanOf(ious);
   return metrics;
-}
-
-}  // namespace
-
-std::optional<HeldOutMetrics> EvaluateHeldOut(const Sequence& sequence,
-                                              const std::vector<ObjectEstimate>& estimates,
-                                              const std::vector<Rigid3d>& world_from_camera) {
-  if (sequence.held_out.empty() || estimates.empty()) return std::nullopt;
-  const auto detections = DetectionsByObject(sequence);
-  std::vector<Judged> judged;
-  for (const ObjectEstimate& estimate : estimates) {
-    const std::vector<int>& own = detections[estimate.object_index];
-    if (!estimate.landmark_in_world || own.empty()) continue;
-    const int segment = sequence.FrameOf(sequence.detections[own.front()]).segment;
-    judged.push_back({estimate.object_index, *estimate.landmark_in_world, segment});
-  }
-  const double border_px = SmallestDistanceToBorder(sequence);
-  for (size_t i = 0; i < sequence.held_out.size(); ++i) {
-    Compare(sequence, sequence.held_out[i], world_from_camera[i], border_px, &judged);
-  }
-  return Summarise(sequence, judged);
 }
 
 std::vector<Rigid3d> HeldOutPoses(const Sequence& sequence,

@@ -20,8 +20,8 @@ struct NearestAxes {
   double angle = 0.0;
 };
 
-NearestAxes NearestAxesOf(const Eigen::Quaterniond& frame_from_estimate,
-                          const Eigen::Quaterniond& frame_from_truth) {
+NearestAxes FindNearestAxes(const Eigen::Quaterniond& frame_from_estimate,
+                            const Eigen::Quaterniond& frame_from_truth) {
   const Eigen::Matrix3d truth_from_estimate =
       (frame_from_truth.conjugate() * frame_from_estimate).toRotationMatrix();
   NearestAxes nearest{Eigen::Matrix3d::Identity(), std::numbers::pi};
@@ -55,7 +55,7 @@ double YawInTruth(const Eigen::Quaterniond& frame_from_estimate,
 
 double RotationError(const Eigen::Quaterniond& frame_from_estimate,
                      const Eigen::Quaterniond& frame_from_truth) {
-  return NearestAxesOf(frame_from_estimate, frame_from_truth).angle;
+  return FindNearestAxes(frame_from_estimate, frame_from_truth).angle;
 }
 
 double YawError(const Eigen::Quaterniond& frame_from_estimate,
@@ -123,7 +123,7 @@ Landmark WithFootAt(Landmark landmark, const Eigen::Vector3d& foot) {
 Landmark NamedLike(const Landmark& estimate, const Landmark& truth) {
   const Eigen::Quaterniond& rotation = estimate.frame_from_object.rotation;
   const Eigen::Matrix3d old_from_new =
-      NearestAxesOf(rotation, truth.frame_from_object.rotation).old_from_new;
+      FindNearestAxes(rotation, truth.frame_from_object.rotation).old_from_new;
   Landmark named = estimate;
   named.frame_from_object.rotation = (rotation * Eigen::Quaterniond(old_from_new)).normalized();
   named.half_axes = old_from_new.cwiseAbs().transpose() * estimate.half_axes;

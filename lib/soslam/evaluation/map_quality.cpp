@@ -15,20 +15,6 @@ namespace {
 
 using Fate = LandmarkFate;
 
-// True if most of an object's boxes that have a true object id in the dataset have this one; none
-// if no box has an id.
-std::optional<bool> MostIdsAgree(const Sequence& sequence, const std::vector<int>& detections,
-                                 int true_id) {
-  int known = 0;
-  int agreeing = 0;
-  for (const int index : detections) {
-    const auto& id = sequence.detections[index].true_object_id;
-    known += id ? 1 : 0;
-    agreeing += id == true_id ? 1 : 0;
-  }
-  return known > 0 ? std::optional(2 * agreeing > known) : std::nullopt;
-}
-
 // Compares a landmark with a true object in the frames of its observations, if the true object's
 // place there is known.
 std::optional<InFrames> CompareInFrames(const ReasonInput& input, const TrueViews& views,
@@ -49,29 +35,32 @@ std::optional<InFrames> CompareInFrames(const ReasonInput& input, const TrueView
                   *MeanWhatIf(errors, &LandmarkErrors::what_if)};
 }
 
-// The mean score of an object's detections, times the share of the segment's frames that they are
-// in. There is at most one in a frame.
-double ScoreOf(const Sequence& sequence, const std::vector<int>& detections, int segment) {
-  double sum = 0.0;
-  for (const int index : detections) sum += sequence.detections[index].score;
-  return sum / static_cast<double>(std::ranges::count(sequence.frames, segment, &Frame::segment));
-}
-
 // The row of a landmark: found as `input` matches it; otherwise ignored if things are there that
 // are ignored and it is not to blame for a wanted object, or false, with the reason. `detections`
 // are those of the landmark's object.
-LandmarkRow RowOf(const ReasonInput& input, const TrueViews& views,
-                  const std::vector<int>& detections, size_t landmark_index) {
+LandmarkRow MakeRow(const ReasonInput& input, const TrueViews& views,
+                    const std::vector<int>& detections, size_t landmark_index) {
   const Sequence& sequence = input.sequence;
   const AlignedLandmark& landmark = input.map.landmarks[landmark_index];
   const std::string& label = sequence.objects[landmark.object_index].label;
   LandmarkRow row;
   row.object_index = landmark.object_index;
-  row.score = ScoreOf(sequence, detections, landmark.segment);
+  // The mean score, times the share of the segment's frames that the detections are in: there is at
+  // most one in a frame.
+  double sum = 0.0;
+  for (const int index : detections) sum += sequence.detections[index].score;
+  row.score = sum / static_cast<double>(
+                        std::ranges::count(sequence.frames, landmark.segment, &Frame::segment));
   if (const int truth = input.truth_of_landmark[landmark_index]; truth != kUnassigned) {
     row.fate = Fate::kFound;
     row.true_index = truth;
-    row.id_agrees = MostIdsAgree(sequence, detections, sequence.true_objects[truth].id);
+    int known = 0, agreeing = 0;
+    for (const int index : detections) {
+      const auto& id = sequence.detections[index].true_object_id;
+      known += id ? 1 : 0;
+      agreeing += id == sequence.true_objects[truth].id ? 1 : 0;
+    }
+    if (known > 0) row.id_agrees = 2 * agreeing > known;
   } else {
     const Explanation why = ExplainFalse(input, static_cast<int>(landmark_index));
     const bool is_of_wanted = why.true_object && sequence.true_objects[*why.true_object].IsWanted();
@@ -209,17 +198,6 @@ MapScore Score(double min_iou, const std::vector<TrueObjectRow>& objects,
   return score;
 }
 
-void ExplainMisses(const ReasonInput& input, MapQuality* quality) {
-  for (TrueObjectRow& object : quality->objects) {
-    if (object.object_index) continue;
-    object.miss = ExplainMiss(input, object.true_index);
-    ++quality->misses[object.miss->reason];
-  }
-  for (const LandmarkRow& row : quality->landmarks) {
-    if (row.why_false) ++quality->false_landmarks[row.why_false->reason];
-  }
-}
-
 }  // namespace
 
 std::optional<MapQuality> EvaluateMapQuality(const Sequence& sequence,
@@ -244,10 +222,18 @@ std::optional<MapQuality> EvaluateMapQuality(const Sequence& sequence,
     quality.landmarks.clear();
     for (size_t k = 0; k < map.landmarks.size(); ++k) {
       const std::vector<int>& own = detections[map.landmarks[k].object_index];
-      quality.landmarks.push_back(RowOf(input, true_views, own, k));
+      quality.landmarks.push_back(MakeRow(input, true_views, own, k));
     }
     quality.scores[i] = Score(kMapIous[i], quality.objects, quality.landmarks);
-    if (i == 0) ExplainMisses(input, &quality);
+    if (i > 0) continue;
+    for (TrueObjectRow& object : quality.objects) {
+      if (object.object_index) continue;
+      object.miss = ExplainMiss(input, object.true_index);
+      ++quality.misses[object.miss->reason];
+    }
+    for (const LandmarkRow& row : quality.landmarks) {
+      if (row.why_false) ++quality.false_landmarks[row.why_false->reason];
+    }
   }
   std::vector<InFrames> in_frames;
   std::vector<BodyErrors> in_world;

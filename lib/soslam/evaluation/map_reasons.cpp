@@ -73,7 +73,7 @@ namespace {
 using Counts = std::map<int, int>;
 
 // The kind with more than half of the total.
-std::optional<int> MajorityOf(const Counts& counts, int total) {
+std::optional<int> FindMajority(const Counts& counts, int total) {
   for (const auto& [kind, count] : counts) {
     if (2 * count > total) return kind;
   }
@@ -92,11 +92,11 @@ struct Owners {
   Counts of_truth;
 
   // The true object of more than half of the boxes.
-  std::optional<int> Majority() const { return MajorityOf(of_truth, boxes); }
+  std::optional<int> Majority() const { return FindMajority(of_truth, boxes); }
   bool AreMixed() const { return !Majority() && 2 * Sum(of_truth) > boxes; }
 };
 
-Owners OwnersOf(const ReasonInput& input, int object_index) {
+Owners CountOwners(const ReasonInput& input, int object_index) {
   Owners owners;
   for (size_t i = 0; i < input.sequence.detections.size(); ++i) {
     if (input.sequence.detections[i].object_index != object_index) continue;
@@ -124,8 +124,8 @@ std::string InWords(const BodyErrors& errors, const std::optional<PlaneErrors>& 
 }
 
 // `plane`: what the landmark stands on.
-MapReason ReasonOf(BodyPart part, const Landmark& landmark, const std::optional<Plane>& plane,
-                   const Landmark& truth) {
+MapReason ChooseReason(BodyPart part, const Landmark& landmark, const std::optional<Plane>& plane,
+                       const Landmark& truth) {
   switch (part) {
     case BodyPart::kPlane:
       return plane && StandsOffItsPlane(landmark, *plane, truth) ? MapReason::kWrongHeight
@@ -161,7 +161,7 @@ Explanation ExplainWrong(const ReasonInput& input, int landmark, int true_index)
                           kBodyPartNames[static_cast<size_t>(wrong->part)]);
   }
   const bool is_enough = wrong && wrong->iou >= input.min_iou;
-  return {is_enough ? ReasonOf(wrong->part, estimate, plane, truth.landmark_in_world)
+  return {is_enough ? ChooseReason(wrong->part, estimate, plane, truth.landmark_in_world)
                     : MapReason::kWrongInSeveral,
           detail + "; " + InWords(errors, plane_errors), true_index};
 }
@@ -175,7 +175,7 @@ struct Fates {
   std::map<std::string, int> by_reason;
 };
 
-Fates FatesOf(const ReasonInput& input, int true_index) {
+Fates CountFates(const ReasonInput& input, int true_index) {
   Fates fates;
   for (const TrueView& view : input.views.of_object[true_index]) {
     fates.frames.insert(view.frame_index);
@@ -202,10 +202,10 @@ bool IsWrong(MapReason reason) {
 }
 
 Explanation ExplainMiss(const ReasonInput& input, int true_index) {
-  const Fates fates = FatesOf(input, true_index);
+  const Fates fates = CountFates(input, true_index);
   const int in_use = Sum(fates.by_object);
-  const auto object = MajorityOf(fates.by_object, in_use);
-  const Owners owners = object ? OwnersOf(input, *object) : Owners();
+  const auto object = FindMajority(fates.by_object, in_use);
+  const Owners owners = object ? CountOwners(input, *object) : Owners();
   const bool is_own = owners.Majority() == true_index;
   const std::vector<AlignedLandmark>& landmarks = input.map.landmarks;
   const auto landmark =
@@ -252,7 +252,7 @@ Explanation ExplainFalse(const ReasonInput& input, int landmark) {
   if (best_iou >= input.min_iou) {
     return {MapReason::kDuplicate, fmt::format("IoU {:.3f}", best_iou), static_cast<int>(nearest)};
   }
-  const Owners owners = OwnersOf(input, input.map.landmarks[landmark].object_index);
+  const Owners owners = CountOwners(input, input.map.landmarks[landmark].object_index);
   if (const auto owner = owners.Majority()) {
     const TrueObject& object = input.sequence.true_objects[*owner];
     if (!object.is_static) return {MapReason::kMoving, "", *owner};

@@ -28,40 +28,13 @@ struct RelativeHeight {
   double log_sigma = 0.0;  // of its label
 };
 
-std::vector<RelativeHeight> RelativeHeights(const LandmarkEstimates& estimates,
-                                            const Sequence& sequence, const SemanticTable& table) {
-  std::map<int, std::vector<double>> heights_m;  // of each object's landmarks
-  for (const ObservationEstimate& observation : estimates.observations) {
-    if (observation.hypotheses.empty()) continue;
-    heights_m[sequence.detections[observation.detection_index].object_index].push_back(
-        2.0 * observation.hypotheses.front().landmark_in_camera.half_axes.z());
-  }
-  for (const ObjectEstimate& object : estimates.objects) {
-    if (!object.landmark_in_world) continue;
-    heights_m[object.object_index] = {2.0 * object.landmark_in_world->half_axes.z()};
-  }
-  std::vector<RelativeHeight> relative;
-  for (const auto& [index, heights] : heights_m) {
-    const Object& object = sequence.objects[index];
-    const auto prior = table.Find(object.label);
-    if (!prior || !prior->height_m || prior->mount != Mount::kStanding ||
-        prior->attitude != Attitude::kStanding) {
-      continue;
-    }
-    relative.push_back({fmt::format("{} ({})", object.id, object.label),
-                        std::log(*MedianOf(heights) / prior->height_m->median),
-                        prior->height_m->log_sigma});
-  }
-  return relative;
-}
-
 // The common factor of all objects, if the spread within labels does not account for it.
 std::vector<Finding> CheckScale(const std::vector<RelativeHeight>& relative) {
   constexpr size_t kFewest = 3;
   constexpr double kSmallestFactor = 1.5;
   constexpr double kSigmas = 3.0;
-  constexpr double kMedianSigma =
-      1.25;  // standard deviation of the median of n normal values: 1.25 sigma / sqrt(n)
+  // The standard deviation of the median of n normal values is this times sigma / sqrt(n).
+  constexpr double kMedianSigma = 1.25;
   if (relative.size() < kFewest) return {};
   const double log_factor = *MedianOf(ValuesOf(relative, &RelativeHeight::log_ratio));
   const double sigma = kMedianSigma * *MedianOf(ValuesOf(relative, &RelativeHeight::log_sigma)) /
@@ -239,7 +212,28 @@ std::vector<Finding> CheckLabels(const Sequence& sequence, const SemanticTable& 
 
 std::vector<Finding> CheckSizes(const LandmarkEstimates& estimates, const Sequence& sequence,
                                 const SemanticTable& table) {
-  const auto relative = RelativeHeights(estimates, sequence, table);
+  std::map<int, std::vector<double>> heights_m;  // of each object's landmarks
+  for (const ObservationEstimate& observation : estimates.observations) {
+    if (observation.hypotheses.empty()) continue;
+    heights_m[sequence.detections[observation.detection_index].object_index].push_back(
+        2.0 * observation.hypotheses.front().landmark_in_camera.half_axes.z());
+  }
+  for (const ObjectEstimate& object : estimates.objects) {
+    if (!object.landmark_in_world) continue;
+    heights_m[object.object_index] = {2.0 * object.landmark_in_world->half_axes.z()};
+  }
+  std::vector<RelativeHeight> relative;
+  for (const auto& [index, heights] : heights_m) {
+    const Object& object = sequence.objects[index];
+    const auto prior = table.Find(object.label);
+    if (!prior || !prior->height_m || prior->mount != Mount::kStanding ||
+        prior->attitude != Attitude::kStanding) {
+      continue;
+    }
+    relative.push_back({fmt::format("{} ({})", object.id, object.label),
+                        std::log(*MedianOf(heights) / prior->height_m->median),
+                        prior->height_m->log_sigma});
+  }
   std::vector<Finding> findings = CheckScale(relative);
   if (findings.empty()) findings = CheckSingleSizes(relative);
   return findings;

@@ -42,7 +42,7 @@ namespace {
 
 // Distance of a camera from the middle of its path (m). Both are medians, which single wrong poses
 // do not move.
-double SpreadOf(const std::vector<PosePair>& pairs, Rigid3d PosePair::*pose) {
+double MeasureSpread(const std::vector<PosePair>& pairs, Rigid3d PosePair::*pose) {
   Eigen::Vector3d middle;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     middle[axis] = *MedianOf(
@@ -57,8 +57,8 @@ double SpreadOf(const std::vector<PosePair>& pairs, Rigid3d PosePair::*pose) {
 bool HaveSameScale(const std::vector<PosePair>& pairs) {
   constexpr double kLargestRatio = 1.5;
   constexpr double kLeastM = 0.1;
-  const double truth = std::max(kLeastM, SpreadOf(pairs, &PosePair::truth));
-  const double estimated = std::max(kLeastM, SpreadOf(pairs, &PosePair::estimated));
+  const double truth = std::max(kLeastM, MeasureSpread(pairs, &PosePair::truth));
+  const double estimated = std::max(kLeastM, MeasureSpread(pairs, &PosePair::estimated));
   return std::max(truth, estimated) <= kLargestRatio * std::min(truth, estimated);
 }
 

@@ -14,21 +14,6 @@ struct RawBox {
   Box box;
 };
 
-// The outline boxes of all true objects in a frame.
-std::vector<std::optional<Box>> Outlines(const Sequence& sequence, const TrueViews& views,
-                                         int frame_index) {
-  const Camera& camera = sequence.CameraOf(sequence.frames[frame_index]);
-  std::vector<std::optional<Box>> outlines(sequence.true_objects.size());
-  for (size_t i = 0; i < outlines.size(); ++i) {
-    auto landmark = views.InCamera(frame_index, static_cast<int>(i));
-    if (!landmark) continue;
-    landmark->shape_exponents = kOutlineShapeExponent;
-    const auto box = OutlineBox(camera, *landmark);
-    if (box) outlines[i] = CutToImage(*box, camera.width, camera.height);
-  }
-  return outlines;
-}
-
 }  // namespace
 
 TrueViews::TrueViews(const Sequence& sequence) : sequence_(sequence) {
@@ -83,7 +68,15 @@ ViewsOfTruth FindViews(const Sequence& sequence, const TrueViews& views) {
   }
   for (size_t frame = 0; frame < raw_boxes.size(); ++frame) {
     if (raw_boxes[frame].empty()) continue;
-    const auto outlines = Outlines(sequence, views, static_cast<int>(frame));
+    const Camera& camera = sequence.CameraOf(sequence.frames[frame]);
+    std::vector<std::optional<Box>> outlines(sequence.true_objects.size());
+    for (size_t i = 0; i < outlines.size(); ++i) {
+      auto landmark = views.InCamera(static_cast<int>(frame), static_cast<int>(i));
+      if (!landmark) continue;
+      landmark->shape_exponents = kOutlineShapeExponent;
+      const auto box = OutlineBox(camera, *landmark);
+      if (box) outlines[i] = CutToImage(*box, camera.width, camera.height);
+    }
     std::vector<bool> is_detected(outlines.size());
     for (const RawBox& raw : raw_boxes[frame]) {
       double best = kMinViewIou;

@@ -17,7 +17,7 @@ constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double kFontScale = 0.5;
 constexpr int kTextMargin = 4;  // px of the picture
 
-std::string AsciiOf(const std::string& text) {
+std::string ToAscii(const std::string& text) {
   std::string ascii;
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
@@ -32,7 +32,7 @@ struct TextSize {
   int baseline;   // px from the upper border
 };
 
-TextSize SizeOf(const std::string& text) {
+TextSize MeasureText(const std::string& text) {
   int descent = 0;
   const cv::Size size = cv::getTextSize(text, kFont, kFontScale, 1, &descent);
   return {{size.width + 2 * kTextMargin, size.height + descent + 2 * kTextMargin},
@@ -41,7 +41,7 @@ TextSize SizeOf(const std::string& text) {
 
 void PutText(const std::string& text, const cv::Point& corner, const cv::Scalar& colour,
              cv::Mat* picture) {
-  cv::putText(*picture, text, corner + cv::Point(kTextMargin, SizeOf(text).baseline), kFont,
+  cv::putText(*picture, text, corner + cv::Point(kTextMargin, MeasureText(text).baseline), kFont,
               kFontScale, colour, 1, cv::LINE_AA);
 }
 
@@ -79,8 +79,8 @@ void Canvas::Disc(const Eigen::Vector2d& pixel, const cv::Scalar& colour) {
 }
 
 void Canvas::Text(const Eigen::Vector2d& pixel, const std::string& text, const cv::Scalar& colour) {
-  const std::string ascii = AsciiOf(text);
-  const cv::Size size = SizeOf(ascii).size;
+  const std::string ascii = ToAscii(text);
+  const cv::Size size = MeasureText(ascii).size;
   cv::Point corner = Place(pixel) / (1 << kFractionBits);
   if (corner.y >= size.height) corner.y -= size.height;
   corner.x = std::clamp(corner.x, 0, std::max(0, picture_->cols - size.width));
@@ -112,11 +112,12 @@ void Canvas::Arrow(const Eigen::Vector3d& begin_in_camera, const Eigen::Vector3d
 cv::Mat WithCaption(const cv::Mat& picture, const std::vector<CaptionEntry>& entries) {
   constexpr int kLineLength = 24;
   constexpr int kGap = 12;
-  const int line_height = SizeOf("Ag").size.height + kTextMargin;
+  const int line_height = MeasureText("Ag").size.height + kTextMargin;
   std::vector<cv::Point> corners;
   cv::Point corner(kTextMargin, kTextMargin);
   for (const CaptionEntry& entry : entries) {
-    const int width = SizeOf(AsciiOf(entry.text)).size.width + (entry.has_line ? kLineLength : 0);
+    const int width =
+        MeasureText(ToAscii(entry.text)).size.width + (entry.has_line ? kLineLength : 0);
     if (corner.x > kTextMargin && corner.x + width > picture.cols) {
       corner = {kTextMargin, corner.y + line_height};
     }
@@ -132,7 +133,7 @@ cv::Mat WithCaption(const cv::Mat& picture, const std::vector<CaptionEntry>& ent
                cv::LINE_AA);
       text.x += kLineLength;
     }
-    PutText(AsciiOf(entries[i].text), text, entries[i].colour, &band);
+    PutText(ToAscii(entries[i].text), text, entries[i].colour, &band);
   }
   cv::Mat captioned;
   cv::vconcat(picture, band, captioned);

@@ -17,7 +17,7 @@ using Schema = nlohmann::ordered_json;
 
 // The schema of the rows of a table: of the records, or rows of numbers, in a list or map. Null for
 // other values.
-const Schema* RowsOf(const Schema& schema) {
+const Schema* FindRows(const Schema& schema) {
   for (const char* part : {"items", "additionalProperties"}) {
     if (!schema.contains(part) || !schema[part].is_object()) continue;
     const Schema& row = schema[part];
@@ -38,7 +38,7 @@ void AddColumns(const Schema& row, const std::string& place, std::vector<ValueCo
       continue;
     }
     columns->push_back({place + name, DocOf(field)});
-    const Schema* of_list = field.contains("items") ? RowsOf(field) : nullptr;
+    const Schema* of_list = field.contains("items") ? FindRows(field) : nullptr;
     if (of_list != nullptr && of_list->contains("properties")) {
       AddColumns(*of_list, place + name + "/0/", columns);
     }
@@ -46,9 +46,9 @@ void AddColumns(const Schema& row, const std::string& place, std::vector<ValueCo
 }
 
 // Rows of a map begin with their names.
-ValueTable TableOf(const std::string& name, const Schema& field, const json& rows) {
+ValueTable MakeTable(const std::string& name, const Schema& field, const json& rows) {
   ValueTable table{{}, {}, name, DocOf(field)};
-  AddColumns(*RowsOf(field), "", &table.columns);
+  AddColumns(*FindRows(field), "", &table.columns);
   for (const auto& [key, item] : rows.items()) {
     std::vector<Value>& row = table.rows.emplace_back();
     if (rows.is_object()) row.emplace_back(key);
@@ -68,8 +68,8 @@ void AddRecord(const Schema& schema, const json& record, const std::string& plac
     const json& value = record[name];
     if (field.contains("properties") && !value.is_null()) {
       AddRecord(field, value, place + name + "/", contents);
-    } else if (RowsOf(field) != nullptr && !value.is_null()) {
-      contents->tables.push_back(TableOf(place + name, field, value));
+    } else if (FindRows(field) != nullptr && !value.is_null()) {
+      contents->tables.push_back(MakeTable(place + name, field, value));
     } else {
       contents->facts.push_back({place + name, InWords(value), DocOf(field)});
     }
@@ -77,7 +77,7 @@ void AddRecord(const Schema& schema, const json& record, const std::string& plac
 }
 
 // "480 x 640, 0 to 120.4, mean 24.9": size and finite values of a data set.
-std::string SummaryOf(const Hdf5File::Numbers& numbers) {
+std::string SummariseNumbers(const Hdf5File::Numbers& numbers) {
   std::string text = fmt::format("{}", fmt::join(numbers.shape, " x "));
   std::vector<double> finite;
   std::ranges::copy_if(numbers.values, std::back_inserter(finite),
@@ -90,7 +90,7 @@ std::string SummaryOf(const Hdf5File::Numbers& numbers) {
 }
 
 // Attributes and data sets of a group and of those in it.
-Schema RecordOf(const Hdf5File& file, const std::string& group) {
+Schema ReadRecord(const Hdf5File& file, const std::string& group) {
   Schema record;
   for (const std::string& name : file.Attributes(group)) {
     const double number = file.ReadNumber(group, name);
@@ -99,17 +99,17 @@ Schema RecordOf(const Hdf5File& file, const std::string& group) {
   }
   for (const std::string& name : file.Children(group)) {
     const std::string place = group + "/" + name;
-    record[name] =
-        file.IsGroup(place) ? RecordOf(file, place) : Schema(SummaryOf(file.ReadNumbers(place)));
+    record[name] = file.IsGroup(place) ? ReadRecord(file, place)
+                                       : Schema(SummariseNumbers(file.ReadNumbers(place)));
   }
   return record;
 }
 
-ValueTable TableOf(const Hdf5File& file, const std::string& group) {
+ValueTable MakeTable(const Hdf5File& file, const std::string& group) {
   ValueTable table{{{"name"}}, {}, group.substr(1)};
   std::vector<Schema> records;
   for (const std::string& name : file.Children(group)) {
-    records.push_back(RecordOf(file, group + "/" + name).flatten());
+    records.push_back(ReadRecord(file, group + "/" + name).flatten());
     table.rows.push_back({name});
     for (const auto& item : records.back().items()) {
       if (item.value().is_null()) continue;
@@ -150,19 +150,19 @@ Inspection ContentsOf(const Hdf5File& file) {
   for (const std::string& name : file.Children("/")) {
     const std::string place = "/" + name;
     if (!file.IsGroup(place)) {
-      contents.facts.push_back({name, SummaryOf(file.ReadNumbers(place))});
+      contents.facts.push_back({name, SummariseNumbers(file.ReadNumbers(place))});
       continue;
     }
     const auto children = file.Children(place);
     if (std::ranges::all_of(children, [&](const std::string& child) {
           return file.IsGroup(place + "/" + child);
         })) {
-      contents.tables.push_back(TableOf(file, place));
+      contents.tables.push_back(MakeTable(file, place));
       continue;
     }
     for (const std::string& child : children) {
       contents.facts.push_back(
-          {name + "/" + child, SummaryOf(file.ReadNumbers(place + "/" + child))});
+          {name + "/" + child, SummariseNumbers(file.ReadNumbers(place + "/" + child))});
     }
   }
   return contents;

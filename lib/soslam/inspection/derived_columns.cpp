@@ -18,7 +18,7 @@ const std::vector<ValueColumn> kColumns = {
     {"sigma_yaw_deg", "standard deviation of the yaw"},
     {"sigma_size_percent", "root mean square of the standard deviations of the half axes"}};
 
-std::vector<Value> CellsOf(const ObjectEstimate& estimate) {
+std::vector<Value> DeriveCells(const ObjectEstimate& estimate) {
   std::vector<Value> cells(kColumns.size());
   if (!estimate.landmark_in_world) return cells;
   const Eigen::Quaterniond& rotation = estimate.landmark_in_world->frame_from_object.rotation;
@@ -44,9 +44,9 @@ void AddDerivedColumns(const std::string& kind, const nlohmann::json& document,
   for (const ObservationEstimate& one : estimates.observations) {
     ObjectEstimate best;
     if (!one.hypotheses.empty()) best.landmark_in_world = one.hypotheses.front().landmark_in_camera;
-    observations.push_back(CellsOf(best));
+    observations.push_back(DeriveCells(best));
   }
-  for (const ObjectEstimate& one : estimates.objects) objects.push_back(CellsOf(one));
+  for (const ObjectEstimate& one : estimates.objects) objects.push_back(DeriveCells(one));
   for (const auto& [name, cells] :
        {std::pair("observations", observations), {"objects", objects}}) {
     const auto table = std::ranges::find(inspection->tables, name, &ValueTable::name);

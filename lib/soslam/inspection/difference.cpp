@@ -42,7 +42,14 @@ class Comparison {
     if (HaveOneShape(one, two) && Flatten(one, &numbers) && Flatten(two, &others)) {
       CompareNumbers(place.to_string(), numbers, others);
     } else if (one.is_object() && two.is_object()) {
-      CompareObjects(one, two, place);
+      const auto find = [](const json& object, const std::string& key) {
+        return object.contains(key) ? &object[key] : nullptr;
+      };
+      std::set<std::string> keys;
+      for (const json* object : {&one, &two}) {
+        for (const auto& item : object->items()) keys.insert(item.key());
+      }
+      for (const std::string& key : keys) CompareItems(find(one, key), find(two, key), place / key);
     } else if (one.is_array() && two.is_array()) {
       for (size_t i = 0; i < std::max(one.size(), two.size()); ++i) {
         CompareItems(i < one.size() ? &one[i] : nullptr, i < two.size() ? &two[i] : nullptr,
@@ -101,17 +108,6 @@ class Comparison {
     if (found.differing > 0) differences_->push_back(found);
   }
 
-  void CompareObjects(const json& one, const json& two, const json::json_pointer& place) {
-    const auto find = [](const json& object, const std::string& key) {
-      return object.contains(key) ? &object[key] : nullptr;
-    };
-    std::set<std::string> keys;
-    for (const json* object : {&one, &two}) {
-      for (const auto& item : object->items()) keys.insert(item.key());
-    }
-    for (const std::string& key : keys) CompareItems(find(one, key), find(two, key), place / key);
-  }
-
   // A null pointer means that only the other artefact has the item.
   void CompareItems(const json* one, const json* two, const json::json_pointer& place) {
     if (one != nullptr && two != nullptr) return Compare(*one, *two, place);
@@ -149,22 +145,6 @@ class Comparison {
   std::vector<Difference>* differences_;
 };
 
-void CompareContent(const std::filesystem::path& one, const std::filesystem::path& two,
-                    const std::string& kind, Comparison* comparison) {
-  if (IsHdf5(one) && IsHdf5(two)) {
-    const Hdf5File file_one = OpenArtefact(one, kind);
-    const Hdf5File file_two = OpenArtefact(two, kind);
-    file_one.RequireWalkable();
-    file_two.RequireWalkable();
-    return comparison->CompareGroup(file_one, file_two, "/");
-  }
-  json document_one = ReadArtefact(one, kind);
-  json document_two = ReadArtefact(two, kind);
-  document_one.erase("artefact");
-  document_two.erase("artefact");
-  comparison->Compare(document_one, document_two, json::json_pointer());
-}
-
 Value NumberCell(const std::optional<double>& number) {
   return number ? Value(fmt::format("{:.3g}", *number)) : Value();
 }
@@ -199,7 +179,19 @@ Differences CompareArtefacts(const std::filesystem::path& one, const std::filesy
   Comparison(kExactly, &differences.provenance)
       .Compare(header_one, header_two, json::json_pointer("/artefact"));
   Comparison content(tolerance, &differences.content);
-  CompareContent(one, two, differences.kind, &content);
+  if (IsHdf5(one) && IsHdf5(two)) {
+    const Hdf5File file_one = OpenArtefact(one, differences.kind);
+    const Hdf5File file_two = OpenArtefact(two, differences.kind);
+    file_one.RequireWalkable();
+    file_two.RequireWalkable();
+    content.CompareGroup(file_one, file_two, "/");
+  } else {
+    json document_one = ReadArtefact(one, differences.kind);
+    json document_two = ReadArtefact(two, differences.kind);
+    document_one.erase("artefact");
+    document_two.erase("artefact");
+    content.Compare(document_one, document_two, json::json_pointer());
+  }
   return differences;
 }
 

@@ -39,30 +39,6 @@ bool IsPlaceUncertain(const Landmark& landmark, const Eigen::Matrix3d& covarianc
   return false;
 }
 
-std::vector<std::string> UncertainSizes(const Covariance9& covariance) {
-  constexpr std::array kNames = {"depth", "width", "height"};  // along x, y, z
-  constexpr double kTwice = 1.0;  // half an interval that includes twice the size
-  std::vector<std::string> names;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (HalfInterval95(std::sqrt(covariance(6 + axis, 6 + axis))) > kTwice) {
-      names.emplace_back(kNames.at(static_cast<size_t>(axis)));
-    }
-  }
-  return names;
-}
-
-// The sightings of each object, by its id.
-std::map<int, Sightings> ReadSightings(const fs::path& file) {
-  if (!Exists(file)) return {};
-  const Associations associations = ReadAssociations(file).body;
-  std::map<int, Sightings> sightings;
-  for (const Associations::ObjectRow& object : associations.objects) {
-    const std::optional<int> in_sight = associations.tracks[object.track].frames_in_sight;
-    if (in_sight) sightings[object.object] = {object.detections, *in_sight};
-  }
-  return sightings;
-}
-
 }  // namespace
 
 std::string RarelyDetectedInWords(int frames, int frames_in_sight) {
@@ -81,7 +57,14 @@ std::string DoubtsInWords(const ObjectEstimate& estimate, const Sightings& sight
     if (IsPlaceUncertain(*estimate.landmark_in_world, covariance.block<3, 3>(3, 3), up_in_world)) {
       doubts.emplace_back("it may stand beside its outline");
     }
-    const std::vector<std::string> sizes = UncertainSizes(covariance);
+    constexpr std::array kNames = {"depth", "width", "height"};  // along x, y, z
+    constexpr double kTwice = 1.0;  // half an interval that includes twice the size
+    std::vector<std::string> sizes;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (HalfInterval95(std::sqrt(covariance(6 + axis, 6 + axis))) > kTwice) {
+        sizes.emplace_back(kNames.at(static_cast<size_t>(axis)));
+      }
+    }
     if (!sizes.empty()) {
       doubts.push_back(
           fmt::format("its {} may be half or twice as large", fmt::join(sizes, " and ")));
@@ -92,7 +75,14 @@ std::string DoubtsInWords(const ObjectEstimate& estimate, const Sightings& sight
 
 std::vector<std::string> DoubtsOfMap(const fs::path& folder, const MapEstimate& map,
                                      const Sequence& sequence) {
-  std::map<int, Sightings> sightings = ReadSightings(folder / "associations.json");
+  std::map<int, Sightings> sightings;  // by id of the object
+  if (const fs::path file = folder / "associations.json"; Exists(file)) {
+    const Associations associations = ReadAssociations(file).body;
+    for (const Associations::ObjectRow& object : associations.objects) {
+      const std::optional<int> in_sight = associations.tracks[object.track].frames_in_sight;
+      if (in_sight) sightings[object.object] = {object.detections, *in_sight};
+    }
+  }
   const std::vector<std::optional<int>> segments = SegmentsOfObjects(sequence);
   std::map<int, Eigen::Vector3d> up_of_segment;
   std::vector<std::string> doubts;

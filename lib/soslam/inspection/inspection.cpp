@@ -19,43 +19,35 @@ namespace {
 
 using nlohmann::json;
 
-std::string SettingsInWords(const json& settings, const json& defaults) {
-  std::vector<std::string> words;
-  for (const auto& [name, value] : settings.items()) {
-    if (value == defaults.value(name, json())) continue;
-    words.push_back(fmt::format("{} {}", name, value.dump()));
-  }
-  return words.empty() ? "all as by default" : fmt::format("{}", fmt::join(words, ", "));
-}
-
-// Lists inputs by name; if many have the same extension, such as images, by their number.
-std::string InputsInWords(const std::vector<FileHeader::Input>& inputs) {
-  constexpr size_t kMaxNames = 6;
-  std::map<std::string, std::vector<std::string>> by_extension;
-  for (const FileHeader::Input& input : inputs) {
-    by_extension[std::filesystem::path(input.file).extension().string()].push_back(input.file);
-  }
-  std::vector<std::string> words;
-  for (auto& [extension, files] : by_extension) {
-    const size_t count = files.size();
-    if (count > kMaxNames) {
-      words.push_back(fmt::format("{} {} files", count, extension));
-    } else {
-      words.insert(words.end(), files.begin(), files.end());
-    }
-  }
-  return words.empty() ? "none" : fmt::format("{}", fmt::join(words, ", "));
-}
-
 // Provenance of an artefact: stage and software, inputs, and the settings that differ from these
 // defaults.
 std::vector<Fact> Provenance(const FileHeader& header, const json& defaults) {
+  // Inputs are listed by name; if many have the same extension, such as images, by their number.
+  constexpr size_t kMaxNames = 6;
+  std::map<std::string, std::vector<std::string>> by_extension;
+  for (const FileHeader::Input& input : header.inputs) {
+    by_extension[std::filesystem::path(input.file).extension().string()].push_back(input.file);
+  }
+  std::vector<std::string> inputs, settings;
+  for (auto& [extension, files] : by_extension) {
+    const size_t count = files.size();
+    if (count > kMaxNames) {
+      inputs.push_back(fmt::format("{} {} files", count, extension));
+    } else {
+      inputs.insert(inputs.end(), files.begin(), files.end());
+    }
+  }
+  for (const auto& [name, value] : header.settings.items()) {
+    if (value == defaults.value(name, json())) continue;
+    settings.push_back(fmt::format("{} {}", name, value.dump()));
+  }
   return {{"made by",
            fmt::format("{}{}, schema version [{}]",
                        header.stage.empty() ? "" : fmt::format("soslam-{} of ", header.stage),
                        header.software, fmt::join(header.schema_version, ", "))},
-          {"from", InputsInWords(header.inputs)},
-          {"settings", SettingsInWords(header.settings, defaults)}};
+          {"from", inputs.empty() ? "none" : fmt::format("{}", fmt::join(inputs, ", "))},
+          {"settings",
+           settings.empty() ? "all as by default" : fmt::format("{}", fmt::join(settings, ", "))}};
 }
 
 // Kinds of HDF5 files, and what they hold.
@@ -67,29 +59,20 @@ const std::map<std::string, std::string> kHdf5Kinds = {
     {"points", "sparse points of structure from motion"},
     {"symmetry", "what symmetry and edges say about the yaw of observations"}};
 
-[[noreturn]] void RefuseKind(const std::string& kind, const std::filesystem::path& file) {
-  std::vector<std::string> known;
-  for (const auto& [name, title] : kHdf5Kinds) known.push_back(name);
-  for (const ArtefactKind& one : ArtefactKinds()) known.push_back(one.name);
-  std::ranges::sort(known);
-  throw InputError(fmt::format("{}: artefact kind is \"{}\"; expected one of {}", file.string(),
-                               kind, fmt::join(known, ", ")));
-}
-
-std::ptrdiff_t ColumnOf(const ValueTable& table, const char* name) {
+std::ptrdiff_t FindColumn(const ValueTable& table, const char* name) {
   return std::ranges::find(table.columns, name, &ValueColumn::name) - table.columns.begin();
 }
 
 // The column with the ids of objects; the number of columns where there is none.
 std::ptrdiff_t ColumnOfObject(const ValueTable& table) {
-  return std::min(ColumnOf(table, "object"), ColumnOf(table, "object_id"));
+  return std::min(FindColumn(table, "object"), FindColumn(table, "object_id"));
 }
 
 // Adds the labels of objects where the artefact has none.
 void AddLabels(const Sequence& sequence, ValueTable* table) {
   const auto count = std::ssize(table->columns);
   const auto object = ColumnOfObject(*table);
-  if (object == count || ColumnOf(*table, "label") != count) return;
+  if (object == count || FindColumn(*table, "label") != count) return;
   table->columns.insert(table->columns.begin() + object + 1, {"label", "of the object"});
   for (std::vector<Value>& row : table->rows) {
     const auto found = std::ranges::find_if(
@@ -97,23 +80,6 @@ void AddLabels(const Sequence& sequence, ValueTable* table) {
     row.insert(row.begin() + object + 1,
                found == sequence.objects.end() ? Value() : Value(found->label));
   }
-}
-
-// "fate: 5 object, 2 merged": how often the columns have each of their values, where these are few
-// texts.
-std::string CountsOf(const ValueTable& table) {
-  constexpr size_t kMostValues = 8;
-  std::string text;
-  for (size_t k = 0; k < table.columns.size(); ++k) {
-    std::map<std::string, int> counts;
-    for (const std::vector<Value>& row : table.rows) {
-      if (row[k].is_string() || row[k].is_boolean()) ++counts[InWords(row[k])];
-    }
-    counts.erase("");
-    if (counts.empty() || counts.size() > kMostValues) continue;
-    text += fmt::format("  {}: {}\n", table.columns[k].name, CountsInWords(counts));
-  }
-  return text;
 }
 
 std::string Styled(fmt::emphasis emphasis, const std::string& text, bool is_coloured) {
@@ -149,7 +115,7 @@ std::string FormatFacts(const std::vector<Fact>& facts, bool is_coloured) {
   return text;
 }
 
-std::string TitleOf(const ValueTable& table, bool is_coloured) {
+std::string FormatTitle(const ValueTable& table, bool is_coloured) {
   return "\n" + Styled(fmt::emphasis::bold, table.name, is_coloured) +
          fmt::format(", {}{}{}\n", Counted(table.rows.size(), "row"), table.doc.empty() ? "" : ": ",
                      table.doc);
@@ -165,7 +131,14 @@ Inspection Inspect(const std::filesystem::path& file, const std::optional<Sequen
   const std::string kind = header.at("kind");
   const ArtefactKind* const of_json = FindArtefactKind(kind);
   const auto of_hdf5 = kHdf5Kinds.find(kind);
-  if (of_json == nullptr && of_hdf5 == kHdf5Kinds.end()) RefuseKind(kind, file);
+  if (of_json == nullptr && of_hdf5 == kHdf5Kinds.end()) {
+    std::vector<std::string> known;
+    for (const auto& [name, title] : kHdf5Kinds) known.push_back(name);
+    for (const ArtefactKind& one : ArtefactKinds()) known.push_back(one.name);
+    std::ranges::sort(known);
+    throw InputError(fmt::format("{}: artefact kind is \"{}\"; expected one of {}", file.string(),
+                                 kind, fmt::join(known, ", ")));
+  }
   CheckArtefactHeader(header, kind, file.string());
   Inspection inspection;
   std::vector<Finding> findings;
@@ -193,13 +166,23 @@ Inspection Inspect(const std::filesystem::path& file, const std::optional<Sequen
 
 std::string FormatInspection(const Inspection& inspection, bool is_coloured) {
   constexpr size_t kRows = 12;
+  constexpr size_t kMostValues = 8;
   std::string text = Styled(fmt::emphasis::bold, inspection.title, is_coloured) + "\n" +
                      FormatFacts(inspection.facts, is_coloured);
   for (const ValueTable& table : inspection.tables) {
-    text += TitleOf(table, is_coloured) + FormatTable(table, is_coloured, {kRows, kTableWidth});
+    text += FormatTitle(table, is_coloured) + FormatTable(table, is_coloured, {kRows, kTableWidth});
     if (table.rows.size() <= kRows) continue;
-    text += fmt::format("... and {} more (--table {})\n{}", table.rows.size() - kRows, table.name,
-                        CountsOf(table));
+    text += fmt::format("... and {} more (--table {})\n", table.rows.size() - kRows, table.name);
+    // Columns of few different texts are told by their counts: "fate: 5 object, 2 merged".
+    for (size_t k = 0; k < table.columns.size(); ++k) {
+      std::map<std::string, int> counts;
+      for (const std::vector<Value>& row : table.rows) {
+        if (row[k].is_string() || row[k].is_boolean()) ++counts[InWords(row[k])];
+      }
+      counts.erase("");
+      if (counts.empty() || counts.size() > kMostValues) continue;
+      text += fmt::format("  {}: {}\n", table.columns[k].name, CountsInWords(counts));
+    }
   }
   return text;
 }
@@ -236,7 +219,7 @@ const ValueTable& TableOf(const Inspection& inspection, const std::optional<std:
 std::string FormatWholeTable(const ValueTable& table, bool is_coloured) {
   std::vector<Fact> columns;
   for (const ValueColumn& column : table.columns) columns.push_back({column.name, "", column.doc});
-  return TitleOf(table, is_coloured) + FormatTable(table, is_coloured, {.width = kTableWidth}) +
+  return FormatTitle(table, is_coloured) + FormatTable(table, is_coloured, {.width = kTableWidth}) +
          "\n" + FormatFacts(columns, is_coloured);
 }
 

@@ -21,8 +21,6 @@ const Stroke kLandmarkAxis{palette::kSkyBlue, 1};
 const Stroke kTruthStroke{palette::kVermilion, 2};
 const Stroke kTruthAxis{palette::kVermilion, 1};
 
-constexpr double kGridOpacity = 0.5;
-
 // Id and label of an Object or WorldObject.
 std::string CaptionOf(const auto& object) { return fmt::format("{} {}", object.id, object.label); }
 
@@ -40,51 +38,10 @@ void DrawAxes(const Landmark& landmark_in_camera, bool has_front, const Stroke& 
   }
 }
 
-void DrawCircumscribedBox(const Landmark& landmark_in_camera, const Stroke& stroke,
-                          Canvas* canvas) {
-  for (const auto& [start, end] : UnitCuboidEdges()) {
-    canvas->Segment(PointAt(landmark_in_camera, start), PointAt(landmark_in_camera, end), stroke);
-  }
-}
-
-void DrawBody(const OverlayInput::Body& body, const Camera& camera, Canvas* canvas) {
-  const Polygon outline = OutlinePolygon(camera, body.landmark_in_camera);
-  if (outline.empty()) return;
-  canvas->Lines(outline, true, kLandmarkStroke);
-  DrawAxes(body.landmark_in_camera, /*has_front=*/!body.front_caption.empty(), kLandmarkStroke,
-           kLandmarkAxis, canvas);
-}
-
-// Drawn last, on top of all lines.
-void DrawCaptions(const OverlayInput& input, Canvas* canvas) {
-  for (const auto& [landmark, caption, front_caption] : input.landmarks) {
-    const auto outline = OutlineBox(input.camera, landmark);
-    if (outline && !caption.empty()) {
-      canvas->Text({outline->x_min, outline->y_min}, caption, kLandmarkStroke.colour);
-    }
-    if (outline && !front_caption.empty()) {
-      canvas->Text(*input.camera.Project(PointAt(landmark, Eigen::Vector3d::UnitX())),
-                   front_caption, kLandmarkStroke.colour);
-    }
-  }
-  for (const auto& [box, caption] : input.detections) {
-    canvas->Text({box.x_min, box.y_min}, caption, kDetectionStroke.colour);
-  }
-}
-
-void DrawGrid(const OverlayInput::Ground& ground, const Camera& camera, cv::Mat* image) {
-  cv::Mat drawn = image->clone();
-  Canvas canvas(camera, &drawn);
-  for (const auto& [begin, end] : GridAround(ground.plane_in_camera, ground.feet_in_camera).lines) {
-    canvas.Segment(begin, end, {palette::kWhite, 1});
-  }
-  *image = (1.0 - kGridOpacity) * *image + kGridOpacity * drawn;
-}
-
 // Contact points of detections by plane; `planes_in_camera`, if not empty, replace those of
 // detections.
-std::vector<OverlayInput::Ground> GroundsOf(const Sequence& sequence, int frame_index,
-                                            const std::vector<Plane>& planes_in_camera) {
+std::vector<OverlayInput::Ground> FindGrounds(const Sequence& sequence, int frame_index,
+                                              const std::vector<Plane>& planes_in_camera) {
   std::map<int, OverlayInput::Ground> by_plane;
   if (!sequence.HasSupports()) return {};
   for (const Detection& detection : DetectionsIn(sequence, frame_index)) {
@@ -140,7 +97,7 @@ OverlayInput OverlayOfFrame(const Sequence& sequence, int frame_index) {
   const Frame& frame = sequence.frames[frame_index];
   OverlayInput input;
   input.camera = sequence.CameraOf(frame);
-  input.grounds = GroundsOf(sequence, frame_index, {});
+  input.grounds = FindGrounds(sequence, frame_index, {});
   for (const Detection& detection : DetectionsIn(sequence, frame_index)) {
     input.detections.push_back({detection.box, CaptionOf(sequence.ObjectOf(detection))});
     if (const auto truth = TrueLandmarkInCamera(sequence, detection)) {
@@ -175,7 +132,7 @@ OverlayInput OverlayOfMap(const Sequence& sequence, const MapEstimate& map, int 
   for (const Plane& plane : map.planes_in_world) {
     planes_in_camera.push_back(Transform(camera_from_world, plane));
   }
-  input.grounds = GroundsOf(sequence, frame_index, planes_in_camera);
+  input.grounds = FindGrounds(sequence, frame_index, planes_in_camera);
   return input;
 }
 
@@ -190,17 +147,46 @@ OverlayInput OverlayOfWorld(const World& world, const WorldFrame& frame) {
 }
 
 void DrawOverlay(const OverlayInput& input, cv::Mat* image) {
-  for (const auto& ground : input.grounds) DrawGrid(ground, input.camera, image);
+  constexpr double kGridOpacity = 0.5;
+  for (const auto& [plane, feet] : input.grounds) {
+    cv::Mat drawn = image->clone();
+    Canvas grid(input.camera, &drawn);
+    for (const auto& [begin, end] : GridAround(plane, feet).lines) {
+      grid.Segment(begin, end, {palette::kWhite, 1});
+    }
+    *image = (1.0 - kGridOpacity) * *image + kGridOpacity * drawn;
+  }
   Canvas canvas(input.camera, image);
   for (const auto& [truth, may_have_front] : input.truths_in_camera) {
-    DrawCircumscribedBox(truth, kTruthStroke, &canvas);
+    for (const auto& [start, end] : UnitCuboidEdges()) {
+      canvas.Segment(PointAt(truth, start), PointAt(truth, end), kTruthStroke);
+    }
     DrawAxes(truth, may_have_front, kTruthStroke, kTruthAxis, &canvas);
   }
-  for (const auto& body : input.landmarks) DrawBody(body, input.camera, &canvas);
+  for (const auto& [landmark, caption, front_caption] : input.landmarks) {
+    const Polygon outline = OutlinePolygon(input.camera, landmark);
+    if (outline.empty()) continue;
+    canvas.Lines(outline, true, kLandmarkStroke);
+    DrawAxes(landmark, /*has_front=*/!front_caption.empty(), kLandmarkStroke, kLandmarkAxis,
+             &canvas);
+  }
   for (const auto& [box, caption] : input.detections) {
     canvas.Lines(CornersOf(box), true, kDetectionStroke);
   }
-  DrawCaptions(input, &canvas);
+  // Captions are on top of all lines.
+  for (const auto& [landmark, caption, front_caption] : input.landmarks) {
+    const auto outline = OutlineBox(input.camera, landmark);
+    if (outline && !caption.empty()) {
+      canvas.Text({outline->x_min, outline->y_min}, caption, kLandmarkStroke.colour);
+    }
+    if (outline && !front_caption.empty()) {
+      canvas.Text(*input.camera.Project(PointAt(landmark, Eigen::Vector3d::UnitX())), front_caption,
+                  kLandmarkStroke.colour);
+    }
+  }
+  for (const auto& [box, caption] : input.detections) {
+    canvas.Text({box.x_min, box.y_min}, caption, kDetectionStroke.colour);
+  }
 }
 
 std::vector<CaptionEntry> OverlayLegend(const OverlayInput& input) {
@@ -230,43 +216,11 @@ namespace {
 // A camera of which only the size matters, for drawing in pixels.
 Camera CameraOfSize(const cv::Mat& image) { return {.width = image.cols, .height = image.rows}; }
 
-cv::Mat WithCorners(const EdgeMaps& maps, int min_width) {
-  cv::Mat picture = DrawingGround(maps.grey, min_width);
-  Canvas canvas(CameraOfSize(maps.grey), &picture);
-  for (const Eigen::Vector2f& corner : maps.corners) {
-    canvas.Disc(corner.cast<double>(), palette::kYellow);
-  }
-  return picture;
-}
-
-// Infinite distances (an image without edges) are dark.
-cv::Mat DistancePicture(const cv::Mat& distance, double largest) {
-  cv::Mat scaled = cv::Mat::zeros(distance.size(), CV_8UC1);
-  if (largest > 0.0) distance.convertTo(scaled, CV_8U, 255.0 / largest);
-  cv::Mat picture;
-  cv::applyColorMap(scaled, picture, cv::COLORMAP_VIRIDIS);
-  return picture;
-}
-
 // Red for right, then by the angle clockwise, as the image's y axis points down.
-cv::Vec3b HueOf(const cv::Point2f& direction) {
+cv::Vec3b EncodeDirection(const cv::Point2f& direction) {
   const float degrees = cv::fastAtan2(direction.y, direction.x);
   const auto hue = static_cast<uchar>(std::lround(0.5F * degrees) % 180);  // OpenCV's unit: 2 deg
   return {hue, 200, 255};
-}
-
-// A legend of the colours of all directions, at the lower right.
-void DrawColourWheel(cv::Mat* hues) {
-  const int radius = std::min(hues->rows, hues->cols) / 10;
-  const cv::Point centre(hues->cols - radius - 4, hues->rows - radius - 4);
-  cv::circle(*hues, centre, radius + 2, {0, 0, 255}, cv::FILLED);
-  for (int y = -radius; y <= radius; ++y) {
-    for (int x = -radius; x <= radius; ++x) {
-      if (x * x + y * y > radius * radius) continue;
-      hues->at<cv::Vec3b>(centre + cv::Point(x, y)) =
-          HueOf({static_cast<float>(x), static_cast<float>(y)});
-    }
-  }
 }
 
 // Edge pixels are black; without edges all pixels are.
@@ -276,10 +230,21 @@ cv::Mat DirectionPicture(const cv::Mat& nearest_edge) {
     for (int x = 0; x < hues.cols; ++x) {
       const auto& edge = nearest_edge.at<cv::Vec2s>(y, x);
       const cv::Point2f direction(static_cast<float>(edge[0] - x), static_cast<float>(edge[1] - y));
-      if (edge[0] >= 0 && direction != cv::Point2f()) hues.at<cv::Vec3b>(y, x) = HueOf(direction);
+      if (edge[0] < 0 || direction == cv::Point2f()) continue;
+      hues.at<cv::Vec3b>(y, x) = EncodeDirection(direction);
     }
   }
-  DrawColourWheel(&hues);
+  // The colour wheel at the lower right is a legend of all directions.
+  const int radius = std::min(hues.rows, hues.cols) / 10;
+  const cv::Point centre(hues.cols - radius - 4, hues.rows - radius - 4);
+  cv::circle(hues, centre, radius + 2, {0, 0, 255}, cv::FILLED);
+  for (int y = -radius; y <= radius; ++y) {
+    for (int x = -radius; x <= radius; ++x) {
+      if (x * x + y * y > radius * radius) continue;
+      hues.at<cv::Vec3b>(centre + cv::Point(x, y)) =
+          EncodeDirection({static_cast<float>(x), static_cast<float>(y)});
+    }
+  }
   cv::Mat picture;
   cv::cvtColor(hues, picture, cv::COLOR_HSV2BGR);
   return picture;
@@ -288,21 +253,32 @@ cv::Mat DirectionPicture(const cv::Mat& nearest_edge) {
 cv::Mat LayerPicture(const EdgeMaps& maps, EdgeLayer layer, const std::string& title,
                      int min_width) {
   const int edges = cv::countNonZero(maps.edges);
-  double largest = 0.0;
-  if (edges > 0) cv::minMaxLoc(maps.distance, nullptr, &largest);
   const auto captioned = [&](const cv::Mat& picture, const std::string& text) {
     return WithCaption(DrawingGround(picture, min_width), {{title}, {text}});
   };
   switch (layer) {
-    case EdgeLayer::kGrey:
-      return captioned(WithCorners(maps, min_width),
-                       fmt::format("{} corners", maps.corners.size()));
+    case EdgeLayer::kGrey: {
+      cv::Mat picture = DrawingGround(maps.grey, min_width);
+      Canvas canvas(CameraOfSize(maps.grey), &picture);
+      for (const Eigen::Vector2f& corner : maps.corners) {
+        canvas.Disc(corner.cast<double>(), palette::kYellow);
+      }
+      return captioned(picture, fmt::format("{} corners", maps.corners.size()));
+    }
     case EdgeLayer::kEdges:
       return captioned(maps.edges, fmt::format("{} edge pixels", edges));
-    case EdgeLayer::kDistance:
+    case EdgeLayer::kDistance: {
+      // Infinite distances (an image without edges) are dark.
+      cv::Mat scaled = cv::Mat::zeros(maps.distance.size(), CV_8UC1);
+      double largest = 0.0;
+      if (edges > 0) cv::minMaxLoc(maps.distance, nullptr, &largest);
+      if (largest > 0.0) maps.distance.convertTo(scaled, CV_8U, 255.0 / largest);
+      cv::Mat picture;
+      cv::applyColorMap(scaled, picture, cv::COLORMAP_VIRIDIS);
       return captioned(
-          DistancePicture(maps.distance, largest),
+          picture,
           fmt::format("distance to the nearest edge, 0 (dark) to {:.1f} px (bright)", largest));
+    }
     default:
       return captioned(DirectionPicture(maps.nearest_edge),
                        "direction to the nearest edge, by the colours of the wheel");

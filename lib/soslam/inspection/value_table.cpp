@@ -27,7 +27,7 @@ bool IsVector(const Value& value) {
 }
 
 // How many numbers each value of a column has; 0 unless all have equally many.
-size_t PartsOf(const ValueTable& table, size_t column) {
+size_t CountParts(const ValueTable& table, size_t column) {
   size_t parts = 0;
   for (const std::vector<Value>& row : table.rows) {
     if (row[column].is_null()) continue;
@@ -50,7 +50,7 @@ struct PrintedColumn {
   bool is_text = false;
 };
 
-std::vector<std::string> LinesOf(const std::string& name) {
+std::vector<std::string> SplitName(const std::string& name) {
   std::vector<std::string> lines;
   for (const std::string_view part : SplitFields(name, '/')) {
     if (!lines.empty()) lines.back() += '/';
@@ -64,7 +64,7 @@ std::vector<PrintedColumn> PrintedColumns(const ValueTable& table, size_t rows, 
   for (size_t k = 0; k < table.columns.size(); ++k) {
     const auto is_empty = [&](const auto& row) { return row[k].is_null() || row[k] == ""; };
     if (std::ranges::all_of(table.rows, is_empty)) continue;
-    PrintedColumn column{LinesOf(table.columns[k].name)};
+    PrintedColumn column{SplitName(table.columns[k].name)};
     column.texts.insert(column.texts.begin(), name_lines - column.texts.size(), "");
     double largest = 0.0;
     for (size_t i = 0; i < rows; ++i) largest = std::max(largest, LargestIn(table.rows[i][k]));
@@ -79,18 +79,6 @@ std::vector<PrintedColumn> PrintedColumns(const ValueTable& table, size_t rows, 
     printed.push_back(std::move(column));
   }
   return printed;
-}
-
-// Texts are aligned left, numbers right.
-std::string PrintedLine(const std::vector<PrintedColumn>& columns, size_t line) {
-  std::string text;
-  for (const PrintedColumn& column : columns) {
-    const std::string& value = column.texts[line];
-    const std::string padding(column.width - WidthOf(value), ' ');
-    text += (text.empty() ? "" : "  ") + (column.is_text ? value + padding : padding + value);
-  }
-  text.erase(text.find_last_not_of(' ') + 1);
-  return text;
 }
 
 }  // namespace
@@ -129,7 +117,7 @@ std::string FormatTable(const ValueTable& table, bool is_coloured, const TableLi
   const size_t rows = std::min(limits.rows, table.rows.size());
   size_t name_lines = 0;
   for (const ValueColumn& column : table.columns) {
-    name_lines = std::max(name_lines, LinesOf(column.name).size());
+    name_lines = std::max(name_lines, SplitName(column.name).size());
   }
   const std::vector<PrintedColumn> columns = PrintedColumns(table, rows, name_lines);
   constexpr size_t kRepeated = 2;
@@ -147,7 +135,14 @@ std::string FormatTable(const ValueTable& table, bool is_coloured, const TableLi
     } while (next < columns.size() && width + columns[next].width <= limits.width);
     if (!text.empty()) text += '\n';
     for (size_t line = 0; line < name_lines + rows; ++line) {
-      const std::string printed = PrintedLine(part, line);
+      std::string printed;
+      for (const PrintedColumn& column : part) {
+        const std::string& value = column.texts[line];
+        const std::string padding(column.width - WidthOf(value), ' ');
+        printed +=
+            (printed.empty() ? "" : "  ") + (column.is_text ? value + padding : padding + value);
+      }
+      printed.erase(printed.find_last_not_of(' ') + 1);
       if (printed.empty()) continue;
       const bool is_name = is_coloured && line < name_lines;
       text += is_name ? fmt::format(fmt::text_style(fmt::emphasis::bold), "{}", printed) : printed;
@@ -161,7 +156,7 @@ std::string FormatCsv(const ValueTable& table) {
   Table texts;
   std::vector<size_t> parts;
   for (size_t k = 0; k < table.columns.size(); ++k) {
-    parts.push_back(PartsOf(table, k));
+    parts.push_back(CountParts(table, k));
     const std::string& name = table.columns[k].name;
     if (parts[k] == 0) texts.header.push_back(name);
     for (size_t i = 0; i < parts[k]; ++i) texts.header.push_back(fmt::format("{}/{}", name, i));

@@ -49,25 +49,6 @@ bool SolveWithImages(BackEndProblem* problem) {
   return false;
 }
 
-void AddObjects(const BackEndInput& input, const BackEndProblem& problem, MapEstimate* map) {
-  const auto detections = DetectionsByObject(input.sequence);
-  const std::vector<std::optional<Landmark>> landmarks = problem.variables().LandmarkValues();
-  for (size_t i = 0; i < landmarks.size(); ++i) {
-    ObjectEstimate object;
-    object.object_index = static_cast<int>(i);
-    object.observations = static_cast<int>(detections[i].size());
-    if (!landmarks[i]) {
-      object.failure = input.sequence.objects[i].is_static ? "no_start" : kMovingObject;
-    } else if (HasExtent(*landmarks[i])) {
-      object.landmark_in_world = landmarks[i];
-      object.points = problem.PointsOf(i);
-    } else {
-      object.failure = "collapsed";  // as boxes alone may be explained best
-    }
-    map->objects.push_back(object);
-  }
-}
-
 void AddCovariances(const Sequence& sequence, const MarginalCovariances& covariances,
                     double dispersion, BackEndProblem* problem, MapEstimate* map) {
   BackEndVariables& variables = problem->variables();
@@ -121,7 +102,22 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
   for (size_t i = 0; i < input.sequence.planes.size(); ++i) {
     map.planes_in_world.push_back(variables.PlaneValue(i));
   }
-  AddObjects(input, problem, &map);
+  const auto detections = DetectionsByObject(input.sequence);
+  const std::vector<std::optional<Landmark>> landmarks = variables.LandmarkValues();
+  for (size_t i = 0; i < landmarks.size(); ++i) {
+    ObjectEstimate object;
+    object.object_index = static_cast<int>(i);
+    object.observations = static_cast<int>(detections[i].size());
+    if (!landmarks[i]) {
+      object.failure = input.sequence.objects[i].is_static ? "no_start" : kMovingObject;
+    } else if (HasExtent(*landmarks[i])) {
+      object.landmark_in_world = landmarks[i];
+      object.points = problem.PointsOf(i);
+    } else {
+      object.failure = "collapsed";  // as boxes alone may be explained best
+    }
+    map.objects.push_back(object);
+  }
   if (options.covariances) {
     problem.PrepareCovariances();
     const MarginalCovariances covariances(&problem.problem());

@@ -63,8 +63,10 @@ void RefuseOfOtherStages(const std::string& name, const PipelineStage* stage,
                                   stages.size() == 1 ? "of this stage" : "of one of these stages"));
 }
 
-// Checks one file separately, so that a message can name it.
-void CheckLayer(const json& layer, const std::string& file) {
+// Reads a file and checks it separately, so that a message can name it.
+json ReadLayer(const fs::path& path) {
+  json layer = ReadSettingsFile(path);
+  const std::string file = path.string();
   for (const auto& [key, value] : layer.items()) {
     if (value.is_null()) continue;  // null in a merge patch removes the value of a lower layer
     if (const PipelineStage* stage = FindStage(key)) {
@@ -95,11 +97,6 @@ void CheckLayer(const json& layer, const std::string& file) {
           file, key, fmt::join(PipelineStages(), ", ")));
     }
   }
-}
-
-json ReadLayer(const fs::path& file) {
-  json layer = ReadSettingsFile(file);
-  CheckLayer(layer, file.string());
   return layer;
 }
 
@@ -148,20 +145,8 @@ void CheckNeeds(const VariantSettings& settings, const std::string& file) {
   }
 }
 
-// A variant's own settings of a stage that it does not run would change nothing, without a word.
-void CheckSectionsAreUsed(const VariantSettings& settings, const json& own_layer,
-                          const std::string& file) {
-  for (const auto& [key, value] : own_layer.items()) {
-    const PipelineStage* stage = FindStage(key);
-    if (stage == nullptr || value.is_null() || settings.options.contains(key)) continue;
-    if (stage->asked_by != nullptr && value.contains(stage->asked_by)) continue;
-    throw SettingsError(
-        fmt::format("{}: has settings of stage '{}', which does not run", file, key));
-  }
-}
-
 // Resolved options of the stages that run.
-StageOptions OptionsOf(const json& merged, const std::string& file) {
+StageOptions ResolveOptions(const json& merged, const std::string& file) {
   const auto listed = merged.at("stages").get<std::set<std::string>>();
   const auto resolve = [&](const PipelineStage& stage) {
     return stage.resolve(merged.value(stage.name, json::object()),
@@ -224,12 +209,20 @@ VariantSettings ReadVariant(const fs::path& pipelines, const std::string& datase
   const std::string file = variant_file.string();
   CheckStageList(merged.value("stages", json()), file);
   settings.semantic_table = merged.value("semantic_table", "priors/semantic_table.json");
-  settings.options = OptionsOf(merged, file);
+  settings.options = ResolveOptions(merged, file);
   CheckNeeds(settings, file);
-  CheckSectionsAreUsed(settings, layers.back().settings, file);
+  // The variant's own settings of a stage that it does not run would change nothing, without a
+  // word.
+  for (const auto& [key, value] : layers.back().settings.items()) {
+    const PipelineStage* stage = FindStage(key);
+    if (stage == nullptr || value.is_null() || settings.options.contains(key)) continue;
+    if (stage->asked_by != nullptr && value.contains(stage->asked_by)) continue;
+    throw SettingsError(
+        fmt::format("{}: has settings of stage '{}', which does not run", file, key));
+  }
   without_dataset["stages"] = dataset_alone["stages"] = merged.at("stages");
-  CheckUnusedSettings(layers.back(), OptionsOf(without_dataset, file), false, &settings);
-  CheckUnusedSettings(of_dataset, OptionsOf(dataset_alone, file), true, &settings);
+  CheckUnusedSettings(layers.back(), ResolveOptions(without_dataset, file), false, &settings);
+  CheckUnusedSettings(of_dataset, ResolveOptions(dataset_alone, file), true, &settings);
   return settings;
 }
 

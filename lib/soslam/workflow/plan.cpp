@@ -25,8 +25,8 @@ constexpr size_t kKeyDigits = 10;
 // Ids of instances of one variant, keyed by stage.
 using InstanceIds = std::map<std::string, std::string>;
 
-StageInstance InstanceOf(const std::string& stage, const VariantSettings& settings,
-                         const InstanceIds& before, bool has_edits) {
+StageInstance MakeInstance(const std::string& stage, const VariantSettings& settings,
+                           const InstanceIds& before, bool has_edits) {
   StageInstance instance;
   instance.stage = stage;
   instance.settings = settings.options.at(stage);
@@ -49,22 +49,6 @@ StageInstance InstanceOf(const std::string& stage, const VariantSettings& settin
   const json identity = {{"stage", stage}, {"settings", instance.settings}, {"inputs", inputs}};
   instance.key = Sha256OfText(identity.dump()).substr(0, kKeyDigits);
   return instance;
-}
-
-void CheckSemanticTable(const std::filesystem::path& pipelines, const VariantSettings& settings) {
-  const std::filesystem::path table = pipelines / settings.semantic_table;
-  if (Exists(table)) return;
-  throw InputError(fmt::format(
-      "{}: 'semantic_table' is \"{}\", but {} does not exist; expected the path of a table from {}",
-      settings.semantic_table_file, settings.semantic_table, table.string(), pipelines.string()));
-}
-
-void CheckHead(const std::filesystem::path& pipelines, const std::string& variant) {
-  if (Exists(pipelines / kHeadFile)) return;
-  throw InputError(fmt::format(
-      "{}: does not exist; variant '{}' runs the stage appearance, which needs it: copy it from "
-      "pipelines/pictures",
-      (pipelines / kHeadFile).string(), variant));
 }
 
 // True if some variant of the pipelines runs the stage of a setting of the dataset, or cannot be
@@ -122,15 +106,28 @@ Plan MakePlan(const std::filesystem::path& pipelines, const std::string& dataset
   std::vector<Finding> for_others;
   for (const std::string& variant : variants) {
     const VariantSettings settings = ReadVariant(pipelines, dataset, variant);
-    CheckSemanticTable(pipelines, settings);
-    if (settings.options.contains("appearance")) CheckHead(pipelines, variant);
+    const std::filesystem::path table = pipelines / settings.semantic_table;
+    if (!Exists(table)) {
+      throw InputError(
+          fmt::format("{}: 'semantic_table' is \"{}\", but {} does not exist; expected the path of "
+                      "a table from {}",
+                      settings.semantic_table_file, settings.semantic_table, table.string(),
+                      pipelines.string()));
+    }
+    const std::filesystem::path head = pipelines / kHeadFile;
+    if (settings.options.contains("appearance") && !Exists(head)) {
+      throw InputError(
+          fmt::format("{}: does not exist; variant '{}' runs the stage appearance, which needs it: "
+                      "copy it from pipelines/pictures",
+                      head.string(), variant));
+    }
     std::ranges::copy(settings.findings, std::back_inserter(plan.findings));
     std::ranges::copy(settings.for_others, std::back_inserter(for_others));
     VariantChain chain{variant, {}};
     InstanceIds ids;
     for (const std::string& stage : PipelineStages()) {
       if (!settings.options.contains(stage)) continue;
-      StageInstance instance = InstanceOf(stage, settings, ids, has_edits);
+      StageInstance instance = MakeInstance(stage, settings, ids, has_edits);
       ids[stage] = instance.Id();
       chain.instances.push_back(instance.Id());
       auto known = std::ranges::find(plan.instances, instance.Id(), &StageInstance::Id);

@@ -27,7 +27,7 @@ std::optional<fs::file_time_type> TimeOf(const fs::path& file) {
   return error ? std::nullopt : std::optional(time);
 }
 
-std::vector<std::string> LinesOf(const fs::path& file) {
+std::vector<std::string> ReadLines(const fs::path& file) {
   std::ifstream stream(file);
   std::vector<std::string> lines;
   for (std::string line; std::getline(stream, line);) lines.push_back(line);
@@ -40,7 +40,7 @@ std::vector<std::string> LinesOf(const fs::path& file) {
 std::string NewerFilesListedIn(const fs::path& listing, const fs::path& dataset,
                                fs::file_time_type done) {
   std::vector<std::string> newer;
-  for (const std::string& line : LinesOf(listing)) {
+  for (const std::string& line : ReadLines(listing)) {
     const size_t end = line.rfind(' ', line.rfind(' ') - 1);
     if (end == std::string::npos) continue;
     const std::string name = line.substr(0, end);
@@ -55,7 +55,7 @@ std::string NewerFilesListedIn(const fs::path& listing, const fs::path& dataset,
 
 std::map<std::string, StagesUnderWay> ReadStagesUnderWay(const fs::path& file) {
   std::map<std::string, StagesUnderWay> under_way;
-  for (const std::string& line : LinesOf(file)) {
+  for (const std::string& line : ReadLines(file)) {
     std::istringstream words(line);
     std::string dataset, id, state, more;
     words >> dataset >> id >> state;
@@ -123,7 +123,7 @@ std::vector<std::string> ChangesSinceLastRun(const Plan& plan, const VariantChai
                                              const StageInstance& instance,
                                              const PlanFolders& folders) {
   std::map<std::string, std::string> last;  // stage -> id
-  for (const std::string& id : LinesOf(folders.results / variant.name / ".linked")) {
+  for (const std::string& id : ReadLines(folders.results / variant.name / ".linked")) {
     last[StageOf(id)] = id;
   }
   const auto before = last.find(instance.stage);

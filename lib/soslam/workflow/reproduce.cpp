@@ -29,7 +29,7 @@ std::string Quoted(const std::string& word) {
 
 namespace fs = std::filesystem;
 
-std::set<std::string> ChangesOf(const Software& then, const Software& now) {
+std::set<std::string> CompareSoftware(const Software& then, const Software& now) {
   std::set<std::string> changes;
   const auto compare = [&](const std::string& what, const std::string& a, const std::string& b) {
     if (a == b) return;
@@ -65,12 +65,6 @@ std::string FirstDifference(const fs::path& recorded, const fs::path& again) {
   return "only in how the same values are stored";
 }
 
-void WriteSettings(const RunRecord& record, const fs::path& file) {
-  nlohmann::json settings = nlohmann::json::object();
-  for (const auto& [name, setting] : record.settings.value()) settings[name] = setting.value;
-  WriteTextFile(file, settings.dump(2) + "\n");
-}
-
 // Repeats the runs of a dataset one by one.
 class Reproduction {
  public:
@@ -89,7 +83,7 @@ class Reproduction {
     } catch (const InputError& error) {
       return not_rerun(error.what());
     }
-    software_changes_.merge(ChangesOf(record.software, ThisSoftware()));
+    software_changes_.merge(CompareSoftware(record.software, ThisSoftware()));
     if (const auto obstacle = Obstacle(record, run)) return not_rerun(*obstacle);
     if (const auto failure = RunAgain(record, run)) return not_rerun(*failure);
     rerun_.insert(run.folder);
@@ -101,7 +95,8 @@ class Reproduction {
   const std::set<std::string>& software_changes() const { return software_changes_; }
 
  private:
-  // Reason why a rerun is pointless; none if there is none.
+  // Reason why a rerun is pointless, such as an input that has changed and was not made again; none
+  // if there is none.
   std::optional<std::string> Obstacle(const RunRecord& record, const RecordedRun& run) {
     if (record.exit_code != 0) return "it failed when it was recorded: " + record.error;
     if (record.outputs.empty() || !record.settings)
@@ -110,7 +105,18 @@ class Reproduction {
       return "it was called with --allow_outside_paths, which has to be given again";
     }
     if (auto foreign = ForeignWrite(record, run)) return foreign;
-    return ChangedInput(record, run);
+    for (const RunFile& input : record.inputs) {
+      const fs::path path = PathOf(input, record, run, dataset_);
+      if (path.parent_path() == run.folder) continue;  // its settings, which are recorded
+      if (IsResult(path)) {
+        if (!rerun_.contains(path.parent_path())) {
+          return fmt::format("{}, which it reads, was not made again", path.string());
+        }
+      } else if (const auto change = digests_.ChangeOf(path, input.sha256)) {
+        return fmt::format("{} {} since", path.string(), *change);
+      }
+    }
+    return std::nullopt;
   }
 
   // Checks for writes outside of the results, as a record may come from anybody; returns the reason
@@ -138,36 +144,13 @@ class Reproduction {
     return std::nullopt;
   }
 
-  // An input that has changed; none when all are unchanged or made again.
-  std::optional<std::string> ChangedInput(const RunRecord& record, const RecordedRun& run) {
-    for (const RunFile& input : record.inputs) {
-      const fs::path path = PathOf(input, record, run, dataset_);
-      if (path.parent_path() == run.folder) continue;  // its settings, which are recorded
-      if (IsResult(path)) {
-        if (!rerun_.contains(path.parent_path())) {
-          return fmt::format("{}, which it reads, was not made again", path.string());
-        }
-      } else if (const auto change = digests_.ChangeOf(path, input.sha256)) {
-        return fmt::format("{} {} since", path.string(), *change);
-      }
-    }
-    return std::nullopt;
-  }
-
   // Repeats a run; returns the reason of a failure, none after success.
   std::optional<std::string> RunAgain(const RunRecord& record, const RecordedRun& run) const {
     const fs::path folder = Again(run.folder);
     fs::create_directories(folder);
-    WriteSettings(record, folder / "settings.json");
-    const int exit_code = RunProgram(Arguments(record, run), folder / "printed.txt");
-    if (exit_code == 0) return std::nullopt;
-    if (exit_code == 128 + SIGINT) throw NothingUsableError("interrupted");
-    const std::string failure = FailureIn(folder);
-    return "it failed: " + (failure.empty() ? fmt::format("exit code {}", exit_code) : failure);
-  }
-
-  std::vector<std::string> Arguments(const RunRecord& record, const RecordedRun& run) const {
-    const fs::path folder = Again(run.folder);
+    nlohmann::json settings = nlohmann::json::object();
+    for (const auto& [name, setting] : record.settings.value()) settings[name] = setting.value;
+    WriteTextFile(folder / "settings.json", settings.dump(2) + "\n");
     std::vector<std::string> words = {(executables_ / record.stage).string(),
                                       "--quiet",
                                       "--threads",
@@ -192,7 +175,11 @@ class Reproduction {
         add(*file.argument, IsResult(path) ? Again(path) : path);
       }
     }
-    return words;
+    const int exit_code = RunProgram(words, folder / "printed.txt");
+    if (exit_code == 0) return std::nullopt;
+    if (exit_code == 128 + SIGINT) throw NothingUsableError("interrupted");
+    const std::string failure = FailureIn(folder);
+    return "it failed: " + (failure.empty() ? fmt::format("exit code {}", exit_code) : failure);
   }
 
   Outcome Compare(const fs::path& artefact) const {

@@ -20,8 +20,8 @@ using nlohmann::json;
 
 // What a setting would need to have an effect; empty if it has one, or is for other variants, whose
 // 'stages' list its stage.
-OptionVisitor::Conditions UnmetConditionsOf(const PipelineStage& stage, const std::string& name,
-                                            const StageOptions& options) {
+OptionVisitor::Conditions FindUnmetConditions(const PipelineStage& stage, const std::string& name,
+                                              const StageOptions& options) {
   const std::vector<OptionRow> rows = stage.rows();
   const auto of_stage = options.find(stage.name);
   if (of_stage != options.end()) return UnmetConditions(rows, of_stage->second, name);
@@ -44,14 +44,14 @@ void CheckUnusedSettings(const SettingsOfFile& layer, const StageOptions& alone,
     const PipelineStage* stage = FindStage(key);
     if (stage == nullptr || !values.is_object()) continue;
     for (const auto& [name, value] : values.items()) {
-      const auto unmet = UnmetConditionsOf(*stage, name, settings->options);
+      const auto unmet = FindUnmetConditions(*stage, name, settings->options);
       if (value.is_null() || unmet.empty()) continue;
       const Finding finding =
           SettingWithoutEffect(layer.file.string() + ": " + key, name, value, unmet);
       const bool is_said = !is_of_dataset || std::ranges::any_of(unmet, [&](const auto& condition) {
         return values.contains(condition.option);
       });
-      if (is_said && !UnmetConditionsOf(*stage, name, alone).empty()) {
+      if (is_said && !FindUnmetConditions(*stage, name, alone).empty()) {
         settings->findings.push_back(finding);
       } else if (is_of_dataset && !settings->options.contains(key)) {
         settings->for_others.push_back(finding);

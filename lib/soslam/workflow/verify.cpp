@@ -127,8 +127,8 @@ bool IsDatasetGone(const DatasetRuns& dataset) {
   return !dataset.dataset.empty() && !IsFolder(dataset.dataset);
 }
 
-Discrepancy DiscrepancyOf(const fs::path& file, const std::string& problem,
-                          const std::vector<std::string>& variants) {
+Discrepancy MakeDiscrepancy(const fs::path& file, const std::string& problem,
+                            const std::vector<std::string>& variants) {
   return {fmt::format("{}: {}", file.string(), problem), variants};
 }
 
@@ -136,7 +136,7 @@ Discrepancy DiscrepancyOf(const fs::path& file, const std::string& problem,
 void CheckRun(const DatasetRuns& dataset, const RecordedRun& run, FileDigests* digests,
               RunRecord* record, std::vector<Discrepancy>* found) {
   const auto add = [&](const fs::path& file, const std::string& problem) {
-    found->push_back(DiscrepancyOf(file, problem, run.variants));
+    found->push_back(MakeDiscrepancy(file, problem, run.variants));
   };
   const std::string failure = FailureIn(run.folder);
   if (!failure.empty()) add(run.folder, "its last run failed: " + failure);
@@ -185,7 +185,7 @@ void CheckVariant(const DatasetRuns& dataset, const VariantRuns& variant,
   for (const auto& [file, run] : makers) {
     if (fs::equivalent(folder / file, dataset.results / run / file, not_there)) continue;
     const bool is_there = Exists(folder / file);
-    found->push_back(DiscrepancyOf(
+    found->push_back(MakeDiscrepancy(
         folder / file, is_there ? "is not the one of " + run : "is gone; expected that of " + run,
         {variant.name}));
   }
@@ -198,7 +198,7 @@ void CheckVariant(const DatasetRuns& dataset, const VariantRuns& variant,
     strangers.insert(entry.path());
   }
   for (const fs::path& file : strangers) {
-    found->push_back(DiscrepancyOf(file, "no run of the variant wrote it", {variant.name}));
+    found->push_back(MakeDiscrepancy(file, "no run of the variant wrote it", {variant.name}));
   }
 }
 
@@ -224,8 +224,8 @@ Verification Verify(const DatasetRuns& dataset) {
   if (IsDatasetGone(dataset)) {  // one discrepancy instead of one for each of its files
     std::vector<std::string> all;
     for (const VariantRuns& variant : dataset.variants) all.push_back(variant.name);
-    found->push_back(DiscrepancyOf(dataset.dataset,
-                                   "the dataset is not there; its files are not compared", all));
+    found->push_back(MakeDiscrepancy(dataset.dataset,
+                                     "the dataset is not there; its files are not compared", all));
   }
   FileDigests digests;
   std::map<std::string, RunRecord> records;
