@@ -13,16 +13,16 @@
 namespace soslam {
 namespace {
 
-// Below this root mean square distance of the true camera centres from their mean, the camera is
+// Root mean square distance of the true camera centres from their mean, below which the camera is
 // taken to stand still.
 constexpr double kStillM = 0.005;
 // Paths are unlike each other when the best similarity leaves more than this share of that
-// distance.
+// distance between them.
 constexpr double kUnlikeShare = 0.5;
-// Centres are on a line when they determine the rotation about it no better than this (standard
-// deviation): cameras' own rotations do then.
+// Centres are on a line when the standard deviation of the rotation about it, as they determine it,
+// is above this. The cameras' own rotations determine it then.
 constexpr double kLineDeg = 0.5;
-// Smallest noise that is assumed of a path, also of an exact one, as a share of the distance above.
+// Smallest noise that is assumed even of an exact path, as a share of that distance.
 constexpr double kLeastNoise = 1e-5;
 
 // Camera centres and their means.

@@ -35,9 +35,9 @@ std::optional<InFrames> CompareInFrames(const ReasonInput& input, const TrueView
                   *MeanWhatIf(errors, &LandmarkErrors::what_if)};
 }
 
-// The row of a landmark: found as `input` matches it; otherwise ignored if things are there that
-// are ignored and it is not to blame for a wanted object, or false, with the reason. `detections`
-// are those of the landmark's object.
+// The row of a landmark: found if `input` matches it; else ignored if it is at the place of ignored
+// things and the reason why it is false names no wanted object; else false, with that reason.
+// `detections` are those of the landmark's object.
 LandmarkRow MakeRow(const ReasonInput& input, const TrueViews& views,
                     const std::vector<int>& detections, size_t landmark_index) {
   const Sequence& sequence = input.sequence;

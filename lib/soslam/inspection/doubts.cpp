@@ -11,7 +11,6 @@
 #include <map>
 
 #include "soslam/artefact/files.h"
-#include "soslam/base/error.h"
 #include "soslam/base/paths.h"
 #include "soslam/evaluation/statistics.h"
 #include "soslam/model/segments.h"
@@ -21,8 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// True if the centre may be farther off in a horizontal direction than its body reaches there,
-// along a principal axis of the horizontal part of its covariance.
+// True if the centre may be off by more than the body's reach from it, along a principal axis of
+// the horizontal part of the centre's covariance.
 bool IsPlaceUncertain(const Landmark& landmark, const Eigen::Matrix3d& covariance_of_centre,
                       const Eigen::Vector3d& up_in_world) {
   Eigen::Matrix<double, 3, 2> horizontal;

@@ -48,8 +48,8 @@ bool HasSetting(const PipelineStage& stage, const std::string& name) {
   return std::ranges::find(rows, name, &OptionRow::name) != rows.end();
 }
 
-// Throws SettingsError if only other stages have a setting of this name. `stage` is that in whose
-// section it is; null for none.
+// Throws SettingsError if only other stages have a setting of this name. `stage` is the one in
+// whose section the setting is; null outside of sections.
 void RefuseOfOtherStages(const std::string& name, const PipelineStage* stage,
                          const std::string& where) {
   if (stage != nullptr && HasSetting(*stage, name)) return;

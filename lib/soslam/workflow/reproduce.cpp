@@ -48,8 +48,8 @@ std::set<std::string> CompareSoftware(const Software& then, const Software& now)
   return changes;
 }
 
-// First difference between two artefacts of different bytes; one in a header comes last, as its
-// inputs differ whenever theirs do.
+// First difference between two artefacts of different bytes. Those of headers come last: a header
+// has the hashes of the inputs, and differs whenever they do.
 std::string FirstDifference(const fs::path& recorded, const fs::path& again) {
   constexpr double kExactly = 0.0;
   try {

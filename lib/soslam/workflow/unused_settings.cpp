@@ -18,8 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// What a setting would need to have an effect; empty if it has one, or is for other variants, whose
-// 'stages' list its stage.
+// The conditions that a setting lacks to have an effect. None if it has one, or if its stage runs
+// only in other variants, which list it in 'stages'.
 OptionVisitor::Conditions FindUnmetConditions(const PipelineStage& stage, const std::string& name,
                                               const StageOptions& options) {
   const std::vector<OptionRow> rows = stage.rows();

@@ -132,7 +132,7 @@ Discrepancy MakeDiscrepancy(const fs::path& file, const std::string& problem,
   return {fmt::format("{}: {}", file.string(), problem), variants};
 }
 
-// Compares a run with its record, which is left empty where it has none.
+// Compares a run with its record; `record` is left empty if the run has none.
 void CheckRun(const DatasetRuns& dataset, const RecordedRun& run, FileDigests* digests,
               RunRecord* record, std::vector<Discrepancy>* found) {
   const auto add = [&](const fs::path& file, const std::string& problem) {
