@@ -36,41 +36,34 @@ const std::map<std::vector<size_t>, std::set<std::string>> kLensModels = {
     {{8}, {"fullopencv"}},
     {{12, 14}, {"thinprism"}}};
 
-// Normalised model name: lower case, without word separators.
-std::string PlainName(const std::string& model) {
-  std::string name = LowerCase(model);
-  std::erase_if(name, [](char c) { return c == '_' || c == '-' || c == ' '; });
-  return name;
-}
-
-// True for a wide-angle model, whose field of view exceeds that of a pinhole image.
-bool IsWideAngle(const std::string& plain_name) {
-  for (const char* part : {"fisheye", "equi", "kannala", "kb", "omni", "mei", "unified", "ucm",
-                           "doublesphere", "fov", "atan", "scaramuzza", "spherical", "ftheta"}) {
-    if (plain_name.find(part) != std::string::npos) return true;
-  }
-  return plain_name == "ds";
-}
-
-[[noreturn]] void RefuseModel(const std::string& model, const std::string& place) {
-  throw InputError(fmt::format(
-      "{}: lens model '{}' is not {}", place, model,
-      IsWideAngle(PlainName(model))
-          ? "supported; expected OpenCV's for pinhole cameras: undistort the images first "
-            "(cv::fisheye::undistortImage, COLMAP's image_undistorter) and give the camera of the "
-            "undistorted ones"
-          : "known; expected pinhole, opencv, plumb_bob, radtan, rational_polynomial or none: "
-            "OpenCV's for pinhole cameras"));
-}
+// Parts of the names of models whose field of view exceeds that of a pinhole image.
+constexpr std::array kWideAngle = {"fisheye", "equi",       "kannala",   "kb",           "omni",
+                                   "mei",     "unified",    "ucm",       "doublesphere", "fov",
+                                   "atan",    "scaramuzza", "spherical", "ftheta"};
 
 }  // namespace
 
 std::optional<Distortion> ParseLens(const std::string& model, std::span<const double> coefficients,
                                     const std::string& place) {
-  const std::string name = PlainName(model);
+  std::string name = LowerCase(model);  // without word separators
+  std::erase_if(name, [](char c) { return c == '_' || c == '-' || c == ' '; });
   const auto found = std::ranges::find_if(
       kLensModels, [&](const auto& entry) { return entry.second.contains(name); });
-  if (found == kLensModels.end()) RefuseModel(model, place);
+  if (found == kLensModels.end()) {
+    const bool is_wide_angle =
+        name == "ds" || std::ranges::any_of(kWideAngle, [&](const char* part) {
+          return name.find(part) != name.npos;
+        });
+    throw InputError(fmt::format(
+        "{}: lens model '{}' is not {}", place, model,
+        is_wide_angle
+            ? "supported; expected OpenCV's for pinhole cameras: undistort the images first "
+              "(cv::fisheye::undistortImage, COLMAP's image_undistorter) and give the camera of "
+              "the "
+              "undistorted ones"
+            : "known; expected pinhole, opencv, plumb_bob, radtan, rational_polynomial or none: "
+              "OpenCV's for pinhole cameras"));
+  }
   const std::vector<size_t>& counts = found->first;
   const bool are_zero = std::ranges::all_of(coefficients, [](double k) { return k == 0.0; });
   if (std::ranges::find(counts, coefficients.size()) == counts.end() ||
@@ -88,22 +81,6 @@ std::optional<Distortion> ParseLens(const std::string& model, std::span<const do
 
 namespace {
 
-// Normalised key: lower case, without underscores and without Kalibr's and ORB-SLAM3's prefix of
-// the first camera.
-std::string PlainKey(const std::string& key) {
-  std::string plain = LowerCase(key);
-  std::erase(plain, '_');
-  if (plain.starts_with("cam0.")) return plain.substr(5);
-  return plain.starts_with("camera1.") ? "camera." + plain.substr(8) : plain;
-}
-
-// True for a field of another camera of Kalibr's than the first: "cam1.intrinsics".
-bool IsOfOtherCamera(const std::string& plain_key) {
-  const std::string camera = plain_key.substr(0, plain_key.find('.'));
-  return camera.size() > 3 && camera.starts_with("cam") &&
-         camera.find_first_not_of("0123456789", 3) == camera.npos;
-}
-
 // True if the field's name denotes distortion, and not the size of a matrix.
 bool IsOfDistortion(const std::string& plain_key) {
   for (const char* end : {".rows", ".cols"}) {
@@ -119,9 +96,22 @@ class CalibrationReader {
  public:
   CalibrationReader(const NamedFields& fields, std::string file) : file_(std::move(file)) {
     for (const auto& [key, values] : fields) {
-      if (IsOfOtherCamera(PlainKey(key))) continue;
-      fields_[PlainKey(key)] = values;
-      names_[PlainKey(key)] = key;
+      std::string plain = LowerCase(key);
+      std::erase(plain, '_');
+      // Kalibr's and ORB-SLAM3's prefix of the first camera.
+      if (plain.starts_with("cam0.")) {
+        plain.erase(0, 5);
+      } else if (plain.starts_with("camera1.")) {
+        plain.replace(0, 8, "camera.");
+      }
+      // Fields of other cameras of Kalibr's: "cam1.intrinsics".
+      const std::string camera = plain.substr(0, plain.find('.'));
+      if (camera.size() > 3 && camera.starts_with("cam") &&
+          camera.find_first_not_of("0123456789", 3) == camera.npos) {
+        continue;
+      }
+      fields_[plain] = values;
+      names_[plain] = key;
     }
   }
 
@@ -240,7 +230,10 @@ class CalibrationReader {
     }
   }
 
-  void RefuseFisheye() const {
+  std::optional<Distortion> Lens() const {
+    const Values* read = Find({"distortioncoefficients.data", "distortioncoefficients",
+                               "distortioncoeffs.data", "distortioncoeffs", "distcoeffs.data",
+                               "distcoeffs", "distcoeff.data", "distcoeff", "d.data", "d"});
     for (const auto& [key, values] : fields_) {
       if (key.find("fisheye") == key.npos || values.empty()) continue;
       const std::string& value = values.front();
@@ -248,10 +241,7 @@ class CalibrationReader {
         continue;
       ParseLens("fisheye", {}, fmt::format("{}: {} is {}", file_, names_.at(key), value));
     }
-  }
-
-  // Refuses distortion in fields that are not `read`, so that it is not ignored silently.
-  void RefuseOtherDistortion(const Values* read) const {
+    // Distortion in other fields would be ignored silently.
     for (const auto& [key, values] : fields_) {
       const bool has_number = std::ranges::any_of(
           values, [](const std::string& value) { return ParseNumber(value).has_value(); });
@@ -259,24 +249,14 @@ class CalibrationReader {
       Refuse(fmt::format("{} is not read; expected distortion_coefficients, dist_coeffs or D, once",
                          names_.at(key)));
     }
-  }
-
-  std::vector<double> Coefficients() const {
-    const Values* values = Find({"distortioncoefficients.data", "distortioncoefficients",
-                                 "distortioncoeffs.data", "distortioncoeffs", "distcoeffs.data",
-                                 "distcoeffs", "distcoeff.data", "distcoeff", "d.data", "d"});
-    RefuseFisheye();
-    RefuseOtherDistortion(values);
-    if (values != nullptr) return Numbers(*values, "distortion coefficients");
     std::vector<double> coefficients;
-    for (const char* key : {"camera.k1", "camera.k2", "camera.p1", "camera.p2", "camera.k3"}) {
-      coefficients.push_back(NumberOrZero(key));
+    if (read != nullptr) {
+      coefficients = Numbers(*read, "distortion coefficients");
+    } else {
+      for (const char* key : {"camera.k1", "camera.k2", "camera.p1", "camera.p2", "camera.k3"}) {
+        coefficients.push_back(NumberOrZero(key));
+      }
     }
-    return coefficients;
-  }
-
-  std::optional<Distortion> Lens() const {
-    const std::vector<double> coefficients = Coefficients();
     for (const char* key : {"cameramodel", "cameratype", "camera.type", "distortionmodel"}) {
       const Values* name = Find({key});
       if (name == nullptr) continue;

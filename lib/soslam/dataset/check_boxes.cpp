@@ -27,18 +27,6 @@ const std::array kConventions = {
         "centre and size (cx, cy, width, height)",
         Eigen::Matrix4d{{1, 0, -0.5, 0}, {0, 1, 0, -0.5}, {1, 0, 0.5, 0}, {0, 1, 0, 0.5}}}};
 
-const BoxConvention& ConventionOf(const ImportOptions& options) {
-  switch (options.folder.detections_format) {
-    case DetectionsFormat::kCoco:
-    case DetectionsFormat::kYoloPixels:
-      return kConventions[1];
-    case DetectionsFormat::kYolo:
-      return kConventions[2];
-    default:
-      return kConventions[0];
-  }
-}
-
 // Tolerance for detectors and rounding, as a share of the image's sides.
 constexpr double kMargin = 0.03;
 
@@ -50,27 +38,23 @@ bool Crosses(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
   return std::abs(across.dot(area.center() - from)) <= across.cwiseAbs().dot(0.5 * area.sizes());
 }
 
-// True if the box has an area, and each of its sides is at least in part in the image, up to the
-// margin: what it is drawn around touches all sides. Upright boxes are then in the image.
-bool IsPlausible(const TurnedBox& turned, const Camera& camera) {
-  const Eigen::Vector2d size(camera.width, camera.height);
-  const Eigen::AlignedBox2d image(-kMargin * size, (1.0 + kMargin) * size);
-  if (!(turned.box.Width() > 0.0 && turned.box.Height() > 0.0)) return false;
-  const auto corners = turned.Corners();
-  for (size_t i = 0; i < corners.size(); ++i) {
-    if (!Crosses(corners[i], corners[(i + 1) % corners.size()], image)) return false;
-  }
-  return true;
-}
-
-// Number of plausible boxes after a linear change of their corners.
+// Number of boxes that are plausible after a linear change of their corners: that have an area, and
+// whose sides are each at least in part in the image, up to the margin. What a box is drawn around
+// touches all of its sides. Upright boxes are then in the image.
 int CountPlausible(const std::vector<TurnedBox>& boxes, const Camera& camera,
                    const Eigen::Matrix4d& change) {
+  const Eigen::Vector2d size(camera.width, camera.height);
+  const Eigen::AlignedBox2d image(-kMargin * size, (1.0 + kMargin) * size);
   return static_cast<int>(std::ranges::count_if(boxes, [&](const TurnedBox& turned) {
     const auto& [x_min, y_min, x_max, y_max] = turned.box;
-    const Eigen::Vector4d corners = change * Eigen::Vector4d(x_min, y_min, x_max, y_max);
-    return IsPlausible({{corners[0], corners[1], corners[2], corners[3]}, turned.angle_deg},
-                       camera);
+    const Eigen::Vector4d c = change * Eigen::Vector4d(x_min, y_min, x_max, y_max);
+    const TurnedBox changed{{c[0], c[1], c[2], c[3]}, turned.angle_deg};
+    if (!(changed.box.Width() > 0.0 && changed.box.Height() > 0.0)) return false;
+    const auto corners = changed.Corners();
+    for (size_t i = 0; i < corners.size(); ++i) {
+      if (!Crosses(corners[i], corners[(i + 1) % corners.size()], image)) return false;
+    }
+    return true;
   }));
 }
 
@@ -101,37 +85,6 @@ Eigen::Vector2d Extent(const std::vector<TurnedBox>& boxes) {
   return extent;
 }
 
-std::vector<Finding> CheckFractions(const std::vector<TurnedBox>& boxes, const Camera& camera) {
-  constexpr double kLargestFraction = 1.5;
-  const Eigen::Vector2d extent = Extent(boxes);
-  if (boxes.empty() || extent.maxCoeff() > kLargestFraction) return {};
-  return {
-      {"box_unit", Severity::kError,
-       fmt::format("all numbers of {} boxes are at most {:.3g}", boxes.size(), extent.maxCoeff()),
-       fmt::format("boxes in pixels of an image of {} x {}", camera.width, camera.height),
-       "boxes as fractions of the image",
-       "multiply x by the width and y by the height of the image, or set detections_format to "
-       "yolo where its layout fits"}};
-}
-
-// Compares the image sizes that the file of boxes states with the camera's.
-std::vector<Finding> CheckImageSizes(const std::vector<DetectionRow>& rows, const Camera& camera) {
-  const ImageSize size{camera.width, camera.height};
-  const auto is_other = [&](const DetectionRow& row) {
-    return row.image_size && *row.image_size != size;
-  };
-  const auto first = std::ranges::find_if(rows, is_other);
-  if (first == rows.end()) return {};
-  return {{"box_image_size", Severity::kError,
-           fmt::format("{} of {} boxes are of images of {} x {} pixels, as their file says, the "
-                       "camera has {} x {}",
-                       std::ranges::count_if(rows, is_other), rows.size(), first->image_size->width,
-                       first->image_size->height, size.width, size.height),
-           "boxes in images of the camera's size",
-           "an annotation tool that changed the size of the images",
-           "export boxes of the original images, or correct width and height in the file"}};
-}
-
 std::vector<Finding> CheckConvention(const std::vector<TurnedBox>& boxes, const Camera& camera,
                                      const ImportOptions& options) {
   constexpr int kFewest = 3;
@@ -141,7 +94,12 @@ std::vector<Finding> CheckConvention(const std::vector<TurnedBox>& boxes, const 
   const int plausible = CountPlausible(boxes, camera, Eigen::Matrix4d::Identity());
   const int bad = static_cast<int>(boxes.size()) - plausible;
   if (bad < kFewest || bad <= kTolerated * all) return {};
-  const BoxConvention& assumed = ConventionOf(options);
+  const DetectionsFormat format = options.folder.detections_format;
+  const bool is_corner_and_size =
+      format == DetectionsFormat::kCoco || format == DetectionsFormat::kYoloPixels;
+  const BoxConvention& assumed = kConventions[is_corner_and_size                  ? 1
+                                              : format == DetectionsFormat::kYolo ? 2
+                                                                                  : 0];
   const BoxConvention* better = BetterConvention(boxes, camera, assumed);
   // Boxes of whole objects that the image cuts extend beyond it on all sides.
   const auto is_left_or_above = [&](const TurnedBox& turned) {
@@ -205,16 +163,41 @@ std::vector<Finding> CheckUnusedPart(std::vector<TurnedBox> boxes, const Camera&
 }  // namespace
 
 std::vector<Finding> CheckBoxes(const ImportView& view) {
+  constexpr double kLargestFraction = 1.5;
   const bool is_folder = view.options.format == DatasetFormat::kSoslam ||
                          view.options.format == DatasetFormat::kTumRgbd ||
                          view.options.format == DatasetFormat::kIclNuim;
   if (!is_folder) return {};  // other formats define their boxes
+  const std::vector<DetectionRow>& rows = view.content.rows;
   std::vector<TurnedBox> boxes;
-  for (const DetectionRow& row : view.content.rows) boxes.push_back(row.InImageFile());
+  for (const DetectionRow& row : rows) boxes.push_back(row.InImageFile());
   const Camera& camera = view.sequence.camera;
-  std::vector<Finding> findings = CheckImageSizes(view.content.rows, camera);
-  if (findings.empty()) findings = CheckFractions(boxes, camera);
-  if (findings.empty()) findings = CheckConvention(boxes, camera, view.options);
+  const ImageSize size{camera.width, camera.height};
+  const auto is_other = [&](const DetectionRow& row) {
+    return row.image_size && *row.image_size != size;
+  };
+  const auto first = std::ranges::find_if(rows, is_other);
+  if (first != rows.end()) {
+    return {
+        {"box_image_size", Severity::kError,
+         fmt::format("{} of {} boxes are of images of {} x {} pixels, as their file says, the "
+                     "camera has {} x {}",
+                     std::ranges::count_if(rows, is_other), rows.size(), first->image_size->width,
+                     first->image_size->height, size.width, size.height),
+         "boxes in images of the camera's size",
+         "an annotation tool that changed the size of the images",
+         "export boxes of the original images, or correct width and height in the file"}};
+  }
+  const double largest = Extent(boxes).maxCoeff();
+  if (!boxes.empty() && !(largest > kLargestFraction)) {
+    return {{"box_unit", Severity::kError,
+             fmt::format("all numbers of {} boxes are at most {:.3g}", boxes.size(), largest),
+             fmt::format("boxes in pixels of an image of {} x {}", camera.width, camera.height),
+             "boxes as fractions of the image",
+             "multiply x by the width and y by the height of the image, or set detections_format "
+             "to yolo where its layout fits"}};
+  }
+  std::vector<Finding> findings = CheckConvention(boxes, camera, view.options);
   if (findings.empty()) findings = CheckUnusedPart(boxes, camera);
   return findings;
 }

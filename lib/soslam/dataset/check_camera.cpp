@@ -36,20 +36,16 @@ bool HasSwappedSides(const Camera& camera) {
          IsAbout(camera.cy, 0.5 * camera.width);
 }
 
-// Scale of the image whose centre is the principal point; 0 for none.
-double ScaleOfPrincipalPoint(const Camera& camera) {
-  const double by_x = 2.0 * camera.cx / camera.width;
-  const double by_y = 2.0 * camera.cy / camera.height;
-  return by_x > 0.0 && IsAbout(by_y, by_x) ? by_x : 0.0;
-}
-
 // True also for pixels of anamorphic lenses, which are up to twice as wide as high.
 bool HasNearlySquarePixels(const Camera& camera) {
   return camera.fx <= 2.0 * camera.fy && camera.fy <= 2.0 * camera.fx;
 }
 
 Advice AdviceOnIntrinsics(const Camera& camera) {
-  const double scale = ScaleOfPrincipalPoint(camera);
+  // Scale of the image whose centre is the principal point; 0 for none.
+  const double by_x = 2.0 * camera.cx / camera.width;
+  const double by_y = 2.0 * camera.cy / camera.height;
+  const double scale = by_x > 0.0 && IsAbout(by_y, by_x) ? by_x : 0.0;
   if (camera.cx <= 2.0 && camera.cy <= 2.0) {
     return {"intrinsics as fractions of the image",
             fmt::format("multiply fx, cx by {} and fy, cy by {}", camera.width, camera.height)};
@@ -73,32 +69,6 @@ Advice AdviceOnIntrinsics(const Camera& camera) {
   }
   return {"intrinsics of another camera",
           "give those of the camera that took the images, in pixels"};
-}
-
-std::vector<Finding> CheckIntrinsics(const Camera& camera) {
-  const auto is_focal_length = [&](double focal_length) {
-    return focal_length >= 0.2 * camera.width && focal_length <= 10.0 * camera.width;
-  };
-  const double x = (camera.cx + 0.5) / camera.width;
-  const double y = (camera.cy + 0.5) / camera.height;
-  const bool is_inside = x > 0.0 && x < 1.0 && y > 0.0 && y < 1.0;
-  const bool is_central = std::min({x, y, 1.0 - x, 1.0 - y}) > 0.25;
-  const double scale = std::max(camera.width, camera.height);
-  const bool is_focal =
-      is_focal_length(camera.fx) && camera.fy >= 0.2 * camera.height && camera.fy <= 10.0 * scale;
-  if (is_focal && is_inside && is_central && !HasSwappedSides(camera) &&
-      HasNearlySquarePixels(camera)) {
-    return {};
-  }
-  const bool is_impossible = !is_focal || !is_inside || HasSwappedSides(camera);
-  const Advice advice = AdviceOnIntrinsics(camera);
-  return {
-      {"camera_intrinsics", is_impossible ? Severity::kError : Severity::kWarning,
-       fmt::format("camera of {} x {} pixels with fx {:g}, fy {:g}, cx {:g}, cy {:g}", camera.width,
-                   camera.height, camera.fx, camera.fy, camera.cx, camera.cy),
-       "focal lengths of 0.2 to 10 times the width, about equal, and a principal point near the "
-       "middle",
-       advice.cause, advice.remedy}};
 }
 
 // Checks that the lens model has an inverse four fifths of the way to the middle of each side of
@@ -163,19 +133,6 @@ Advice AdviceOnSize(const Mismatch& mismatch) {
           "give the camera that these images are of"};
 }
 
-Finding FindingOn(const Mismatch& mismatch, size_t all) {
-  const Advice advice = AdviceOnSize(mismatch);
-  return {"camera_size",
-          Severity::kError,
-          fmt::format("{} of {} images are of {} x {} pixels (the first is {}), the camera of "
-                      "{} x {}",
-                      mismatch.images, all, mismatch.size.width, mismatch.size.height,
-                      mismatch.first_image, mismatch.camera.width, mismatch.camera.height),
-          "images of the camera's size",
-          advice.cause,
-          advice.remedy};
-}
-
 // True if camera and boxes are those of soslam-reconstruct and of soslam-frames or soslam-detect,
 // for upright images.
 bool AreKnownToBeUpright(const ImportView& view) {
@@ -190,33 +147,6 @@ bool AreKnownToBeUpright(const ImportView& view) {
           (line.starts_with("# {") && line.find(R"("image_orientation":"upright")") != line.npos));
 }
 
-// Checks images with an EXIF rotation when their size does not determine whether camera and boxes
-// refer to the rotated image, or when the poses are COLMAP's.
-std::vector<Finding> CheckTurned(size_t turned, size_t all, const ImportView& view) {
-  const ImportOptions& options = view.options;
-  if (turned == 0 || options.image_orientation == ImageOrientation::kStored ||
-      AreKnownToBeUpright(view)) {
-    return {};
-  }
-  Finding finding{
-      "image_orientation",
-      Severity::kWarning,
-      fmt::format("{} of {} images have a note of EXIF that turns them, and are read as viewers "
-                  "show them",
-                  turned, all),
-      "camera and boxes of the images as they are shown, which no size tells here",
-      "a camera that was held upside down, or a program that set the note",
-      "nothing where boxes fit the images on the report page; otherwise image_orientation stored"};
-  if (options.folder.trajectory_format == TrajectoryFormat::kColmap) {
-    finding.expected = "images as they are stored, of which COLMAP's poses and camera are";
-    finding.cause = "images of a phone that was held upright";
-    finding.remedy =
-        "soslam-reconstruct --model, which turns the model upright; or image_orientation stored, "
-        "for soslam-detect, too";
-  }
-  return {finding};
-}
-
 }  // namespace
 
 std::vector<Finding> CheckCamera(const ImportView& view) {
@@ -226,7 +156,24 @@ std::vector<Finding> CheckCamera(const ImportView& view) {
     const Camera& camera = view.sequence.CameraOf(frame);
     if (std::ranges::find(seen, camera) != seen.end()) continue;
     seen.push_back(camera);
-    std::ranges::move(CheckIntrinsics(camera), std::back_inserter(findings));
+    const double x = (camera.cx + 0.5) / camera.width;
+    const double y = (camera.cy + 0.5) / camera.height;
+    const bool is_inside = x > 0.0 && x < 1.0 && y > 0.0 && y < 1.0;
+    const bool is_central = std::min({x, y, 1.0 - x, 1.0 - y}) > 0.25;
+    const bool is_focal = camera.fx >= 0.2 * camera.width && camera.fx <= 10.0 * camera.width &&
+                          camera.fy >= 0.2 * camera.height &&
+                          camera.fy <= 10.0 * std::max(camera.width, camera.height);
+    const bool is_impossible = !is_focal || !is_inside || HasSwappedSides(camera);
+    if (is_impossible || !is_central || !HasNearlySquarePixels(camera)) {
+      const Advice advice = AdviceOnIntrinsics(camera);
+      findings.push_back(
+          {"camera_intrinsics", is_impossible ? Severity::kError : Severity::kWarning,
+           fmt::format("camera of {} x {} pixels with fx {:g}, fy {:g}, cx {:g}, cy {:g}",
+                       camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy),
+           "focal lengths of 0.2 to 10 times the width, about equal, and a principal point near "
+           "the middle",
+           advice.cause, advice.remedy});
+    }
     if (view.sequence.image_distortion) {
       std::ranges::move(CheckLens(camera, *view.sequence.image_distortion),
                         std::back_inserter(findings));
@@ -240,6 +187,8 @@ std::vector<Finding> CheckImages(const ImportView& view) {
   const bool are_of_colmap = view.options.folder.trajectory_format == TrajectoryFormat::kColmap;
   std::map<ImageSize, Mismatch> mismatches;
   size_t all = 0;
+  // Images with an EXIF rotation whose size does not determine whether camera and boxes refer to
+  // the rotated image, or whose poses are COLMAP's.
   size_t turned = 0;
   for (const Frame& frame : view.sequence.frames) {
     if (frame.image.empty()) continue;
@@ -258,8 +207,35 @@ std::vector<Finding> CheckImages(const ImportView& view) {
     const bool is_of_stored = header->stored == size_of_camera;
     if (mismatch.images++ == 0) mismatch = {camera, size, is_of_stored, frame.image, 1};
   }
-  std::vector<Finding> findings = CheckTurned(turned, all, view);
-  for (const auto& [size, mismatch] : mismatches) findings.push_back(FindingOn(mismatch, all));
+  std::vector<Finding> findings;
+  if (turned > 0 && read_as != ImageOrientation::kStored && !AreKnownToBeUpright(view)) {
+    Finding& finding = findings.emplace_back(Finding{
+        "image_orientation", Severity::kWarning,
+        fmt::format("{} of {} images have a note of EXIF that turns them, and are read as viewers "
+                    "show them",
+                    turned, all),
+        "camera and boxes of the images as they are shown, which no size tells here",
+        "a camera that was held upside down, or a program that set the note",
+        "nothing where boxes fit the images on the report page; otherwise image_orientation "
+        "stored"});
+    if (are_of_colmap) {
+      finding.expected = "images as they are stored, of which COLMAP's poses and camera are";
+      finding.cause = "images of a phone that was held upright";
+      finding.remedy =
+          "soslam-reconstruct --model, which turns the model upright; or image_orientation stored, "
+          "for soslam-detect, too";
+    }
+  }
+  for (const auto& [size, mismatch] : mismatches) {
+    const Advice advice = AdviceOnSize(mismatch);
+    findings.push_back(
+        {"camera_size", Severity::kError,
+         fmt::format("{} of {} images are of {} x {} pixels (the first is {}), the camera of "
+                     "{} x {}",
+                     mismatch.images, all, size.width, size.height, mismatch.first_image,
+                     mismatch.camera.width, mismatch.camera.height),
+         "images of the camera's size", advice.cause, advice.remedy});
+  }
   return findings;
 }
 

@@ -63,40 +63,6 @@ std::optional<double> MedianAngleDeg(const std::vector<BoxAndTruth>& pairs) {
   return angles.size() < kFewestBoxes ? std::nullopt : MedianOf(angles);
 }
 
-std::vector<Finding> CheckCentres(const ImportView& view) {
-  constexpr double kFarOffDeg = 10.0;
-  constexpr double kMuchBetter = 0.25;
-  const auto as_read = MedianAngleDeg(BoxesAndTruth(view, 0));
-  if (!as_read || *as_read <= kFarOffDeg) return {};
-  Finding finding{
-      "objects_against_boxes",
-      Severity::kWarning,
-      fmt::format("boxes are {:.1f} degrees from the true centre of their object (median)",
-                  *as_read),
-      "true objects where their boxes see them",
-      "true objects in another world, unit or order of axes than the poses, or ids that are not "
-      "the detections'",
-      "give objects.json in the world of the true poses, in metres, with the detections' ids"};
-  for (const int shift : {-1, 1}) {
-    const auto shifted = MedianAngleDeg(BoxesAndTruth(view, shift));
-    if (!shifted || *shifted >= kMuchBetter * *as_read) continue;
-    finding.found += fmt::format(", but {:.1f} from that of the object with the id {}", *shifted,
-                                 shift < 0 ? "before" : "after");
-    finding.cause = "ids counted from 0 in one file and from 1 in the other";
-    finding.remedy = fmt::format("{} 1 {} the object_id of the detections",
-                                 shift < 0 ? "subtract" : "add", shift < 0 ? "from" : "to");
-  }
-  return {finding};
-}
-
-// Height (px) of a landmark's outline; from its distance where it has no outline, for example
-// because the camera is inside it.
-double HeightPx(const Camera& camera, const Landmark& landmark_in_camera) {
-  const auto outline = OutlineBox(camera, landmark_in_camera);
-  if (outline) return outline->Height();
-  return 2.0 * camera.fy * landmark_in_camera.half_axes.z() / landmark_in_camera.Centre().norm();
-}
-
 // Compares heights of outlines with those of the boxes. The camera is rolled as a turned box is,
 // which is then upright.
 std::vector<Finding> CheckTrueSizes(const ImportView& view) {
@@ -109,7 +75,12 @@ std::vector<Finding> CheckTrueSizes(const ImportView& view) {
     const Eigen::AngleAxisd roll(-kRadPerDeg * as_drawn.angle_deg, Eigen::Vector3d::UnitZ());
     const Landmark in_rolled_camera =
         Transform({Eigen::Quaterniond(roll), Eigen::Vector3d::Zero()}, landmark);
-    log_factors.push_back(std::log(HeightPx(camera, in_rolled_camera) / height_px));
+    // There is no outline, for example, where the camera is inside the landmark.
+    const auto outline = OutlineBox(camera, in_rolled_camera);
+    const double true_height_px = outline ? outline->Height()
+                                          : 2.0 * camera.fy * in_rolled_camera.half_axes.z() /
+                                                in_rolled_camera.Centre().norm();
+    log_factors.push_back(std::log(true_height_px / height_px));
   }
   if (log_factors.size() < kFewestBoxes) return {};
   const double factor = std::exp(*MedianOf(log_factors));
@@ -150,10 +121,30 @@ std::vector<Finding> CheckObjectAxes(const ImportView& view) {
 }
 
 std::vector<Finding> CheckObjects(const ImportView& view) {
+  constexpr double kFarOffDeg = 10.0;
+  constexpr double kMuchBetter = 0.25;
   if (!view.content.has_object_ids) return {};
-  std::vector<Finding> findings = CheckCentres(view);
-  if (findings.empty()) findings = CheckTrueSizes(view);
-  return findings;
+  const auto as_read = MedianAngleDeg(BoxesAndTruth(view, 0));
+  if (!as_read || *as_read <= kFarOffDeg) return CheckTrueSizes(view);
+  Finding finding{
+      "objects_against_boxes",
+      Severity::kWarning,
+      fmt::format("boxes are {:.1f} degrees from the true centre of their object (median)",
+                  *as_read),
+      "true objects where their boxes see them",
+      "true objects in another world, unit or order of axes than the poses, or ids that are not "
+      "the detections'",
+      "give objects.json in the world of the true poses, in metres, with the detections' ids"};
+  for (const int shift : {-1, 1}) {
+    const auto shifted = MedianAngleDeg(BoxesAndTruth(view, shift));
+    if (!shifted || *shifted >= kMuchBetter * *as_read) continue;
+    finding.found += fmt::format(", but {:.1f} from that of the object with the id {}", *shifted,
+                                 shift < 0 ? "before" : "after");
+    finding.cause = "ids counted from 0 in one file and from 1 in the other";
+    finding.remedy = fmt::format("{} 1 {} the object_id of the detections",
+                                 shift < 0 ? "subtract" : "add", shift < 0 ? "from" : "to");
+  }
+  return {finding};
 }
 
 namespace {
@@ -250,22 +241,18 @@ std::vector<Finding> CheckSide(const MainPlane& main) {
                       : "turn the sign of the normal and of d, or of d alone"}};
 }
 
-// True if all objects are about equally high above their plane; objects in front of a wall are not.
-bool AreAlong(const Plane& plane, const std::vector<Eigen::Vector3d>& points) {
-  constexpr double kTolerance = 0.1;
-  constexpr double kFlat = 0.5;
-  Eigen::AlignedBox3d around;
-  for (const Eigen::Vector3d& point : points) around.extend(point);
-  const double size = around.diagonal().norm();
-  const std::vector<double> heights = HeightsOver(plane, points);
-  const auto [lowest, highest] = std::ranges::minmax(heights);
-  return lowest > -kTolerance * size && highest - lowest < kFlat * size;
-}
-
 std::vector<Finding> CheckAttitude(const MainPlane& main) {
   constexpr size_t kFewestPoints = 3;
+  constexpr double kTolerance = 0.1;
+  constexpr double kFlat = 0.5;
   if (!IsUpright(main.detections) || main.points_in_world.size() < kFewestPoints) return {};
-  if (AreAlong(main.plane.plane_in_world, main.points_in_world)) return {};
+  Eigen::AlignedBox3d around;
+  for (const Eigen::Vector3d& point : main.points_in_world) around.extend(point);
+  const double size = around.diagonal().norm();
+  const std::vector<double> heights = HeightsOver(main.plane.plane_in_world, main.points_in_world);
+  const auto [lowest, highest] = std::ranges::minmax(heights);
+  // Objects on a plane are about equally high above it; objects in front of a wall are not.
+  if (lowest > -kTolerance * size && highest - lowest < kFlat * size) return {};
   return {
       {"plane_attitude", Severity::kWarning,
        fmt::format("the normal of {} is {:.0f} degrees from the images' up, and objects are not "

@@ -164,27 +164,6 @@ struct Explanation {
   RayError error;  // remaining error once it is corrected
 };
 
-std::vector<TrackedObject> Mirrored(std::vector<TrackedObject> objects) {
-  for (TrackedObject& object : objects) {
-    for (TrackedRay& ray : object.rays) ray.ray_in_camera.x() *= -1.0;
-  }
-  return objects;
-}
-
-// Order of the frame numbers as strings: 0, 1, 10, 11, 2, ...
-std::vector<size_t> OrderOfStrings(size_t frames) {
-  std::vector<size_t> order(frames);
-  std::iota(order.begin(), order.end(), size_t{0});
-  std::ranges::sort(order, {}, [](size_t frame) { return std::to_string(frame); });
-  return order;
-}
-
-std::vector<size_t> Inverse(const std::vector<size_t>& order) {
-  std::vector<size_t> inverse(order.size());
-  for (size_t i = 0; i < order.size(); ++i) inverse[order[i]] = i;
-  return inverse;
-}
-
 // Searches for the best reading of the poses or order of the frames. Under a wrong one the rays to
 // objects diverge; under the right one they meet to within a degree.
 std::optional<Explanation> BestExplanation(const ImportView& view,
@@ -201,7 +180,10 @@ std::optional<Explanation> BestExplanation(const ImportView& view,
     best_deg = error->median_deg;
     best = Explanation{name, cause, remedy, is_order, *error};
   };
-  const std::vector<TrackedObject> mirrored = Mirrored(objects);
+  std::vector<TrackedObject> mirrored = objects;
+  for (TrackedObject& object : mirrored) {
+    for (TrackedRay& ray : object.rays) ray.ray_in_camera.x() *= -1.0;
+  }
   for (const PoseReading& reading : kReadings) {
     if (reading.is_turned_in_body && view.content.may_have_poses_of_body) continue;
     const auto pose_as_meant = [&](size_t frame) -> std::optional<Rigid3d> {
@@ -220,7 +202,10 @@ std::optional<Explanation> BestExplanation(const ImportView& view,
   };
   std::vector<size_t> reversed(view.content.frames.size());
   std::iota(reversed.rbegin(), reversed.rend(), size_t{0});
-  const std::vector<size_t> of_strings = OrderOfStrings(reversed.size());
+  std::vector<size_t> of_strings(reversed.rbegin(), reversed.rend());  // 0, 1, 10, 11, 2, ...
+  std::ranges::sort(of_strings, {}, [](size_t frame) { return std::to_string(frame); });
+  std::vector<size_t> from_strings(of_strings.size());
+  for (size_t i = 0; i < of_strings.size(); ++i) from_strings[of_strings[i]] = i;
   constexpr const char* kAsStrings = "numbers that were sorted as strings, 10 before 2";
   consider_order("the poses are in reversed order",
                  "poses or boxes from the last image to the first",
@@ -230,7 +215,7 @@ std::optional<Explanation> BestExplanation(const ImportView& view,
                  of_strings);
   consider_order("the poses are in the order of strings", kAsStrings,
                  "sort the images or poses by number, or write numbers with leading zeros",
-                 Inverse(of_strings));
+                 from_strings);
   return best;
 }
 
@@ -250,24 +235,6 @@ std::vector<Finding> CheckReadings(const ImportView& view,
                           : "poses world_from_camera, camera z forward, quaternion qx qy qz qw; "
                             "things that stand still",
            best->cause, best->remedy}};
-}
-
-// Warns if poses of an IMU are used as those of the camera, unless boxes fit them.
-std::vector<Finding> CheckBody(const ImportView& view, const std::optional<RayError>& as_read) {
-  constexpr double kFitsDeg = 1.0;
-  if (!view.content.may_have_poses_of_body) return {};
-  if (as_read && as_read->median_deg <= kFitsDeg) return {};
-  return {{kPoseConvention, Severity::kWarning,
-           "EuRoC's poses are taken for those of the camera" +
-               (as_read ? fmt::format(", but things are {:.1f} degrees from where they are then "
-                                      "seen (median)",
-                                      as_read->median_deg)
-                        : ""),
-           "the camera's place in the body (T_BS), and things to within a degree where they are "
-           "seen",
-           "poses of a body that is not the camera, as an IMU",
-           std::string("camera_file: the camera's sensor.yaml, with T_BS") +
-               (as_read ? "" : "; nothing where the poses are those of the camera")}};
 }
 
 // Warns if objects are far from where they are seen, relative to the size of their boxes, under any
@@ -290,17 +257,6 @@ std::vector<Finding> CheckContradiction(const ImportView& view,
            "poses, the order of frames, or ids contradict the boxes; or poses that drift far",
            "look at the boxes of one id in several images: soslam-inspect; then at poses and time "
            "stamps"}};
-}
-
-// Pose pairs of the first segment, as each segment has its own world.
-std::vector<PosePair> Pairs(const ImportView& view) {
-  std::vector<PosePair> pairs;
-  for (const ListedFrame& listed : view.content.frames) {
-    if (listed.frame.segment != view.content.frames.front().frame.segment) break;
-    const auto& truth = listed.frame.true_world_from_camera;
-    if (listed.has_pose && truth) pairs.push_back({listed.frame.world_from_camera, *truth});
-  }
-  return pairs;
 }
 
 std::string InWords(const TrajectoryGap& gap) {
@@ -347,6 +303,7 @@ Advice AdviceOnTrajectory(const std::vector<PosePair>& pairs, double extent_m) {
 
 std::vector<Finding> CheckPoses(const ImportView& view) {
   constexpr size_t kFewestRays = 15;
+  constexpr double kFitsDeg = 1.0;
   const std::vector<TrackedObject> objects = TrackedObjects(view);
   auto as_read =
       MedianRayError(objects, [&](size_t frame) { return view.content.frames[frame].Pose(); });
@@ -354,16 +311,35 @@ std::vector<Finding> CheckPoses(const ImportView& view) {
   std::vector<Finding> findings;
   if (as_read) findings = CheckReadings(view, objects, *as_read);
   if (findings.empty() && as_read) findings = CheckLag(view, objects, *as_read);
-  if (findings.empty()) findings = CheckBody(view, as_read);
-  if (findings.empty() && as_read) findings = CheckContradiction(view, objects, *as_read);
-  return findings;
+  if (!findings.empty()) return findings;
+  const bool do_fit = as_read && as_read->median_deg <= kFitsDeg;
+  if (view.content.may_have_poses_of_body && !do_fit) {
+    return {{kPoseConvention, Severity::kWarning,
+             "EuRoC's poses are taken for those of the camera" +
+                 (as_read ? fmt::format(", but things are {:.1f} degrees from where they are then "
+                                        "seen (median)",
+                                        as_read->median_deg)
+                          : ""),
+             "the camera's place in the body (T_BS), and things to within a degree where they are "
+             "seen",
+             "poses of a body that is not the camera, as an IMU",
+             std::string("camera_file: the camera's sensor.yaml, with T_BS") +
+                 (as_read ? "" : "; nothing where the poses are those of the camera")}};
+  }
+  return as_read ? CheckContradiction(view, objects, *as_read) : findings;
 }
 
 std::vector<Finding> CheckTruth(const ImportView& view) {
   constexpr size_t kFewest = 3;
   // Their worlds differ by a similarity, which evaluation finds.
   if (view.sequence.odometry_world == OdometryWorld::kOwnWithScale) return {};
-  const std::vector<PosePair> pairs = Pairs(view);
+  std::vector<PosePair> pairs;
+  for (const ListedFrame& listed : view.content.frames) {
+    // Each segment has its own world.
+    if (listed.frame.segment != view.content.frames.front().frame.segment) break;
+    const auto& truth = listed.frame.true_world_from_camera;
+    if (listed.has_pose && truth) pairs.push_back({listed.frame.world_from_camera, *truth});
+  }
   if (pairs.size() < kFewest) return {};
   const TrajectoryGap gap = GapOf(pairs);
   const double extent_m = ExtentOf(pairs, &PosePair::truth);

@@ -27,39 +27,24 @@ struct PoseRun {
   size_t last = 0;
 };
 
-std::vector<PoseRun> FindRuns(const std::vector<ListedFrame>& frames) {
-  std::vector<PoseRun> runs;
-  for (size_t i = 1; i < frames.size(); ++i) {
-    if (!RepeatsPose(frames, i)) continue;
-    if (runs.empty() || runs.back().last != i - 1) runs.push_back({i - 1, i});
-    runs.back().last = i;
-  }
-  return runs;
-}
-
-// The image with the same mean and contrast everywhere, as light that changes would shift features.
-cv::Mat WithEvenLight(const cv::Mat& image) {
+// The image of a frame at the size at which motion is measured, with the same mean and contrast
+// everywhere, as light that changes would shift features; none without a readable image.
+std::optional<cv::Mat> SmallImage(const ImportView& view, const Frame& frame) {
   constexpr double kNoise = 2.0;  // grey values, which do not become contrast
   const cv::Size window(31, 31);
-  cv::Mat grey, mean, deviation, even;
-  image.convertTo(grey, CV_32F);
-  cv::blur(grey, mean, window);
-  grey -= mean;
-  cv::sqrBoxFilter(grey, deviation, -1, window);
-  cv::sqrt(deviation, deviation);
-  grey /= deviation + kNoise;
-  grey.convertTo(even, CV_8U, 50.0, 128.0);
-  return even;
-}
-
-// The image of a frame, in even light, at the size at which motion is measured; none without a
-// readable image.
-std::optional<cv::Mat> SmallImage(const ImportView& view, const Frame& frame) {
   if (frame.image.empty()) return std::nullopt;
   try {
     const auto path = ImagePath(view.folder, frame.image, view.folder.string());
-    const cv::Mat grey = ReadImage(path, cv::IMREAD_GRAYSCALE, view.options.image_orientation);
-    return WithEvenLight(ViewOf(grey).small);
+    const cv::Mat image = ReadImage(path, cv::IMREAD_GRAYSCALE, view.options.image_orientation);
+    cv::Mat grey, mean, deviation, even;
+    ViewOf(image).small.convertTo(grey, CV_32F);
+    cv::blur(grey, mean, window);
+    grey -= mean;
+    cv::sqrBoxFilter(grey, deviation, -1, window);
+    cv::sqrt(deviation, deviation);
+    grey /= deviation + kNoise;
+    grey.convertTo(even, CV_8U, 50.0, 128.0);
+    return even;
   } catch (const InputError&) {
     return std::nullopt;  // which stages that need images report
   }
@@ -115,7 +100,13 @@ bool RepeatsPose(const std::vector<ListedFrame>& frames, size_t i) {
 
 std::vector<Finding> CheckRepeatedPoses(const ImportView& view) {
   constexpr size_t kMostRuns = 20;  // whose images are read
-  std::vector<PoseRun> runs = FindRuns(view.content.frames);
+  const std::vector<ListedFrame>& frames = view.content.frames;
+  std::vector<PoseRun> runs;
+  for (size_t i = 1; i < frames.size(); ++i) {
+    if (!RepeatsPose(frames, i)) continue;
+    if (runs.empty() || runs.back().last != i - 1) runs.push_back({i - 1, i});
+    runs.back().last = i;
+  }
   const size_t all = runs.size();
   std::ranges::stable_sort(runs, std::ranges::greater(),
                            [](const PoseRun& run) { return run.last - run.first; });
@@ -127,7 +118,6 @@ std::vector<Finding> CheckRepeatedPoses(const ImportView& view) {
   });
   if (runs.empty()) return {};
   std::ranges::sort(runs, {}, &PoseRun::first);
-  const auto& frames = view.content.frames;
   std::vector<std::string> names;
   size_t repeated = 0;
   bool are_taken_twice = true;  // the file has each pose once

@@ -25,60 +25,51 @@ namespace fs = std::filesystem;
 constexpr std::array kNames = {"classes.txt", "obj.names",    "data.yaml",
                                "data.yml",    "dataset.yaml", "labels.txt"};
 
-bool IsYaml(const fs::path& path) {
-  return path.extension() == ".yaml" || path.extension() == ".yml";
-}
-
 void CheckName(const std::string& name, const std::string& place) {
   if (!name.empty() && name.find(',') == name.npos) return;
   throw InputError(
       fmt::format("{}: label is '{}'; expected names, each without a comma", place, name));
 }
 
-// Names under the keys "names.0", "names.1", ...
-std::vector<std::string> NumberedNames(const NamedFields& fields, const std::string& place) {
-  std::vector<std::string> names;
-  for (;;) {
-    const auto found = fields.find(fmt::format("names.{}", names.size()));
-    if (found == fields.end()) break;
-    names.push_back(found->second.empty() ? "" : found->second.front());
-  }
-  const auto numbered = std::ranges::count_if(
-      fields, [](const auto& field) { return field.first.starts_with("names."); });
-  if (static_cast<size_t>(numbered) != names.size()) {
-    throw InputError(fmt::format(
-        "{}: names has {} entries, but none for class {}; expected one for each class from 0 on",
-        place, numbered, names.size()));
-  }
-  return names;
-}
-
 std::vector<std::string> YamlNames(const NamedFields& fields, const std::string& place) {
-  const auto list = fields.find("names");
-  std::vector<std::string> names =
-      list != fields.end() ? list->second : NumberedNames(fields, place);
-  for (const std::string& name : names) CheckName(name, place);
-  return names;
-}
-
-std::vector<std::string> LineNames(const std::vector<TextLine>& lines) {
   std::vector<std::string> names;
-  for (const TextLine& line : lines) {
-    CheckName(line.text, line.place);
-    names.push_back(line.text);
+  const auto list = fields.find("names");
+  if (list != fields.end()) {
+    names = list->second;
+  } else {
+    // Names under the keys "names.0", "names.1", ...
+    for (;;) {
+      const auto found = fields.find(fmt::format("names.{}", names.size()));
+      if (found == fields.end()) break;
+      names.push_back(found->second.empty() ? "" : found->second.front());
+    }
+    const auto numbered = std::ranges::count_if(
+        fields, [](const auto& field) { return field.first.starts_with("names."); });
+    if (static_cast<size_t>(numbered) != names.size()) {
+      throw InputError(fmt::format(
+          "{}: names has {} entries, but none for class {}; expected one for each class from 0 on",
+          place, numbered, names.size()));
+    }
   }
+  for (const std::string& name : names) CheckName(name, place);
   return names;
 }
 
 // The names in a text; none where it has none.
 std::vector<std::string> NamesIn(const std::string& text, const std::string& name) {
-  if (IsYaml(name)) return YamlNames(YamlFields(text, name), name);
+  const fs::path extension = fs::path(name).extension();
+  if (extension == ".yaml" || extension == ".yml") return YamlNames(YamlFields(text, name), name);
   if (const std::string kind = FileKind(text); !kind.empty()) {
     throw InputError(fmt::format(
         "{}: is {}; expected the names of the classes, one a line, or data.yaml of YOLO", name,
         kind));
   }
-  return LineNames(TextLines(text, name));
+  std::vector<std::string> names;
+  for (const TextLine& line : TextLines(text, name)) {
+    CheckName(line.text, line.place);
+    names.push_back(line.text);
+  }
+  return names;
 }
 
 }  // namespace
@@ -205,13 +196,6 @@ std::vector<fs::path> FindLabelFiles(const fs::path& labels, const fs::path& dat
   }
 }
 
-namespace {
-
-// Ids of dropped categories below 90; 91 was dropped, too.
-constexpr std::array kUnusedIds = {12, 26, 29, 30, 45, 66, 68, 69, 71, 83};
-
-}  // namespace
-
 const std::vector<std::string>& CocoLabels() {
   constexpr std::string_view kLabels =
       "person,bicycle,car,motorcycle,airplane,bus,train,truck,boat,traffic light,fire hydrant,"
@@ -230,6 +214,8 @@ const std::vector<std::string>& CocoLabels() {
 }
 
 int CocoCategoryId(int class_index) {
+  // Ids of dropped categories below 90; 91 was dropped, too.
+  constexpr std::array kUnusedIds = {12, 26, 29, 30, 45, 66, 68, 69, 71, 83};
   int category_id = class_index + 1;
   for (const int unused_id : kUnusedIds) {
     if (category_id >= unused_id) ++category_id;

@@ -272,22 +272,6 @@ ColmapImage ParseImage(const TextLine& line) {
   return image;
 }
 
-std::vector<Eigen::Vector2d> ParsePixels(const TextLine& line) {
-  const auto words = SplitWords(line.text);
-  if (words.size() % 3 != 0) {
-    throw InputError(
-        fmt::format("{}: has {} words; expected X Y POINT3D_ID of each image point, or "
-                    "an empty line for an image without",
-                    line.place, words.size()));
-  }
-  std::vector<Eigen::Vector2d> pixels;
-  for (size_t i = 0; i < words.size(); i += 3) {
-    pixels.emplace_back(ParseReal(words[i], line.place, "X") - 0.5,
-                        ParseReal(words[i + 1], line.place, "Y") - 0.5);
-  }
-  return pixels;
-}
-
 // Some programs write no line of image points. The next line is then that of an image, of a number
 // of words that image points do not have.
 std::vector<ColmapImage> ReadImagesText(const std::filesystem::path& path) {
@@ -302,12 +286,23 @@ std::vector<ColmapImage> ReadImagesText(const std::filesystem::path& path) {
       ++without_line;
       is_points = false;
     }
-    if (is_points) {
-      images.back().pixels = ParsePixels(line);
-    } else {
+    if (!is_points) {
       images.push_back(ParseImage({line.place, std::string(text)}));
+      is_points = true;
+      continue;
     }
-    is_points = !is_points;
+    is_points = false;
+    const auto words = SplitWords(line.text);
+    if (words.size() % 3 != 0) {
+      throw InputError(
+          fmt::format("{}: has {} words; expected X Y POINT3D_ID of each image point, or "
+                      "an empty line for an image without",
+                      line.place, words.size()));
+    }
+    for (size_t i = 0; i < words.size(); i += 3) {
+      images.back().pixels.emplace_back(ParseReal(words[i], line.place, "X") - 0.5,
+                                        ParseReal(words[i + 1], line.place, "Y") - 0.5);
+    }
   }
   if (without_line > 0) {
     fmt::print(

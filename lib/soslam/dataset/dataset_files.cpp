@@ -34,21 +34,19 @@ std::vector<fs::path> Sorted(const fs::path& folder) {
   return entries;
 }
 
-std::vector<fs::path> FilesIn(const fs::path& path) {
-  if (!IsFolder(path)) return {path};
-  std::vector<fs::path> files;
-  for (const fs::path& entry : Sorted<fs::recursive_directory_iterator>(path)) {
-    const fs::path name = entry.filename();
-    const bool is_hidden = name.string().starts_with('.');  // created by macOS
-    if (IsFile(entry) && name.extension() == ".txt" && !is_hidden) files.push_back(entry);
-  }
-  return files;
-}
-
 }  // namespace
 
 std::vector<fs::path> DatasetFiles::All() const {
-  std::vector<fs::path> files = FilesIn(detections);
+  std::vector<fs::path> files;
+  if (IsFolder(detections)) {
+    for (const fs::path& entry : Sorted<fs::recursive_directory_iterator>(detections)) {
+      const fs::path name = entry.filename();
+      const bool is_hidden = name.string().starts_with('.');  // created by macOS
+      if (IsFile(entry) && name.extension() == ".txt" && !is_hidden) files.push_back(entry);
+    }
+  } else {
+    files.push_back(detections);
+  }
   files.push_back(trajectory);
   if (groundtruth && *groundtruth != trajectory) files.push_back(*groundtruth);
   for (const auto& file : {images, camera, planes, class_names, objects}) {

@@ -128,31 +128,25 @@ bool HasLandmark(const Entry& entry) {
          entry.Has("rests_on");
 }
 
-RestingFace ParseRestingFace(const Entry& entry) {
-  if (!entry.Has("rests_on")) return RestingFace::kBottom;
-  const std::string name = entry.Text("rests_on");
-  const auto* const face = std::ranges::find(kRestingFaceNames, name);
-  if (face == kRestingFaceNames.end()) entry.Refuse("rests_on", "bottom, back or side");
-  return kRestingFaces[static_cast<size_t>(face - kRestingFaceNames.begin())];
-}
-
-GroundTruth ParseGroundTruth(const Entry& entry) {
-  Landmark landmark = ParseLandmark(entry);
-  landmark.rests_on = ParseRestingFace(entry);
-  if (landmark.rests_on != RestingFace::kBottom && entry.Flag("rotationally_symmetric", false)) {
-    entry.Refuse("rotationally_symmetric", "false of what does not rest on its bottom");
-  }
-  return {landmark, entry.Flag("mirror_symmetric", true), entry.Flag("mirror_symmetric_yz", false),
-          entry.Flag("rotationally_symmetric", false)};
-}
-
 ListedObject ParseObject(const Entry& entry) {
   entry.RefuseUnknownKeys(kObjectKeys);
   ListedObject object;
   object.id = entry.Integer("id");
   object.label = entry.Text("label");
   if (entry.Has("support_plane")) object.plane_id = entry.Integer("support_plane");
-  if (HasLandmark(entry)) object.ground_truth = ParseGroundTruth(entry);
+  if (!HasLandmark(entry)) return object;
+  Landmark landmark = ParseLandmark(entry);
+  if (entry.Has("rests_on")) {
+    const auto* const face = std::ranges::find(kRestingFaceNames, entry.Text("rests_on"));
+    if (face == kRestingFaceNames.end()) entry.Refuse("rests_on", "bottom, back or side");
+    landmark.rests_on = kRestingFaces[static_cast<size_t>(face - kRestingFaceNames.begin())];
+  }
+  if (landmark.rests_on != RestingFace::kBottom && entry.Flag("rotationally_symmetric", false)) {
+    entry.Refuse("rotationally_symmetric", "false of what does not rest on its bottom");
+  }
+  object.ground_truth = {landmark, entry.Flag("mirror_symmetric", true),
+                         entry.Flag("mirror_symmetric_yz", false),
+                         entry.Flag("rotationally_symmetric", false)};
   return object;
 }
 
@@ -166,15 +160,6 @@ IgnoredThings ParseIgnored(const Entry& entry) {
                      ": says nothing; expected a label, or center, quaternion_xyzw and half_axes");
   }
   return things;
-}
-
-std::optional<Distortion> LensOf(const Entry& entry) {
-  std::vector<double> coefficients;
-  if (entry.Has("distortion")) coefficients = entry.Reals("distortion");
-  for (const char* name : {"model", "camera_model", "distortion_model"}) {
-    if (entry.Has(name)) ParseLens(entry.Text(name), coefficients, entry.place());
-  }
-  return ParseLens("pinhole", coefficients, entry.place());
 }
 
 }  // namespace
@@ -194,7 +179,13 @@ LensCamera ReadCamera(const std::filesystem::path& path, CameraYAxis y_axis) {
   const json fields = ParseJsonFile(path);
   const Entry entry(fields, path.string());
   entry.RefuseUnknownKeys(kCameraKeys);
-  LensCamera read{ParseCamera(entry), LensOf(entry)};
+  LensCamera read{ParseCamera(entry)};
+  std::vector<double> coefficients;
+  if (entry.Has("distortion")) coefficients = entry.Reals("distortion");
+  for (const char* name : {"model", "camera_model", "distortion_model"}) {
+    if (entry.Has(name)) ParseLens(entry.Text(name), coefficients, entry.place());
+  }
+  read.distortion = ParseLens("pinhole", coefficients, entry.place());
   if (y_axis == CameraYAxis::kDown) {
     entry.Positive("fy");
     return read;

@@ -75,21 +75,6 @@ FolderBoxes ReadCocoBoxes(const DatasetFiles& files) {
   return boxes;
 }
 
-// The class names among the labels or around them; none where there are none.
-std::vector<std::string> YoloLabels(const YoloTexts& texts, const fs::path& folder,
-                                    DatasetFiles* files, std::vector<Finding>* findings) {
-  std::vector<ClassNames> lists = texts.names;
-  for (const fs::path& file : FindLabelFiles(files->detections, folder)) {
-    lists.push_back(FindLabels(file, [&] { return ReadWholeFile(file); }));
-  }
-  const auto nearest = NearestNames(std::move(lists), findings);
-  if (!nearest) return {};
-  const auto& [place, names, error] = *nearest;
-  if (IsFile(place)) files->class_names = place;
-  fmt::print("{}: names of {} classes, {}\n", place.string(), names.size(), fmt::join(names, ", "));
-  return names;
-}
-
 }  // namespace
 
 FolderBoxes ReadFolderBoxes(const fs::path& folder, const ImportOptions& options,
@@ -105,7 +90,17 @@ FolderBoxes ReadFolderBoxes(const fs::path& folder, const ImportOptions& options
   if (files->class_names) {
     read.class_names = ReadLabelFile(*files->class_names);
   } else if (!is_oa_slam) {
-    read.class_names = YoloLabels(texts, folder, files, &read.findings);
+    // Names among the labels or around them.
+    std::vector<ClassNames> lists = texts.names;
+    for (const fs::path& file : FindLabelFiles(path, folder)) {
+      lists.push_back(FindLabels(file, [&] { return ReadWholeFile(file); }));
+    }
+    if (const auto nearest = NearestNames(std::move(lists), &read.findings)) {
+      read.class_names = nearest->names;
+      if (IsFile(nearest->place)) files->class_names = nearest->place;
+      fmt::print("{}: names of {} classes, {}\n", nearest->place.string(), nearest->names.size(),
+                 fmt::join(nearest->names, ", "));
+    }
   }
   const bool has_names = !read.class_names.empty();
   if (!has_names) read.class_names = CocoLabels();

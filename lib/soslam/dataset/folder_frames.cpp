@@ -25,16 +25,6 @@ namespace fs = std::filesystem;
 // that of their image.
 using ImagePoses = std::vector<std::optional<TimedPose>>;
 
-// Timestamp in an image's name, with or without extension: "12.5" has none.
-double TimestampOf(const std::string& name, const std::string& place) {
-  const fs::path file = fs::path(name).filename();
-  const std::string extension = file.extension().string();
-  const bool is_decimals =
-      std::ranges::all_of(extension, [](char c) { return c == '.' || (c >= '0' && c <= '9'); });
-  return ParseReal((is_decimals ? file : file.stem()).string(), place,
-                   "timestamp as which the image is named");
-}
-
 std::vector<ListedImage> ImagesOfBoxes(const std::vector<LabelledBox>& boxes) {
   std::map<double, ListedImage> images;
   for (const LabelledBox& box : boxes) {
@@ -44,7 +34,12 @@ std::vector<ListedImage> ImagesOfBoxes(const std::vector<LabelledBox>& boxes) {
           "{}: image is row {} of a list; expected a list of images, or a name that is a timestamp",
           box.place, std::get<int>(box.frame)));
     }
-    const double timestamp = TimestampOf(*name, box.place);
+    // With or without extension: "12.5" has none.
+    const fs::path file = fs::path(*name).filename();
+    const bool is_decimals = std::ranges::all_of(
+        file.extension().string(), [](char c) { return c == '.' || (c >= '0' && c <= '9'); });
+    const double timestamp = ParseReal((is_decimals ? file : file.stem()).string(), box.place,
+                                       "timestamp as which the image is named");
     images.try_emplace(timestamp, ListedImage{timestamp, *name});
   }
   if (images.empty()) throw InputError("the detections name no image; expected a list of images");
@@ -58,19 +53,6 @@ double SecondsOfFrameNumber(double number, const std::string& place) {
   if (number >= 0.0 && number == std::floor(number)) return number / kIclNuimFramesPerSecond;
   throw InputError(fmt::format(
       "{}: timestamp is {}; expected the number of a frame, as ICL-NUIM has it", place, number));
-}
-
-ImagePoses PosesInOrder(const fs::path& path, const std::vector<ListedImage>& images) {
-  const std::vector<Rigid3d> trajectory = ReadKittiTrajectory(path);
-  if (trajectory.size() != images.size()) {
-    throw InputError(fmt::format("{}: has {} poses; expected {}, one for each listed image",
-                                 path.string(), trajectory.size(), images.size()));
-  }
-  ImagePoses poses;
-  for (size_t i = 0; i < images.size(); ++i) {
-    poses.push_back(TimedPose{images[i].timestamp, trajectory[i]});
-  }
-  return poses;
 }
 
 ImagePoses PosesByTime(const fs::path& path, TrajectoryFormat format, const ImportOptions& options,
@@ -115,49 +97,39 @@ ImagePoses PosesByName(const fs::path& path, const std::vector<NamedPose>& named
   return poses;
 }
 
-// Poses as the file has them: those of a mirrored world (ICL-NUIM), or of a body (EuRoC).
-ImagePoses PosesOfFile(const fs::path& path, TrajectoryFormat format, const ImportOptions& options,
-                       const std::vector<ListedImage>& images, std::vector<Finding>* findings) {
-  if (options.format == DatasetFormat::kIclNuim && format != TrajectoryFormat::kTum &&
-      format != TrajectoryFormat::kKitti) {
-    throw SettingsError(
-        "trajectory_format, groundtruth_format: expected tum or kitti for format icl_nuim");
-  }
-  switch (format) {
-    case TrajectoryFormat::kKitti:
-      return PosesInOrder(path, images);
-    case TrajectoryFormat::kColmap:
-      return PosesByName(path, ReadColmapPoses(path), images);
-    case TrajectoryFormat::kNerfstudio:
-      return PosesByName(path, ReadNerfstudioPoses(path, findings), images);
-    default:
-      return PosesByTime(path, format, options, images, findings);
-  }
-}
-
 ImagePoses ReadPoses(const fs::path& path, TrajectoryFormat format, const ImportOptions& options,
                      const std::vector<ListedImage>& images,
                      const std::optional<Rigid3d>& body_from_camera,
                      std::vector<Finding>* findings) {
-  ImagePoses poses = PosesOfFile(path, format, options, images, findings);
+  const bool is_mirrored = options.format == DatasetFormat::kIclNuim;
+  if (is_mirrored && format != TrajectoryFormat::kTum && format != TrajectoryFormat::kKitti) {
+    throw SettingsError(
+        "trajectory_format, groundtruth_format: expected tum or kitti for format icl_nuim");
+  }
+  ImagePoses poses;
+  if (format == TrajectoryFormat::kKitti) {
+    const std::vector<Rigid3d> trajectory = ReadKittiTrajectory(path);
+    if (trajectory.size() != images.size()) {
+      throw InputError(fmt::format("{}: has {} poses; expected {}, one for each listed image",
+                                   path.string(), trajectory.size(), images.size()));
+    }
+    for (size_t i = 0; i < images.size(); ++i) {
+      poses.push_back(TimedPose{images[i].timestamp, trajectory[i]});
+    }
+  } else if (format == TrajectoryFormat::kColmap) {
+    poses = PosesByName(path, ReadColmapPoses(path), images);
+  } else if (format == TrajectoryFormat::kNerfstudio) {
+    poses = PosesByName(path, ReadNerfstudioPoses(path, findings), images);
+  } else {
+    poses = PosesByTime(path, format, options, images, findings);
+  }
   for (auto& timed : poses) {
     if (!timed) continue;
     Rigid3d& pose = timed->world_from_camera;
-    if (options.format == DatasetFormat::kIclNuim) pose = MirroredInY(pose);
+    if (is_mirrored) pose = MirroredInY(pose);
     if (format == TrajectoryFormat::kEuroc && body_from_camera) pose = pose * *body_from_camera;
   }
   return poses;
-}
-
-// EuRoC's images are in the folder "data" beside their list, which has only file names.
-void NameInDataFolder(const fs::path& dataset, const fs::path& list,
-                      std::vector<ListedImage>* images) {
-  const fs::path data = list.parent_path() / "data";
-  if (!IsFolder(data)) return;
-  for (ListedImage& image : *images) {
-    if (fs::path(image.image).has_parent_path()) continue;
-    image.image = (data.lexically_relative(dataset) / image.image).string();
-  }
 }
 
 // Moves all estimates together so that the first one with a true pose equals it.
@@ -176,15 +148,6 @@ void AlignAtFirst(const ImagePoses& truth, const fs::path& file, ImagePoses* est
       file.string()));
 }
 
-// The image's path in a frame; empty when it does not exist and is not required.
-std::string ImageOfFrame(const fs::path& folder, const DatasetFiles& files,
-                         const ListedImage& image, const ImportOptions& options) {
-  const fs::path path =
-      ImagePath(folder, image.image, files.images.value_or(files.detections).string());
-  const bool has_to_be_there = options.format == DatasetFormat::kSoslam && files.images;
-  return has_to_be_there || Exists(path) ? image.image : "";
-}
-
 }  // namespace
 
 std::vector<ListedImage> ListImages(const fs::path& folder, const DatasetFiles& files,
@@ -198,7 +161,14 @@ std::vector<ListedImage> ListImages(const fs::path& folder, const DatasetFiles& 
     images = ReadNerfstudioImages(*files.images);
   } else if (options.format == DatasetFormat::kSoslam) {
     images = ReadImageList(*files.images);
-    if (files.images->extension() == ".csv") NameInDataFolder(folder, *files.images, &images);
+    // EuRoC's images are in the folder "data" beside their list, which has only file names.
+    const fs::path data = files.images->parent_path() / "data";
+    if (files.images->extension() == ".csv" && IsFolder(data)) {
+      for (ListedImage& image : images) {
+        if (fs::path(image.image).has_parent_path()) continue;
+        image.image = (data.lexically_relative(folder) / image.image).string();
+      }
+    }
   } else {
     images = ReadPairedImageList(*files.images,
                                  is_icl_nuim ? PairOrder::kImageSecond : PairOrder::kImageFirst);
@@ -231,13 +201,16 @@ std::vector<ListedFrame> ReadFolderFrames(const fs::path& folder, const DatasetF
     truth = ReadPoses(*files.groundtruth, of_truth, options, images, body_from_camera, findings);
   }
   if (options.folder.align_odometry) AlignAtFirst(truth, files.trajectory, &estimates);
+  const std::string list = files.images.value_or(files.detections).string();
+  const bool are_required = options.format == DatasetFormat::kSoslam && files.images;
   std::vector<ListedFrame> frames;
   size_t absent = 0;
   for (size_t i = 0; i < images.size(); ++i) {
     Frame frame;
     frame.id = static_cast<int>(i);
     frame.timestamp = images[i].timestamp;
-    frame.image = ImageOfFrame(folder, files, images[i], options);
+    const fs::path path = ImagePath(folder, images[i].image, list);
+    if (are_required || Exists(path)) frame.image = images[i].image;
     ListedFrame listed{frame, estimates[i].has_value()};
     if (estimates[i]) {
       listed.frame.world_from_camera = estimates[i]->world_from_camera;

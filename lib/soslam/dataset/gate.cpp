@@ -92,29 +92,6 @@ namespace {
 // the box's width or height; the larger one counts.
 constexpr double kCutAtBorderOfImage = 0.01;
 constexpr double kCutAtBorderOfBox = 0.02;
-// Errors of a lower edge and of the upper edge of what hides it, as a fraction of the box's height.
-constexpr double kEdgeErrorFraction = 0.05;
-
-// Rounding tolerance: a covered share equal to the option's value counts as occluded.
-constexpr double kShareTolerance = 1e-9;
-
-// Share of a box's lower edge that lies inside the union of other boxes.
-double CoveredShareOfLowerEdge(const Box& box, const std::vector<Box>& others) {
-  const double margin = kEdgeErrorFraction * box.Height();
-  std::vector<std::pair<double, double>> intervals;
-  for (const Box& other : others) {
-    if (box.y_max < other.y_min - margin || box.y_max > other.y_max) continue;
-    intervals.emplace_back(std::max(box.x_min, other.x_min), std::min(box.x_max, other.x_max));
-  }
-  std::ranges::sort(intervals);
-  double covered = 0.0;
-  double covered_until = -std::numeric_limits<double>::infinity();
-  for (const auto& [begin, end] : intervals) {
-    covered += std::max(0.0, end - std::max(begin, covered_until));
-    covered_until = std::max(covered_until, end);
-  }
-  return covered / box.Width();
-}
 
 }  // namespace
 
@@ -134,10 +111,29 @@ std::array<bool, 4> EdgesCutByBorder(const Box& box, const Camera& camera) {
 // chair) covers much that is visible past its back and between its legs, and the edge of the object
 // behind is then measured as well as any.
 void MarkHiddenEdges(double hidden_edge_fraction, Sequence* sequence) {
+  // Errors of a lower edge and of the upper edge of what hides it, as a fraction of the box's
+  // height.
+  constexpr double kEdgeErrorFraction = 0.05;
+  // Rounding tolerance: a covered share equal to the option's value counts as occluded.
+  constexpr double kShareTolerance = 1e-9;
   for (Detection& detection : sequence->detections) {
-    const double hidden_share =
-        CoveredShareOfLowerEdge(detection.box, BoxesInFront(*sequence, detection));
-    if (hidden_share >= hidden_edge_fraction - kShareTolerance) detection.is_one_sided[3] = true;
+    const Box& box = detection.box;
+    const double margin = kEdgeErrorFraction * box.Height();
+    std::vector<std::pair<double, double>> intervals;  // of the lower edge, inside other boxes
+    for (const Box& other : BoxesInFront(*sequence, detection)) {
+      if (box.y_max < other.y_min - margin || box.y_max > other.y_max) continue;
+      intervals.emplace_back(std::max(box.x_min, other.x_min), std::min(box.x_max, other.x_max));
+    }
+    std::ranges::sort(intervals);
+    double covered = 0.0;
+    double covered_until = -std::numeric_limits<double>::infinity();
+    for (const auto& [begin, end] : intervals) {
+      covered += std::max(0.0, end - std::max(begin, covered_until));
+      covered_until = std::max(covered_until, end);
+    }
+    if (covered / box.Width() >= hidden_edge_fraction - kShareTolerance) {
+      detection.is_one_sided[3] = true;
+    }
   }
 }
 

@@ -102,7 +102,15 @@ class Importer {
     MarkHiddenEdges(options_.hidden_edge_fraction, sequence_);
     Keep(rejected);
     Keep(content_.rejected);
-    ListTruthInFrames();
+    for (const auto& label : content_.labels_in_frames) {
+      const auto* frame_index = std::get_if<int>(&slots_.at(label.frame_id));
+      if (frame_index == nullptr) continue;
+      sequence_->truth_in_frames.push_back(
+          {*frame_index, label.true_object_id, label.landmark_in_camera});
+    }
+    std::ranges::sort(sequence_->truth_in_frames, {}, [](const TruthInFrame& truth) {
+      return std::pair(truth.frame_index, truth.true_object_id);
+    });
   }
 
  private:
@@ -150,18 +158,6 @@ class Importer {
     }
   }
 
-  void ListTruthInFrames() {
-    for (const auto& label : content_.labels_in_frames) {
-      const auto* frame_index = std::get_if<int>(&slots_.at(label.frame_id));
-      if (frame_index == nullptr) continue;
-      sequence_->truth_in_frames.push_back(
-          {*frame_index, label.true_object_id, label.landmark_in_camera});
-    }
-    std::ranges::sort(sequence_->truth_in_frames, {}, [](const TruthInFrame& truth) {
-      return std::pair(truth.frame_index, truth.true_object_id);
-    });
-  }
-
   std::optional<int> TrueObjectId(int object_id) const {
     const bool is_known =
         content_.has_object_ids &&
@@ -184,8 +180,10 @@ class Importer {
       detection.box = row.box;
       if (row.plane_in_camera) {
         detection.plane_in_camera = *row.plane_in_camera;
-      } else if (sequence_->ObjectOf(detection).plane_index != kNoPlane) {
-        detection.plane_in_camera = WorldPlane(detection);
+      } else if (object->plane_index != kNoPlane) {
+        const Rigid3d world_from_camera = *PlanePose(sequence_->FrameOf(detection));
+        detection.plane_in_camera = Transform(
+            world_from_camera.Inverse(), sequence_->planes[object->plane_index].plane_in_world);
       }
       detection.is_one_sided =
           EdgesCutByBorder(row.box_in_image_file.value_or(row.box), sequence_->CameraOf(detection));
@@ -194,13 +192,6 @@ class Importer {
       detections.push_back(detection);
     }
     return detections;
-  }
-
-  // The plane of a detection's object in the camera frame.
-  Plane WorldPlane(const Detection& detection) const {
-    const Object& object = sequence_->ObjectOf(detection);
-    const SupportPlane& plane = sequence_->planes[object.plane_index];
-    return Transform(PlanePose(sequence_->FrameOf(detection))->Inverse(), plane.plane_in_world);
   }
 
   const DatasetContent& content_;
@@ -229,24 +220,6 @@ void DropUndetectedObjects(Sequence* sequence) {
   }
 }
 
-// Throws one InputError with all findings that are errors.
-void RefuseErrors(const std::filesystem::path& folder, const std::vector<Finding>& findings) {
-  std::vector<std::string> errors;
-  for (const Finding& finding : findings) {
-    if (finding.severity == Severity::kError) errors.push_back(InWords(finding));
-  }
-  if (errors.empty()) return;
-  throw InputError(fmt::format("{}: {}", folder.string(), fmt::join(errors, "; also: ")));
-}
-
-void RequireDetections(const std::filesystem::path& folder, const Sequence& sequence) {
-  if (!sequence.detections.empty()) return;
-  std::string message = fmt::format("{}: no usable detection left; {}", folder.string(),
-                                    DescribeRejections(sequence.rejected_detections));
-  for (const Finding& finding : sequence.findings) message += "; " + InWords(finding);
-  throw NothingUsableError(message);
-}
-
 }  // namespace
 
 Sequence ImportDataset(const std::filesystem::path& folder, const ImportOptions& options,
@@ -269,9 +242,20 @@ Sequence ImportDataset(const std::filesystem::path& folder, const ImportOptions&
                                                                   : OdometryWorld::kOfTruth;
   Importer(content, options, &sequence).Import();
   sequence.findings = CheckDataset({folder, options, content, sequence});
-  RefuseErrors(folder, sequence.findings);
+  std::vector<std::string> errors;
+  for (const Finding& finding : sequence.findings) {
+    if (finding.severity == Severity::kError) errors.push_back(InWords(finding));
+  }
+  if (!errors.empty()) {
+    throw InputError(fmt::format("{}: {}", folder.string(), fmt::join(errors, "; also: ")));
+  }
   sequence = HoldOutFrames(std::move(sequence), options.held_out);
-  RequireDetections(folder, sequence);
+  if (sequence.detections.empty()) {
+    std::string message = fmt::format("{}: no usable detection left; {}", folder.string(),
+                                      DescribeRejections(sequence.rejected_detections));
+    for (const Finding& finding : sequence.findings) message += "; " + InWords(finding);
+    throw NothingUsableError(message);
+  }
   if (!content.has_object_ids) DropUndetectedObjects(&sequence);
   if (files_read != nullptr) *files_read = content.files;
   return sequence;

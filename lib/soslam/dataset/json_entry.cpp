@@ -23,17 +23,6 @@ std::string Quoted(const json& value) {
   return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
 }
 
-// Suggestion for an unknown key, as the end of a message; empty if there is none.
-std::string LikelyMeaning(const std::string& key, const KnownKeys& known) {
-  for (const KeyHint& hint : known.hints) {
-    if (std::ranges::find(hint.keys, key) != hint.keys.end()) {
-      return fmt::format("; {}", hint.instead);
-    }
-  }
-  const auto likely = LikelyMeant(key, {known.keys.begin(), known.keys.end()});
-  return likely ? fmt::format("; did you mean \"{}\"?", *likely) : "";
-}
-
 }  // namespace
 
 std::vector<JsonEntry> EntriesOf(const json& list, const std::string& place) {
@@ -111,8 +100,15 @@ void JsonEntry::RefuseUnknownKeys(const KnownKeys& known) const {
   for (const auto& field : fields_.items()) {
     const std::string& key = field.key();
     if (std::ranges::find(known.keys, key) != known.keys.end()) continue;
+    const auto meant = std::ranges::find_if(known.hints, [&](const KeyHint& hint) {
+      return std::ranges::find(hint.keys, key) != hint.keys.end();
+    });
+    const auto likely = LikelyMeant(key, {known.keys.begin(), known.keys.end()});
     throw InputError(fmt::format("{}: unknown key {}; expected some of {}{}", place_, Quoted(key),
-                                 fmt::join(known.keys, ", "), LikelyMeaning(key, known)));
+                                 fmt::join(known.keys, ", "),
+                                 meant != known.hints.end() ? fmt::format("; {}", meant->instead)
+                                 : likely ? fmt::format("; did you mean \"{}\"?", *likely)
+                                          : ""));
   }
 }
 

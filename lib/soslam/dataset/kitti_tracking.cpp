@@ -47,16 +47,6 @@ Landmark MedianLandmark(const std::vector<Landmark>& landmarks) {
   return median;
 }
 
-bool IsStatic(const std::vector<Landmark>& landmarks, const Eigen::Vector3d& median,
-              const KittiOptions& options) {
-  const auto near = std::ranges::count_if(landmarks, [&](const Landmark& view) {
-    return (view.Centre() - median).norm() <= options.static_radius_m;
-  });
-  const auto views = static_cast<double>(landmarks.size());
-  return static_cast<int>(landmarks.size()) >= options.static_min_views &&
-         static_cast<double>(near) >= options.static_share * views;
-}
-
 namespace fs = std::filesystem;
 
 constexpr int kIdsPerRecording = 10000;
@@ -167,7 +157,12 @@ class Recording {
       object.id = Id(track);
       object.label = LowerCase(labels.front()->type);
       const Landmark median = MedianLandmark(in_world);
-      object.is_static = IsStatic(in_world, median.Centre(), options_.kitti);
+      const auto near = std::ranges::count_if(in_world, [&](const Landmark& view) {
+        return (view.Centre() - median.Centre()).norm() <= options_.kitti.static_radius_m;
+      });
+      const auto views = static_cast<double>(in_world.size());
+      object.is_static = static_cast<int>(in_world.size()) >= options_.kitti.static_min_views &&
+                         static_cast<double>(near) >= options_.kitti.static_share * views;
       object.ground_truth.emplace().landmark_in_world =
           object.is_static ? median : in_world.front();
       AddLabelledObject(std::move(object), number_, &content_->sequence);
@@ -191,15 +186,13 @@ class Recording {
       throw InputError(
           fmt::format("{}: has no folders; expected one for each type of object", folder.string()));
     }
-    for (const fs::path& type : types) AddFoundBoxes(type);
-  }
-
-  void AddFoundBoxes(const fs::path& folder_of_type) {
-    std::map<int, std::vector<LabelledBox>> found_by_frame;
-    for (LabelledBox& found : ReadKittiBoxes(Read(folder_of_type / file_))) {
-      found_by_frame[std::get<int>(found.frame)].push_back(std::move(found));
+    for (const fs::path& type : types) {
+      std::map<int, std::vector<LabelledBox>> found_by_frame;
+      for (LabelledBox& found : ReadKittiBoxes(Read(type / file_))) {
+        found_by_frame[std::get<int>(found.frame)].push_back(std::move(found));
+      }
+      for (const auto& [frame, found] : found_by_frame) AddMatches(frame, found);
     }
-    for (const auto& [frame, found] : found_by_frame) AddMatches(frame, found);
   }
 
   // `found`: the boxes of one type in this frame.
@@ -215,19 +208,13 @@ class Recording {
     for (size_t i = 0; i < matches.size(); ++i) {
       if (matches[i]) {
         AddRow(*labels[*matches[i]], found[i].box, found[i].score);
+      } else if (frame < static_cast<int>(poses_.size())) {
+        content_->rejected.Add({found[i].place, Id(frame), kNoObject, LowerCase(found[i].label),
+                                found[i].score, found[i].box},
+                               RejectReason::kMatchesNoLabel);
       } else {
-        Reject(frame, found[i]);
+        ++content_->rejected.counts[NameOf(RejectReason::kMatchesNoLabel)];
       }
-    }
-  }
-
-  void Reject(int frame, const LabelledBox& found) {
-    if (frame < static_cast<int>(poses_.size())) {
-      content_->rejected.Add(
-          {found.place, Id(frame), kNoObject, LowerCase(found.label), found.score, found.box},
-          RejectReason::kMatchesNoLabel);
-    } else {
-      ++content_->rejected.counts[NameOf(RejectReason::kMatchesNoLabel)];
     }
   }
 
@@ -242,11 +229,11 @@ class Recording {
   std::vector<Rigid3d> poses_;
 };
 
-// Recordings selected by the option `sequences`.
-std::vector<NumberedPath> ChooseRecordings(const fs::path& labels, const std::string& sequences) {
-  std::vector<NumberedPath> recordings = NumberedFiles(labels, ".txt");
-  const auto ranges = ParseRecordings("sequences", sequences);
-  if (ranges.empty()) return recordings;
+}  // namespace
+
+DatasetContent ReadKittiTracking(const fs::path& folder, const ImportOptions& options) {
+  std::vector<NumberedPath> recordings = NumberedFiles(folder / "label_02", ".txt");
+  const auto ranges = ParseRecordings("sequences", options.kitti.sequences);
   const auto is_in = [](const RecordingRange& range, const NumberedPath& recording) {
     return range.Contains(recording.number);
   };
@@ -255,20 +242,14 @@ std::vector<NumberedPath> ChooseRecordings(const fs::path& labels, const std::st
       continue;
     }
     throw SettingsError(fmt::format("sequences: {:04d} to {:04d}: no such recording in {}",
-                                    range.first, range.last, labels.string()));
+                                    range.first, range.last, (folder / "label_02").string()));
   }
   std::erase_if(recordings, [&](const NumberedPath& file) {
-    return std::ranges::none_of(ranges, [&](const auto& range) { return is_in(range, file); });
+    const auto has_file = [&](const auto& range) { return is_in(range, file); };
+    return !ranges.empty() && std::ranges::none_of(ranges, has_file);
   });
-  return recordings;
-}
-
-}  // namespace
-
-DatasetContent ReadKittiTracking(const fs::path& folder, const ImportOptions& options) {
   DatasetContent content;
-  for (const NumberedPath& labels :
-       ChooseRecordings(folder / "label_02", options.kitti.sequences)) {
+  for (const NumberedPath& labels : recordings) {
     Recording(folder, labels, options, &content).Add();
   }
   return content;

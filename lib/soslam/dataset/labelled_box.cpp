@@ -68,18 +68,7 @@ std::string LikelyTable(const std::vector<std::string>& header) {
   return likely.empty() ? "" : fmt::format("; it may have {}", fmt::join(likely, ", "));
 }
 
-CsvColumns ColumnsOfBoxes() {
-  CsvColumns columns{{"frame", "label", "x1", "y1", "x2", "y2"},
-                     {"score", kIdColumn},
-                     fmt::format("; {}", kTracks),
-                     &LikelyTable,
-                     "; for other formats set detections_format"};
-  columns.optional.insert(columns.optional.end(), kAngles.begin(), kAngles.end());
-  for (const auto& [other, name] : kOtherNames) columns.optional.emplace_back(other);
-  return columns;
-}
-
-void RefuseWhatWouldBeIgnored(const CsvRow& row) {
+LabelledBox ParseBox(const CsvRow& row) {
   for (const char* angle : kAngles) {
     if (!row.fields.contains(angle) || ParseNumber(row.fields.at(angle)).value_or(0.0) == 0.0)
       continue;
@@ -91,10 +80,6 @@ void RefuseWhatWouldBeIgnored(const CsvRow& row) {
     throw InputError(fmt::format("{}: column '{}' would be ignored; expected its name to be {}",
                                  row.place_of_header, other, name));
   }
-}
-
-LabelledBox ParseBox(const CsvRow& row) {
-  RefuseWhatWouldBeIgnored(row);
   LabelledBox box{row.place,
                   ParseInteger(row.fields.at("frame"), row.place, "frame"),
                   row.fields.at("label"),
@@ -114,8 +99,15 @@ LabelledBox ParseBox(const CsvRow& row) {
 }  // namespace
 
 std::vector<LabelledBox> ReadDetectionsCsv(const std::filesystem::path& path) {
+  CsvColumns columns{{"frame", "label", "x1", "y1", "x2", "y2"},
+                     {"score", kIdColumn},
+                     fmt::format("; {}", kTracks),
+                     &LikelyTable,
+                     "; for other formats set detections_format"};
+  columns.optional.insert(columns.optional.end(), kAngles.begin(), kAngles.end());
+  for (const auto& [other, name] : kOtherNames) columns.optional.emplace_back(other);
   std::vector<LabelledBox> boxes;
-  ForEachCsvRow(path, ColumnsOfBoxes(), [&](const CsvRow& row) { boxes.push_back(ParseBox(row)); });
+  ForEachCsvRow(path, columns, [&](const CsvRow& row) { boxes.push_back(ParseBox(row)); });
   return boxes;
 }
 
@@ -159,27 +151,21 @@ std::map<int, std::string> ReadNames(const JsonEntry& document, const char* list
   return names;
 }
 
-// The sizes of the images that have one, by id; programs write 0 or null if they do not know it.
-std::map<int, ImageSize> ReadImageSizes(const JsonEntry& document) {
-  std::map<int, ImageSize> sizes;
-  for (const JsonEntry& image : EntriesOf(document.List("images"), document.place())) {
-    const auto number = [&](const char* name) {
-      return image.Has(name) && image.Field(name).is_number() ? image.Real(name) : 0.0;
-    };
-    const double width = number("width"), height = number("height");
-    if (!IsWholeImageSize(width, height)) continue;
-    sizes[image.Integer("id")] = {static_cast<std::int64_t>(width),
-                                  static_cast<std::int64_t>(height)};
-  }
-  return sizes;
-}
-
-CocoNames NamesOf(const json& document, const fs::path& path) {
+CocoNames ReadCocoNames(const json& document, const fs::path& path) {
   const JsonEntry entry(document, path.string());
   CocoNames names;
   if (HasValue(entry, "images")) {
     names.images = ReadNames(entry, "images", "file_name");
-    names.image_sizes = ReadImageSizes(entry);
+    for (const JsonEntry& image : EntriesOf(entry.List("images"), entry.place())) {
+      // Programs write 0 or null if they do not know a size.
+      const auto number = [&](const char* name) {
+        return image.Has(name) && image.Field(name).is_number() ? image.Real(name) : 0.0;
+      };
+      const double width = number("width"), height = number("height");
+      if (!IsWholeImageSize(width, height)) continue;
+      names.image_sizes[image.Integer("id")] = {static_cast<std::int64_t>(width),
+                                                static_cast<std::int64_t>(height)};
+    }
   }
   if (HasValue(entry, "categories")) names.categories = ReadNames(entry, "categories", "name");
   return names;
@@ -248,12 +234,6 @@ double ScoreOf(const JsonEntry& entry, const char* name) {
   return 1.0;
 }
 
-// The attributes that CVAT adds to an entry; none without any.
-std::optional<JsonEntry> AttributesOf(const JsonEntry& entry) {
-  if (!entry.Has("attributes") || !entry.Field("attributes").is_object()) return std::nullopt;
-  return JsonEntry(entry.Field("attributes"), entry.place() + "/attributes");
-}
-
 std::optional<int> ParseTrack(const JsonEntry& entry, const std::optional<JsonEntry>& attributes) {
   if (HasValue(entry, "track_id")) return entry.Integer("track_id");
   if (!attributes || !HasValue(*attributes, "track_id")) return std::nullopt;
@@ -271,28 +251,6 @@ bool IsTrue(const JsonEntry& entry, const char* name) {
   if (!value.is_string()) return value == 1;
   const std::string word = LowerCase(value.get<std::string>());
   return word == "true" || word == "1";
-}
-
-// The reason to leave out an entry that is not of one object in the image.
-std::optional<RejectReason> ReasonToLeaveOut(const JsonEntry& entry,
-                                             const std::optional<JsonEntry>& attributes) {
-  for (const char* name : {"iscrowd", "ignore"}) {
-    if (IsTrue(entry, name)) return RejectReason::kCrowd;
-  }
-  if (attributes && IsTrue(*attributes, "outside")) return RejectReason::kOutOfView;
-  return std::nullopt;
-}
-
-void CheckSameCategories(const CocoNames& names, const fs::path& file, const CocoNames& others,
-                         const fs::path& other_file) {
-  for (const auto& [id, name] : names.categories) {
-    const auto other = others.categories.find(id);
-    if (other == others.categories.end() || AreSameLabel(name, other->second)) continue;
-    throw InputError(
-        fmt::format("{}: category {} is '{}', but '{}' in {}; expected the same names: leave "
-                    "class_names empty if the boxes' own file is right",
-                    file.string(), id, name, other->second, other_file.string()));
-  }
 }
 
 // The first image that has another name in the other file, apart from folders, endings and what
@@ -313,7 +271,14 @@ std::optional<int> OtherImage(const CocoNames& names, const CocoNames& others) {
 // boxes: if the other file has other ones, it is not used for images.
 void AddOwnNames(CocoNames own, const fs::path& results, const fs::path& dataset, CocoNames* names,
                  std::vector<Finding>* findings) {
-  CheckSameCategories(*names, dataset, own, results);
+  for (const auto& [id, name] : names->categories) {
+    const auto other = own.categories.find(id);
+    if (other == own.categories.end() || AreSameLabel(name, other->second)) continue;
+    throw InputError(
+        fmt::format("{}: category {} is '{}', but '{}' in {}; expected the same names: leave "
+                    "class_names empty if the boxes' own file is right",
+                    dataset.string(), id, name, other->second, results.string()));
+  }
   names->categories.merge(own.categories);
   if (const auto id = OtherImage(own, *names)) {
     findings->push_back(
@@ -334,9 +299,13 @@ void AddOwnNames(CocoNames own, const fs::path& results, const fs::path& dataset
 }
 
 void ReadEntry(const JsonEntry& entry, const std::optional<CocoNames>& names, CocoBoxes* read) {
-  const auto attributes = AttributesOf(entry);
-  if (const auto reason = ReasonToLeaveOut(entry, attributes)) {
-    ++read->left_out[NameOf(*reason)];
+  std::optional<JsonEntry> attributes;  // that CVAT adds
+  if (entry.Has("attributes") && entry.Field("attributes").is_object()) {
+    attributes.emplace(entry.Field("attributes"), entry.place() + "/attributes");
+  }
+  const bool is_crowd = IsTrue(entry, "iscrowd") || IsTrue(entry, "ignore");
+  if (is_crowd || (attributes && IsTrue(*attributes, "outside"))) {
+    ++read->left_out[NameOf(is_crowd ? RejectReason::kCrowd : RejectReason::kOutOfView)];
     return;
   }
   LabelledBox box{entry.place(),           ParseFrame(entry, names), ParseLabel(entry, names),
@@ -368,7 +337,7 @@ json ParseDatasetFile(const fs::path& path) {
 CocoBoxes ReadCocoResults(const fs::path& results, const std::optional<fs::path>& dataset) {
   const json document = ParseJsonFile(results);
   auto names =
-      dataset ? std::optional(NamesOf(ParseDatasetFile(*dataset), *dataset)) : std::nullopt;
+      dataset ? std::optional(ReadCocoNames(ParseDatasetFile(*dataset), *dataset)) : std::nullopt;
   const bool is_list = document.is_array();
   if (!is_list && (!document.is_object() || !document.contains("annotations"))) {
     throw InputError(results.string() +
@@ -377,7 +346,7 @@ CocoBoxes ReadCocoResults(const fs::path& results, const std::optional<fs::path>
   }
   CocoBoxes read;
   if (!is_list) {
-    CocoNames own = NamesOf(document, results);
+    CocoNames own = ReadCocoNames(document, results);
     if (names) {
       AddOwnNames(std::move(own), results, *dataset, &*names, &read.findings);
     } else {
@@ -398,25 +367,9 @@ CocoBoxes ReadCocoResults(const fs::path& results, const std::optional<fs::path>
   return read;
 }
 
-namespace {
-
-LabelledBox ParseDetection(const JsonEntry& entry, const std::string& image,
-                           const std::vector<std::string>& labels) {
-  const int category = entry.Integer("category_id");
-  if (category < 0 || category >= static_cast<int>(labels.size())) {
-    entry.Refuse("category_id", fmt::format("0 to {}", labels.size() - 1));
-  }
-  constexpr const char* kNumbers = "[x1, y1, x2, y2] with x1 <= x2 and y1 <= y2";
-  const Eigen::Vector4d corners = BoxNumbers(entry, kNumbers);
-  if (corners[2] < corners[0] || corners[3] < corners[1]) entry.Refuse("bbox", kNumbers);
-  return {entry.place(), image, labels[category], ScoreOf(entry, "detection_score"),
-          FromCornerOrigin({corners[0], corners[1], corners[2], corners[3]})};
-}
-
-}  // namespace
-
 std::vector<LabelledBox> ReadOaSlamBoxes(const std::filesystem::path& path,
                                          const std::vector<std::string>& labels) {
+  constexpr const char* kNumbers = "[x1, y1, x2, y2] with x1 <= x2 and y1 <= y2";
   const json images = ParseJsonFile(path);
   if (!images.is_array()) throw InputError(path.string() + ": is not a list of images");
   std::vector<LabelledBox> boxes;
@@ -424,7 +377,14 @@ std::vector<LabelledBox> ReadOaSlamBoxes(const std::filesystem::path& path,
     const std::string name = image.Text("file_name");
     for (const JsonEntry& entry :
          EntriesOf(image.List("detections"), image.place() + "/detections")) {
-      boxes.push_back(ParseDetection(entry, name, labels));
+      const int category = entry.Integer("category_id");
+      if (category < 0 || category >= static_cast<int>(labels.size())) {
+        entry.Refuse("category_id", fmt::format("0 to {}", labels.size() - 1));
+      }
+      const Eigen::Vector4d corners = BoxNumbers(entry, kNumbers);
+      if (corners[2] < corners[0] || corners[3] < corners[1]) entry.Refuse("bbox", kNumbers);
+      boxes.push_back({entry.place(), name, labels[category], ScoreOf(entry, "detection_score"),
+                       FromCornerOrigin({corners[0], corners[1], corners[2], corners[3]})});
     }
   }
   return boxes;

@@ -56,7 +56,7 @@ std::optional<ImageSize> SizeOfImages(const std::vector<JsonEntry>& frames,
   return std::nullopt;
 }
 
-Camera ParseNerfstudioCamera(const JsonEntry& entry) {
+LensCamera ParseNerfstudioCamera(const JsonEntry& entry) {
   for (const char* side : {"w", "h"}) {
     if (!entry.Has(side)) {
       throw InputError(
@@ -80,10 +80,6 @@ Camera ParseNerfstudioCamera(const JsonEntry& entry) {
   camera.fy = entry.Has("fl_y") ? entry.Positive("fl_y") : camera.fx;
   camera.cx = RealOr(entry, "cx", 0.5 * camera.width) - 0.5;
   camera.cy = RealOr(entry, "cy", 0.5 * camera.height) - 0.5;
-  return camera;
-}
-
-std::optional<Distortion> NerfstudioLens(const JsonEntry& entry) {
   std::vector<double> coefficients;
   for (const char* name : {"k1", "k2", "p1", "p2", "k3"}) {
     coefficients.push_back(RealOr(entry, name, 0.0));
@@ -95,7 +91,7 @@ std::optional<Distortion> NerfstudioLens(const JsonEntry& entry) {
   for (const char* name : {"k4", "k5", "k6"}) {
     if (RealOr(entry, name, 0.0) != 0.0) entry.Refuse(name, "0: no lens model here has it");
   }
-  return distortion;
+  return {camera, distortion};
 }
 
 // The camera of each frame, by its own values or those of the file.
@@ -104,8 +100,7 @@ std::vector<PlacedCamera> CamerasOf(const json& document, const std::filesystem:
   json common = document;
   common.erase("frames");
   const auto camera_of = [](const json& fields, const std::string& place) {
-    const JsonEntry entry(fields, place);
-    return PlacedCamera{place, {ParseNerfstudioCamera(entry), NerfstudioLens(entry)}};
+    return PlacedCamera{place, ParseNerfstudioCamera(JsonEntry(fields, place))};
   };
   if (!all.Has("frames")) return {camera_of(common, all.place())};
   const std::vector<JsonEntry> frames = FramesOf(all);
@@ -130,16 +125,6 @@ std::vector<PlacedCamera> CamerasOf(const json& document, const std::filesystem:
   return cameras;
 }
 
-NamedPose ParsePose(const JsonEntry& frame) {
-  const auto matrix = MatrixFromJson<Eigen::Matrix4d>(frame.Field("transform_matrix"));
-  if (!matrix) frame.Refuse("transform_matrix", "4 rows of 4 numbers");
-  const Rigid3d world_from_opengl = RigidMotion(*matrix, frame.place());
-  const Eigen::Quaterniond half_turn_about_x(0.0, 1.0, 0.0, 0.0);
-  return {frame.place(),
-          frame.Text("file_path"),
-          {world_from_opengl.rotation * half_turn_about_x, world_from_opengl.translation}};
-}
-
 }  // namespace
 
 std::optional<LensCamera> ReadNerfstudioCamera(const std::filesystem::path& path,
@@ -158,7 +143,16 @@ std::vector<NamedPose> ReadNerfstudioPoses(const std::filesystem::path& path,
   const json document = ParseJsonFile(path);
   const JsonEntry entry(document, path.string());
   std::vector<NamedPose> poses;
-  for (const JsonEntry& frame : FramesOf(entry)) poses.push_back(ParsePose(frame));
+  const Eigen::Quaterniond half_turn_about_x(0.0, 1.0, 0.0, 0.0);
+  for (const JsonEntry& frame : FramesOf(entry)) {
+    const auto matrix = MatrixFromJson<Eigen::Matrix4d>(frame.Field("transform_matrix"));
+    if (!matrix) frame.Refuse("transform_matrix", "4 rows of 4 numbers");
+    const Rigid3d world_from_opengl = RigidMotion(*matrix, frame.place());
+    poses.push_back(
+        {frame.place(),
+         frame.Text("file_path"),
+         {world_from_opengl.rotation * half_turn_about_x, world_from_opengl.translation}});
+  }
   if (poses.empty()) entry.Refuse("frames", "at least one frame");
   const double scale = entry.Has("applied_scale") ? entry.Positive("applied_scale") : 1.0;
   if (scale == 1.0) return poses;

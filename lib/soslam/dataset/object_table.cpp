@@ -85,24 +85,6 @@ struct Votes {
 // Votes of the rows of one object, keyed by label.
 using Ballot = std::map<std::string, Votes>;
 
-// The label with most rows, then with the largest sum of scores.
-std::string Winner(const Ballot& ballot) {
-  return std::ranges::max_element(
-             ballot, {},
-             [](const auto& entry) { return std::pair(entry.second.rows, entry.second.score); })
-      ->first;
-}
-
-std::map<int, Ballot> Count(const std::vector<DetectionRow>& rows) {
-  std::map<int, Ballot> ballots;
-  for (const DetectionRow& row : rows) {
-    Votes& votes = ballots[row.object_id][row.label];
-    ++votes.rows;
-    votes.score += row.score;
-  }
-  return ballots;
-}
-
 void RefuseOtherThanListed(const ListedObject& object, const Ballot& ballot,
                            const std::vector<DetectionRow>& rows) {
   int all = 0, others = 0;
@@ -123,9 +105,19 @@ void RefuseOtherThanListed(const ListedObject& object, const Ballot& ballot,
 }  // namespace
 
 int UnifyLabels(const std::vector<ListedObject>& objects, std::vector<DetectionRow>* rows) {
-  const std::map<int, Ballot> ballots = Count(*rows);
+  std::map<int, Ballot> ballots;
+  for (const DetectionRow& row : *rows) {
+    Votes& votes = ballots[row.object_id][row.label];
+    ++votes.rows;
+    votes.score += row.score;
+  }
+  const auto rows_and_score = [](const auto& entry) {
+    return std::pair(entry.second.rows, entry.second.score);
+  };
   std::map<int, std::string> labels;
-  for (const auto& [id, ballot] : ballots) labels[id] = Winner(ballot);
+  for (const auto& [id, ballot] : ballots) {
+    labels[id] = std::ranges::max_element(ballot, {}, rows_and_score)->first;
+  }
   for (const ListedObject& object : objects) {
     const auto ballot = ballots.find(object.id);
     if (ballot == ballots.end()) continue;

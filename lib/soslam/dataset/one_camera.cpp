@@ -14,26 +14,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Rays through a grid over the image, with its border. Where the lens model has no inverse there,
-// the ray is missing.
-std::vector<Eigen::Vector3d> RaysOverImage(const LensCamera& lens_camera) {
-  constexpr int kIntervals = 16;
-  const Camera& camera = lens_camera.camera;
-  std::vector<Eigen::Vector2d> pixels;
-  for (int row = 0; row <= kIntervals; ++row) {
-    for (int column = 0; column <= kIntervals; ++column) {
-      pixels.emplace_back(camera.width * column / double{kIntervals} - 0.5,
-                          camera.height * row / double{kIntervals} - 0.5);
-    }
-  }
-  const Distortion distortion = lens_camera.distortion.value_or(Distortion());
-  std::vector<Eigen::Vector3d> rays;
-  for (const auto& pixel : UndistortPixels(camera, distortion, pixels)) {
-    if (pixel) rays.push_back(camera.Ray(*pixel));
-  }
-  return rays;
-}
-
 std::vector<Eigen::Vector2d> ImagePoints(const LensCamera& lens_camera,
                                          const std::vector<Eigen::Vector3d>& rays) {
   std::vector<Eigen::Vector2d> pixels;
@@ -66,10 +46,22 @@ double UnseenDisplacementPx(const Camera& camera) {
 }
 
 double DisplacementPx(const LensCamera& one, const LensCamera& other) {
+  constexpr int kIntervals = 16;
   if (one.camera.width != other.camera.width || one.camera.height != other.camera.height) {
     return kInfinity;
   }
-  const std::vector<Eigen::Vector3d> rays = RaysOverImage(one);
+  std::vector<Eigen::Vector2d> grid;  // over the image, with its border
+  for (int row = 0; row <= kIntervals; ++row) {
+    for (int column = 0; column <= kIntervals; ++column) {
+      grid.emplace_back(one.camera.width * column / double{kIntervals} - 0.5,
+                        one.camera.height * row / double{kIntervals} - 0.5);
+    }
+  }
+  std::vector<Eigen::Vector3d> rays;  // where the lens model has an inverse
+  for (const auto& pixel :
+       UndistortPixels(one.camera, one.distortion.value_or(Distortion()), grid)) {
+    if (pixel) rays.push_back(one.camera.Ray(*pixel));
+  }
   const std::vector<Eigen::Vector2d> pixels = ImagePoints(one, rays);
   const std::vector<Eigen::Vector2d> other_pixels = ImagePoints(other, rays);
   double squares = 0.0;

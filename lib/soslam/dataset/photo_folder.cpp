@@ -37,13 +37,6 @@ bool HasNameOfHeif(const fs::path& path) {
   return extension == ".heic" || extension == ".heif" || extension == ".avif";
 }
 
-// Image formats that are not read.
-bool HasNameOfOtherImage(const fs::path& path) {
-  const std::string extension = LowerCase(path.extension().string());
-  return HasNameOfHeif(path) || HasNameOfRawPhoto(path) || extension == ".gif" ||
-         extension == ".jxl";
-}
-
 constexpr std::string_view kDigits = "0123456789";
 
 bool HasHeader(const Photo& photo) { return photo.header.stored.width > 0; }
@@ -131,27 +124,6 @@ bool IsSameFocalLength(double one, double other) {
   return std::abs(one - other) <= kMaxFocalChange * other;
 }
 
-[[noreturn]] void RefuseUnreadable(const fs::path& folder, const std::vector<Photo>& photos) {
-  const auto raw = std::ranges::count_if(photos, &Photo::is_raw);
-  const bool are_heif =
-      std::ranges::any_of(photos, [](const Photo& photo) { return HasNameOfHeif(photo.path); });
-  throw InputError(fmt::format(
-      "{}: none of its {} images can be read, as {}; expected JPEG, PNG, WebP, BMP or TIFF{}{}{}",
-      folder.string(), photos.size(), photos.front().path.filename().string(),
-      raw > 0 ? fmt::format(": {} are RAW photos; {}", raw, kRawRemedy) : "",
-      are_heif ? ": convert HEIC with " : "", are_heif ? kConversion : ""));
-}
-
-// The focal length that most others are close to; of several the smallest.
-std::optional<double> CommonFocalLength(std::vector<double> focal_lengths) {
-  if (focal_lengths.empty()) return std::nullopt;
-  std::ranges::sort(focal_lengths);
-  return *std::ranges::max_element(focal_lengths, {}, [&](double focal) {
-    return std::ranges::count_if(focal_lengths,
-                                 [&](double other) { return IsSameFocalLength(other, focal); });
-  });
-}
-
 }  // namespace
 
 std::pair<std::string, std::string> OrderOfName(const fs::path& path) {
@@ -184,7 +156,10 @@ std::vector<Photo> ListPhotos(const fs::path& folder) {
   for (const fs::path& path : FolderEntries(folder)) {
     const std::string name = path.filename().string();
     if (name.starts_with('.')) continue;
-    if (!(HasNameOfImage(path) || HasNameOfOtherImage(path)) || !IsFile(path)) {
+    const std::string extension = LowerCase(path.extension().string());
+    const bool is_image_not_read = HasNameOfHeif(path) || HasNameOfRawPhoto(path) ||
+                                   extension == ".gif" || extension == ".jxl";
+    if (!(HasNameOfImage(path) || is_image_not_read) || !IsFile(path)) {
       others.push_back(name);
     } else if (!IsUtf8(name)) {
       throw InputError(fmt::format("{}: image '{}' has a name that is not UTF-8; rename it",
@@ -219,7 +194,16 @@ CommonCamera FindCommonCamera(const fs::path& folder, const std::vector<Photo>& 
     if (!HasHeader(photo) || IsDuplicate(photo)) continue;
     ++counts[photo.header.Size(ImageOrientation::kUpright)];
   }
-  if (counts.empty()) RefuseUnreadable(folder, photos);
+  if (counts.empty()) {
+    const auto raw = std::ranges::count_if(photos, &Photo::is_raw);
+    const bool are_heif =
+        std::ranges::any_of(photos, [](const Photo& photo) { return HasNameOfHeif(photo.path); });
+    throw InputError(fmt::format(
+        "{}: none of its {} images can be read, as {}; expected JPEG, PNG, WebP, BMP or TIFF{}{}{}",
+        folder.string(), photos.size(), photos.front().path.filename().string(),
+        raw > 0 ? fmt::format(": {} are RAW photos; {}", raw, kRawRemedy) : "",
+        are_heif ? ": convert HEIC with " : "", are_heif ? kConversion : ""));
+  }
   const auto most = std::ranges::max_element(counts, {}, [](const auto& entry) {
     const auto& [size, count] = entry;
     return std::pair(count, static_cast<double>(size.width) * static_cast<double>(size.height));
@@ -232,7 +216,13 @@ CommonCamera FindCommonCamera(const fs::path& folder, const std::vector<Photo>& 
       focal_lengths.push_back(*focal);
     }
   }
-  common.focal_over_diagonal = CommonFocalLength(std::move(focal_lengths));
+  if (focal_lengths.empty()) return common;
+  std::ranges::sort(focal_lengths);
+  // The one that most others are close to; of several the smallest.
+  common.focal_over_diagonal = *std::ranges::max_element(focal_lengths, {}, [&](double focal) {
+    return std::ranges::count_if(focal_lengths,
+                                 [&](double other) { return IsSameFocalLength(other, focal); });
+  });
   return common;
 }
 

@@ -14,40 +14,6 @@
 #include "soslam/model/sequence.h"
 
 namespace soslam {
-namespace {
-
-MapPoint PointOf(const ColmapPoint& point, const ColmapModel& model,
-                 const std::map<std::int64_t, std::pair<size_t, int>>& frames) {
-  MapPoint read;
-  read.position_in_world = point.position_in_world;
-  read.reprojection_error_px = std::max(point.reprojection_error_px, 0.0);
-  for (const ColmapPoint::Observation& observation : point.track) {
-    const auto frame = frames.find(observation.image_id);
-    if (frame == frames.end()) continue;
-    const auto& [image, frame_id] = frame->second;
-    read.observations.push_back({frame_id, model.images[image].pixels[observation.pixel_index]});
-  }
-  std::ranges::stable_sort(read.observations, {}, &PointObservation::frame_id);
-  return read;
-}
-
-// LargestAngle at a point; of tracks longer than 50 views, of 50 that are evenly spread.
-double TriangulationAngle(const MapPoint& point,
-                          const std::vector<std::optional<Rigid3d>>& world_from_camera) {
-  constexpr size_t kMostViews = 50;
-  std::vector<int> frames;
-  for (const PointObservation& observation : point.observations) {
-    frames.push_back(observation.frame_id);
-  }
-  std::vector<Eigen::Vector3d> centres;
-  for (const int frame : SpreadOver(frames, kMostViews)) {
-    centres.push_back(world_from_camera[frame]->translation);
-  }
-  return LargestAngle(centres, point.position_in_world);
-}
-
-}  // namespace
-
 Reconstruction ReconstructionOf(const ColmapModel& model, const std::vector<ListedImage>& images) {
   Reconstruction reconstruction;
   reconstruction.world_from_camera.resize(images.size());
@@ -64,7 +30,16 @@ Reconstruction ReconstructionOf(const ColmapModel& model, const std::vector<List
     frames[model.images[i].id] = {i, *rows[i]};
   }
   for (const ColmapPoint& point : model.points) {
-    MapPoint read = PointOf(point, model, frames);
+    MapPoint read;
+    read.position_in_world = point.position_in_world;
+    read.reprojection_error_px = std::max(point.reprojection_error_px, 0.0);
+    for (const ColmapPoint::Observation& observation : point.track) {
+      const auto frame = frames.find(observation.image_id);
+      if (frame == frames.end()) continue;
+      const auto& [image, frame_id] = frame->second;
+      read.observations.push_back({frame_id, model.images[image].pixels[observation.pixel_index]});
+    }
+    std::ranges::stable_sort(read.observations, {}, &PointObservation::frame_id);
     if (!read.observations.empty()) reconstruction.points.push_back(std::move(read));
   }
   return reconstruction;
@@ -72,11 +47,20 @@ Reconstruction ReconstructionOf(const ColmapModel& model, const std::vector<List
 
 void Summarise(const Reconstruction& reconstruction, const std::vector<ListedImage>& images,
                ReconstructionSummary* summary) {
+  constexpr size_t kMostViews = 50;  // of a point, evenly spread over its track
   std::vector<double> errors, angles;
   summary->observations = 0;
   for (const MapPoint& point : reconstruction.points) {
     if (point.reprojection_error_px > 0.0) errors.push_back(point.reprojection_error_px);
-    angles.push_back(kDegPerRad * TriangulationAngle(point, reconstruction.world_from_camera));
+    std::vector<int> frames;
+    for (const PointObservation& observation : point.observations) {
+      frames.push_back(observation.frame_id);
+    }
+    std::vector<Eigen::Vector3d> centres;
+    for (const int frame : SpreadOver(frames, kMostViews)) {
+      centres.push_back(reconstruction.world_from_camera[frame]->translation);
+    }
+    angles.push_back(kDegPerRad * LargestAngle(centres, point.position_in_world));
     summary->observations += static_cast<int>(point.observations.size());
   }
   summary->images = static_cast<int>(reconstruction.world_from_camera.size());

@@ -21,12 +21,6 @@ using nlohmann::json;
 constexpr int kIdsPerProblem = 10000;
 constexpr const char* kLabel = "ellipsoid";
 
-Rigid3d ParsePose(const json& rows, const std::string& place) {
-  const auto matrix = MatrixFromJson<Eigen::Matrix4d>(rows);
-  if (!matrix) throw InputError(place + ": is not a pose; expected 4 rows of 4 numbers");
-  return {NearestRotation(matrix->topLeftCorner<3, 3>(), place), matrix->topRightCorner<3, 1>()};
-}
-
 // Reads one problem into the content.
 class Problem {
  public:
@@ -61,7 +55,11 @@ class Problem {
     std::vector<Rigid3d> poses;
     const json& list = ShortList(name);
     for (size_t i = 0; i < list.size(); ++i) {
-      poses.push_back(ParsePose(list[i], fmt::format("{}/{}", Place(name), i)));
+      const std::string place = fmt::format("{}/{}", Place(name), i);
+      const auto matrix = MatrixFromJson<Eigen::Matrix4d>(list[i]);
+      if (!matrix) throw InputError(place + ": is not a pose; expected 4 rows of 4 numbers");
+      poses.push_back(
+          {NearestRotation(matrix->topLeftCorner<3, 3>(), place), matrix->topRightCorner<3, 1>()});
     }
     return poses;
   }
@@ -141,19 +139,14 @@ class Problem {
   int objects_ = 0;
 };
 
-std::vector<fs::path> ProblemFiles(const fs::path& folder) {
+}  // namespace
+
+DatasetContent ReadSlamSynthetic(const fs::path& folder, const ImportOptions& options) {
   std::vector<fs::path> files = FolderEntries(folder);
   std::erase_if(files, [](const fs::path& file) { return file.extension() != ".json"; });
   if (files.empty()) {
     throw InputError(folder.string() + ": has no *.json; expected one for each problem");
   }
-  return files;
-}
-
-}  // namespace
-
-DatasetContent ReadSlamSynthetic(const fs::path& folder, const ImportOptions& options) {
-  const std::vector<fs::path> files = ProblemFiles(folder);
   const auto chosen = SplitWords(options.kitti.sequences);
   for (const std::string_view name : chosen) {
     if (std::ranges::find(files, name, [](const fs::path& file) { return file.stem(); }) !=

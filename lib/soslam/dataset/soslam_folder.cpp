@@ -17,29 +17,6 @@
 namespace soslam {
 namespace {
 
-Camera CameraOfSetting(const ImportOptions& options) {
-  constexpr const char* kExpected = "\"width height fx fy cx cy\", pixels";
-  const std::string& text = options.folder.camera;
-  const auto numbers = ParseNumbers(text);
-  if (!numbers || numbers->size() != 6) RefuseSetting("camera", text, kExpected);
-  const double width = (*numbers)[0], height = (*numbers)[1];
-  const double fx = (*numbers)[2], fy = (*numbers)[3], cx = (*numbers)[4], cy = (*numbers)[5];
-  const bool y_is_up = options.format == DatasetFormat::kIclNuim;
-  if (!IsWholeImageSize(width, height) || !(fx > 0.0) || !(y_is_up ? fy < 0.0 : fy > 0.0)) {
-    RefuseSetting("camera", text,
-                  fmt::format("{}, fy {} 0", kExpected, y_is_up ? "below" : "above"));
-  }
-  return {static_cast<int>(width), static_cast<int>(height), fx, std::abs(fy), cx, cy};
-}
-
-Distortion DistortionOfSetting(const std::string& text) {
-  const auto numbers = ParseNumbers(text);
-  const auto distortion = numbers ? DistortionOfCoefficients(*numbers) : std::nullopt;
-  if (distortion) return *distortion;
-  RefuseSetting("distortion", text,
-                "\"k1 k2 p1 p2 k3\" as OpenCV has them, or 4, 8, 12 or 14 of its numbers");
-}
-
 // The camera of a folder of images, from the options, otherwise from the camera file. ICL-NUIM's
 // camera is converted to the one with y down that gives the same images. Throws SettingsError for
 // invalid options; InputError naming the field.
@@ -51,15 +28,31 @@ Calibration ReadFolderCamera(const std::optional<std::filesystem::path>& camera_
   }
   Calibration read;
   if (!camera_file) {
-    read.camera.camera = CameraOfSetting(options);
+    constexpr const char* kExpected = "\"width height fx fy cx cy\", pixels";
+    const std::string& text = options.folder.camera;
+    const auto numbers = ParseNumbers(text);
+    if (!numbers || numbers->size() != 6) RefuseSetting("camera", text, kExpected);
+    const double width = (*numbers)[0], height = (*numbers)[1];
+    const double fx = (*numbers)[2], fy = (*numbers)[3], cx = (*numbers)[4], cy = (*numbers)[5];
+    if (!IsWholeImageSize(width, height) || !(fx > 0.0) || !(y_is_up ? fy < 0.0 : fy > 0.0)) {
+      RefuseSetting("camera", text,
+                    fmt::format("{}, fy {} 0", kExpected, y_is_up ? "below" : "above"));
+    }
+    read.camera.camera = {
+        static_cast<int>(width), static_cast<int>(height), fx, std::abs(fy), cx, cy};
   } else if (y_is_up) {
     read.camera = ReadCamera(*camera_file, CameraYAxis::kUp);
   } else {
     read = ReadCameraFile(*camera_file, findings);
   }
   std::optional<Distortion>& distortion = read.camera.distortion;
-  if (!options.folder.distortion.empty()) {
-    distortion = DistortionOfSetting(options.folder.distortion);
+  if (const std::string& text = options.folder.distortion; !text.empty()) {
+    const auto numbers = ParseNumbers(text);
+    distortion = numbers ? DistortionOfCoefficients(*numbers) : std::nullopt;
+    if (!distortion) {
+      RefuseSetting("distortion", text,
+                    "\"k1 k2 p1 p2 k3\" as OpenCV has them, or 4, 8, 12 or 14 of its numbers");
+    }
   }
   if (distortion == Distortion()) distortion.reset();
   if (distortion && y_is_up) {

@@ -31,15 +31,6 @@ bool IsUtf8(const std::string& text) {
 
 namespace {
 
-void CheckEncoding(std::string_view text, const std::string& place) {
-  if (text.find('\0') != text.npos) {
-    throw InputError(place + ": has a zero byte, as UTF-16 text has; expected UTF-8");
-  }
-  if (!IsUtf8(std::string(text))) throw InputError(place + ": is not UTF-8 text");
-}
-
-bool IsComment(std::string_view line) { return Trimmed(line).starts_with('#'); }
-
 // The lines of a text, all of them or neither blank ones nor comments.
 std::vector<TextLine> LinesOf(const std::string& text, const std::string& name, bool all) {
   CheckIsText(text, name, "UTF-8 text");
@@ -51,10 +42,14 @@ std::vector<TextLine> LinesOf(const std::string& text, const std::string& name, 
     std::string line(rest.substr(0, rest.find(line_end)));
     rest.remove_prefix(std::min(line.size() + 1, rest.size()));
     line.erase(line.find_last_not_of('\r') + 1);
-    const bool is_comment = IsComment(line);
+    const bool is_comment = Trimmed(line).starts_with('#');
     if (!all && (is_comment || Trimmed(line).empty())) continue;
-    lines.push_back({fmt::format("{}:{}", name, number), std::move(line)});
-    if (!is_comment) CheckEncoding(lines.back().text, lines.back().place);
+    const std::string place = fmt::format("{}:{}", name, number);
+    if (!is_comment && line.find('\0') != line.npos) {
+      throw InputError(place + ": has a zero byte, as UTF-16 text has; expected UTF-8");
+    }
+    if (!is_comment && !IsUtf8(line)) throw InputError(place + ": is not UTF-8 text");
+    lines.push_back({place, std::move(line)});
     constexpr size_t kMaxLines = 20'000'000;  // short lines take much more memory than in the file
     if (lines.size() > kMaxLines) {
       throw InputError(fmt::format("{}: has more than {} lines", name, kMaxLines));
@@ -79,15 +74,6 @@ bool ParseWhole(std::string_view text, Number* number) {
   const char* end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, *number);
   return error == std::errc() && stop == end;
-}
-
-// True if replacing the only comma by a decimal point gives a number.
-bool HasDecimalComma(std::string_view text) {
-  std::string with_point(text);
-  const size_t comma = with_point.find(',');
-  if (comma == with_point.npos) return false;
-  with_point[comma] = '.';
-  return ParseNumber(with_point).has_value();
 }
 
 }  // namespace
@@ -124,8 +110,11 @@ std::vector<TextLine> RawLines(const std::string& text, const std::string& name)
 
 double ParseReal(std::string_view text, const std::string& place, const std::string& field) {
   if (const auto number = ParseNumber(text)) return *number;
+  std::string with_point(text);
+  const size_t comma = with_point.find(',');
+  if (comma != with_point.npos) with_point[comma] = '.';
   throw InputError(fmt::format("{}: {} is '{}'; expected a finite number{}", place, field, text,
-                               HasDecimalComma(text) ? ", with a decimal point" : ""));
+                               ParseNumber(with_point) ? ", with a decimal point" : ""));
 }
 
 int ParseInteger(std::string_view text, const std::string& place, const std::string& field) {
@@ -171,15 +160,6 @@ std::string TakeQuoted(std::string_view* rest, const std::string& place) {
     }
   }
   throw InputError(place + ": has a quote that is not closed; expected \"field\" on one line");
-}
-
-// Separator of the fields: the most frequent one of comma, semicolon and tab in the header.
-char SeparatorOf(std::string_view header) {
-  char most = ',';
-  for (const char separator : {';', '\t'}) {
-    if (std::ranges::count(header, separator) > std::ranges::count(header, most)) most = separator;
-  }
-  return most;
 }
 
 // The trimmed fields.
@@ -259,7 +239,11 @@ void ForEachCsvRow(const std::filesystem::path& path, const CsvColumns& columns,
     throw InputError(fmt::format("{}: is empty; expected a header {}", path.string(),
                                  fmt::join(columns.required, ",")));
   }
-  const char separator = SeparatorOf(lines[0].text);
+  const std::string& first = lines[0].text;
+  char separator = ',';  // or, where it is more frequent in the header, semicolon or tab
+  for (const char other : {';', '\t'}) {
+    if (std::ranges::count(first, other) > std::ranges::count(first, separator)) separator = other;
+  }
   const auto header = SplitCsvLine(lines[0].text, separator, lines[0].place);
   const auto positions = PositionsOf(columns, header, lines[0].place);
   for (size_t i = 1; i < lines.size(); ++i) {

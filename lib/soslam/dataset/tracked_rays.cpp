@@ -15,30 +15,10 @@ namespace {
 
 constexpr size_t kFewestRays = 3;
 
-bool IsWhole(const Box& box, const Camera& camera) {
-  constexpr double kCutPx = 2.0;
-  return box.Width() > 0.0 && box.Height() > 0.0 &&
-         DistanceToBorder(box, camera.width, camera.height) > kCutPx;
-}
-
-double HalfDiagonalDeg(const Camera& camera, const Box& box) {
-  return 0.5 *
-         AngleBetweenDeg(camera.Ray({box.x_min, box.y_min}), camera.Ray({box.x_max, box.y_max}));
-}
-
-// Labels that occur more than once in a frame.
-std::set<std::string> RepeatedLabels(const std::vector<DetectionRow>& rows) {
-  std::set<std::pair<std::string, int>> seen;
-  std::set<std::string> repeated;
-  for (const DetectionRow& row : rows) {
-    if (!seen.emplace(row.label, row.frame_id).second) repeated.insert(row.label);
-  }
-  return repeated;
-}
-
 }  // namespace
 
 std::vector<TrackedObject> TrackedObjects(const ImportView& view) {
+  constexpr double kCutPx = 2.0;
   const DatasetContent& content = view.content;
   std::map<int, size_t> frame_index;
   for (size_t i = 0; i < content.frames.size(); ++i) frame_index[content.frames[i].frame.id] = i;
@@ -46,19 +26,27 @@ std::vector<TrackedObject> TrackedObjects(const ImportView& view) {
   for (const Object& object : view.sequence.objects) {
     if (!object.is_static) moving.insert(object.id);
   }
-  const std::set<std::string> repeated = RepeatedLabels(content.rows);
+  std::set<std::pair<std::string, int>> seen;
+  std::set<std::string> repeated;  // labels that occur more than once in a frame
+  for (const DetectionRow& row : content.rows) {
+    if (!seen.emplace(row.label, row.frame_id).second) repeated.insert(row.label);
+  }
   std::map<std::string, TrackedObject> by_name;
   for (const DetectionRow& row : content.rows) {
     const size_t frame = frame_index.at(row.frame_id);
     const Camera& camera = view.sequence.CameraOf(content.frames[frame].frame);
-    if (!IsWhole(row.box_in_image_file.value_or(row.box), camera)) continue;
+    const Box in_image = row.box_in_image_file.value_or(row.box);
+    const bool is_whole = in_image.Width() > 0.0 && in_image.Height() > 0.0 &&
+                          DistanceToBorder(in_image, camera.width, camera.height) > kCutPx;
+    if (!is_whole) continue;
     if (row.score < view.options.min_score || moving.contains(row.object_id)) continue;
     if (!content.has_object_ids && repeated.contains(row.label)) continue;
     const std::string name = content.has_object_ids ? std::to_string(row.object_id) : row.label;
     TrackedObject& object = by_name[name];
     if (content.has_object_ids) object.object_id = row.object_id;
-    object.rays.push_back(
-        {frame, camera.Ray(row.box.Centre()).normalized(), HalfDiagonalDeg(camera, row.box)});
+    const double diagonal_deg = AngleBetweenDeg(camera.Ray({row.box.x_min, row.box.y_min}),
+                                                camera.Ray({row.box.x_max, row.box.y_max}));
+    object.rays.push_back({frame, camera.Ray(row.box.Centre()).normalized(), 0.5 * diagonal_deg});
   }
   std::vector<TrackedObject> objects;
   for (auto& [name, object] : by_name) {

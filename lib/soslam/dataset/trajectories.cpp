@@ -70,40 +70,21 @@ TimedPose ParseTumPose(const TextLine& line) {
   return {t, {UnitQuaternion({qx, qy, qz, qw}, line.place), {x, y, z}}};
 }
 
-// True if the poses differ by no more than a camera moves within the resolution of a timestamp.
-bool IsSamePose(const Rigid3d& a, const Rigid3d& b) {
-  constexpr double kMetres = 0.01;
-  constexpr double kRadians = 0.02;
-  return (a.translation - b.translation).norm() <= kMetres &&
-         a.rotation.angularDistance(b.rotation) <= kRadians;
-}
-
-// Parses a row "timestamp,filename"; none for other rows, including those with commas in numbers or
-// file names.
-std::optional<ListedImage> EurocImage(const TextLine& line) {
-  constexpr double kSecondsPerUnit = 1e-9;
-  const auto fields = SplitFields(line.text);
-  const auto is_word = [](std::string_view field) { return SplitWords(field).size() == 1; };
-  if (fields.size() != 2 || !std::ranges::all_of(fields, is_word)) return std::nullopt;
-  const double timestamp = ParseReal(fields[0], line.place, "timestamp");
-  if (timestamp != std::floor(timestamp)) {
-    throw InputError(
-        fmt::format("{}: timestamp is {}; expected nanoseconds, an integer, before a "
-                    "comma, or seconds before a blank",
-                    line.place, fields[0]));
-  }
-  return ListedImage{timestamp * kSecondsPerUnit, std::string(fields[1])};
-}
-
 // Final step of a trajectory reader: sorts, removes duplicates, checks.
 std::vector<TimedPose> SortedTrajectory(std::vector<TimedPose> trajectory,
                                         const std::filesystem::path& path) {
+  // No more than a camera moves within the resolution of a timestamp.
+  constexpr double kMetres = 0.01;
+  constexpr double kRadians = 0.02;
   if (trajectory.empty()) throw InputError(path.string() + ": has no pose");
   std::ranges::stable_sort(trajectory, {}, &TimedPose::timestamp);
-  const auto twice =
-      std::ranges::adjacent_find(trajectory, [&](const TimedPose& a, const TimedPose& b) {
-        return a.timestamp == b.timestamp && !IsSamePose(a.world_from_camera, b.world_from_camera);
-      });
+  const auto differ = [](const TimedPose& a, const TimedPose& b) {
+    const Rigid3d &from = a.world_from_camera, &to = b.world_from_camera;
+    const bool is_same = (from.translation - to.translation).norm() <= kMetres &&
+                         from.rotation.angularDistance(to.rotation) <= kRadians;
+    return a.timestamp == b.timestamp && !is_same;
+  };
+  const auto twice = std::ranges::adjacent_find(trajectory, differ);
   if (twice != trajectory.end()) {
     throw InputError(fmt::format("{}: timestamp {} twice with different poses; expected one pose",
                                  path.string(), twice->timestamp));
@@ -119,10 +100,21 @@ std::vector<TimedPose> SortedTrajectory(std::vector<TimedPose> trajectory,
 }  // namespace
 
 std::vector<ListedImage> ReadImageList(const std::filesystem::path& path) {
+  constexpr double kSecondsPerUnit = 1e-9;
+  const auto is_word = [](std::string_view field) { return SplitWords(field).size() == 1; };
   std::vector<ListedImage> images;
   for (const TextLine& line : ReadTextLines(path)) {
-    if (const auto image = EurocImage(line)) {
-      images.push_back(*image);
+    // Rows of EuRoC, "timestamp,filename"; others may have commas in numbers or file names.
+    const auto fields = SplitFields(line.text);
+    if (fields.size() == 2 && std::ranges::all_of(fields, is_word)) {
+      const double timestamp = ParseReal(fields[0], line.place, "timestamp");
+      if (timestamp != std::floor(timestamp)) {
+        throw InputError(
+            fmt::format("{}: timestamp is {}; expected nanoseconds, an integer, before a "
+                        "comma, or seconds before a blank",
+                        line.place, fields[0]));
+      }
+      images.push_back({timestamp * kSecondsPerUnit, std::string(fields[1])});
       continue;
     }
     const std::string_view timestamp = SplitWords(line.text).front();

@@ -44,43 +44,36 @@ bool IsList(const fs::path& path, const std::vector<TextLine>& lines) {
   return !lines.empty() && !std::isdigit(static_cast<unsigned char>(lines.front().text.front()));
 }
 
-YoloTexts ReadFolder(const fs::path& folder) {
-  YoloTexts texts;
-  for (const fs::path& file : FolderEntries(folder)) {
-    if (!IsLabels(file.filename())) continue;
-    auto lines = ReadTextLines(file);
-    if (!IsList(file, lines)) texts.images.push_back({file.stem().string(), std::move(lines)});
-  }
-  return texts;
-}
-
-YoloTexts ReadArchive(const fs::path& archive) {
-  YoloTexts texts;
-  const auto is_wanted = [](const fs::path& name) {
-    return IsLabels(name) || (IsLabelFile(name) && !IsExtra(name));
-  };
-  for (const ArchivedText& entry : ReadTextArchive(archive, is_wanted)) {
-    const std::string place = fmt::format("{}/{}", archive.string(), entry.name);
-    if (IsLabels(entry.name)) {
-      auto lines = TextLines(entry.text, place);
-      if (!IsList(entry.name, lines)) {
-        texts.images.push_back({fs::path(entry.name).stem().string(), std::move(lines)});
-        continue;
-      }
-    }
-    if (IsLabelFile(entry.name))
-      texts.names.push_back(FindLabels(place, [&] { return entry.text; }));
-  }
-  return texts;
-}
-
 }  // namespace
 
 YoloTexts ReadYoloTexts(const fs::path& path) {
   if (!Exists(path)) {
     throw InputError(path.string() + ": is missing; expected a folder of YOLO text files");
   }
-  YoloTexts texts = IsFolder(path) ? ReadFolder(path) : ReadArchive(path);
+  YoloTexts texts;
+  if (IsFolder(path)) {
+    for (const fs::path& file : FolderEntries(path)) {
+      if (!IsLabels(file.filename())) continue;
+      auto lines = ReadTextLines(file);
+      if (!IsList(file, lines)) texts.images.push_back({file.stem().string(), std::move(lines)});
+    }
+  } else {
+    const auto is_wanted = [](const fs::path& name) {
+      return IsLabels(name) || (IsLabelFile(name) && !IsExtra(name));
+    };
+    for (const ArchivedText& entry : ReadTextArchive(path, is_wanted)) {
+      const std::string place = fmt::format("{}/{}", path.string(), entry.name);
+      if (IsLabels(entry.name)) {
+        auto lines = TextLines(entry.text, place);
+        if (!IsList(entry.name, lines)) {
+          texts.images.push_back({fs::path(entry.name).stem().string(), std::move(lines)});
+          continue;
+        }
+      }
+      if (IsLabelFile(entry.name))
+        texts.names.push_back(FindLabels(place, [&] { return entry.text; }));
+    }
+  }
   if (texts.images.empty()) {
     std::vector<std::string> folders;
     for (const fs::path& entry : IsFolder(path) ? FolderEntries(path) : std::vector<fs::path>()) {
@@ -147,17 +140,6 @@ void ReadPairs(const Rows& rows) {
                              other->extras[0], other->extras[1]));
 }
 
-void RefuseTracksTwice(const Rows& rows) {
-  std::set<std::pair<FrameKey, double>> seen;
-  for (const YoloRow* row : rows) {
-    const double track = row->extras[0];
-    if (track <= 0.0 || seen.emplace(row->box.frame, track).second) continue;
-    Refuse(*row, fmt::format("has the sixth number {} twice in one image; expected a confidence "
-                             "from 0 to 1, or the integer of a track, which no image has twice",
-                             track));
-  }
-}
-
 void ReadSingles(const Rows& rows, bool are_beside_pairs) {
   const YoloRow* no_score = FirstOther(rows, 0, &IsScore);
   if (no_score == nullptr) return SetScores(rows, 0);
@@ -168,7 +150,14 @@ void ReadSingles(const Rows& rows, bool are_beside_pairs) {
                                   are_beside_pairs ? ", as others have beside a track"
                                                    : ", or integers of tracks in all files"));
   }
-  RefuseTracksTwice(rows);
+  std::set<std::pair<FrameKey, double>> seen;
+  for (const YoloRow* row : rows) {
+    const double track = row->extras[0];
+    if (track <= 0.0 || seen.emplace(row->box.frame, track).second) continue;
+    Refuse(*row, fmt::format("has the sixth number {} twice in one image; expected a confidence "
+                             "from 0 to 1, or the integer of a track, which no image has twice",
+                             track));
+  }
   SetTracks(rows, 0);
 }
 
@@ -187,16 +176,6 @@ Box FractionsBox(const std::array<double, 4>& values, const std::string& place) 
   }
   const auto [cx, cy, w, h] = values;
   return {cx - 0.5 * w, cy - 0.5 * h, cx + 0.5 * w, cy + 0.5 * h};
-}
-
-// Largest overhang of a box beyond the image, in fractions.
-double Beyond(const Box& box) {
-  return std::max({0.0, -box.x_min, -box.y_min, box.x_max - 1.0, box.y_max - 1.0});
-}
-
-Box CutToImage(const Box& box) {
-  return {std::max(box.x_min, 0.0), std::max(box.y_min, 0.0), std::min(box.x_max, 1.0),
-          std::min(box.y_max, 1.0)};
 }
 
 Box PixelBox(const std::array<double, 4>& values, const std::string& place) {
@@ -274,8 +253,11 @@ std::vector<LabelledBox> ReadNormalisedYoloBoxes(const YoloTexts& texts,
                                                  RejectionCounts* corrected) {
   const auto to_box = [&](const std::array<double, 4>& numbers, const std::string& place) {
     Box box = FractionsBox(numbers, place);
-    const double beyond = Beyond(box);
-    if (beyond <= kMostBeyond) box = CutToImage(box);
+    const double beyond = std::max({0.0, -box.x_min, -box.y_min, box.x_max - 1.0, box.y_max - 1.0});
+    if (beyond <= kMostBeyond) {
+      box = {std::max(box.x_min, 0.0), std::max(box.y_min, 0.0), std::min(box.x_max, 1.0),
+             std::min(box.y_max, 1.0)};
+    }
     if (beyond > kRounding && beyond <= kMostBeyond) ++(*corrected)["cut_to_image"];
     return FromCornerOrigin({box.x_min * image_width, box.y_min * image_height,
                              box.x_max * image_width, box.y_max * image_height});
