@@ -59,8 +59,7 @@ std::optional<Distortion> ParseLens(const std::string& model, std::span<const do
         is_wide_angle
             ? "supported; expected OpenCV's for pinhole cameras: undistort the images first "
               "(cv::fisheye::undistortImage, COLMAP's image_undistorter) and give the camera of "
-              "the "
-              "undistorted ones"
+              "the undistorted ones"
             : "known; expected pinhole, opencv, plumb_bob, radtan, rational_polynomial or none: "
               "OpenCV's for pinhole cameras"));
   }

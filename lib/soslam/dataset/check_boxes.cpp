@@ -95,11 +95,10 @@ std::vector<Finding> CheckConvention(const std::vector<TurnedBox>& boxes, const 
   const int bad = static_cast<int>(boxes.size()) - plausible;
   if (bad < kFewest || bad <= kTolerated * all) return {};
   const DetectionsFormat format = options.folder.detections_format;
-  const bool is_corner_and_size =
+  const bool has_corner =
       format == DetectionsFormat::kCoco || format == DetectionsFormat::kYoloPixels;
-  const BoxConvention& assumed = kConventions[is_corner_and_size                  ? 1
-                                              : format == DetectionsFormat::kYolo ? 2
-                                                                                  : 0];
+  const bool has_centre = format == DetectionsFormat::kYolo;
+  const BoxConvention& assumed = kConventions[has_corner ? 1 : has_centre ? 2 : 0];
   const BoxConvention* better = BetterConvention(boxes, camera, assumed);
   // Boxes of whole objects that the image cuts extend beyond it on all sides.
   const auto is_left_or_above = [&](const TurnedBox& turned) {

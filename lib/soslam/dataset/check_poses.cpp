@@ -237,28 +237,6 @@ std::vector<Finding> CheckReadings(const ImportView& view,
            best->cause, best->remedy}};
 }
 
-// Warns if objects are far from where they are seen, relative to the size of their boxes, under any
-// convention. If they are right from the true poses, the estimates drift, which CheckTruth reports.
-std::vector<Finding> CheckContradiction(const ImportView& view,
-                                        const std::vector<TrackedObject>& objects,
-                                        const RayError& as_read) {
-  constexpr double kLargestShare = 0.2;
-  constexpr size_t kFewestObjects = 3;
-  if (as_read.median_share <= kLargestShare || as_read.objects < kFewestObjects) return {};
-  const auto from_truth = MedianRayError(objects, [&](size_t frame) {
-    return view.content.frames[frame].frame.true_world_from_camera;
-  });
-  if (IsComparable(from_truth, as_read) && from_truth->median_share <= kLargestShare) return {};
-  return {{kBoxesAgainstPoses, Severity::kWarning,
-           fmt::format("{} things are {:.2f} degrees from where they are seen, {:.2g} times half "
-                       "the diagonal of their boxes (medians)",
-                       as_read.objects, as_read.median_deg, as_read.median_share),
-           fmt::format("at most {:g} times; things that stand still", kLargestShare),
-           "poses, the order of frames, or ids contradict the boxes; or poses that drift far",
-           "look at the boxes of one id in several images: soslam-inspect; then at poses and time "
-           "stamps"}};
-}
-
 std::string InWords(const TrajectoryGap& gap) {
   return fmt::format("{:.2f} m and {:.1f} degrees", gap.translation_m, gap.rotation_deg);
 }
@@ -304,6 +282,8 @@ Advice AdviceOnTrajectory(const std::vector<PosePair>& pairs, double extent_m) {
 std::vector<Finding> CheckPoses(const ImportView& view) {
   constexpr size_t kFewestRays = 15;
   constexpr double kFitsDeg = 1.0;
+  constexpr double kLargestShare = 0.2;  // of the size of boxes
+  constexpr size_t kFewestObjects = 3;
   const std::vector<TrackedObject> objects = TrackedObjects(view);
   auto as_read =
       MedianRayError(objects, [&](size_t frame) { return view.content.frames[frame].Pose(); });
@@ -326,7 +306,22 @@ std::vector<Finding> CheckPoses(const ImportView& view) {
              std::string("camera_file: the camera's sensor.yaml, with T_BS") +
                  (as_read ? "" : "; nothing where the poses are those of the camera")}};
   }
-  return as_read ? CheckContradiction(view, objects, *as_read) : findings;
+  if (!as_read || as_read->median_share <= kLargestShare || as_read->objects < kFewestObjects) {
+    return {};
+  }
+  // If objects are right from the true poses, the estimates drift, which CheckTruth reports.
+  const auto from_truth = MedianRayError(objects, [&](size_t frame) {
+    return view.content.frames[frame].frame.true_world_from_camera;
+  });
+  if (IsComparable(from_truth, *as_read) && from_truth->median_share <= kLargestShare) return {};
+  return {{kBoxesAgainstPoses, Severity::kWarning,
+           fmt::format("{} things are {:.2f} degrees from where they are seen, {:.2g} times half "
+                       "the diagonal of their boxes (medians)",
+                       as_read->objects, as_read->median_deg, as_read->median_share),
+           fmt::format("at most {:g} times; things that stand still", kLargestShare),
+           "poses, the order of frames, or ids contradict the boxes; or poses that drift far",
+           "look at the boxes of one id in several images: soslam-inspect; then at poses and time "
+           "stamps"}};
 }
 
 std::vector<Finding> CheckTruth(const ImportView& view) {

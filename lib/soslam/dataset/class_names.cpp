@@ -31,8 +31,23 @@ void CheckName(const std::string& name, const std::string& place) {
       fmt::format("{}: label is '{}'; expected names, each without a comma", place, name));
 }
 
-std::vector<std::string> YamlNames(const NamedFields& fields, const std::string& place) {
+// The names in a text; none where it has none.
+std::vector<std::string> NamesIn(const std::string& text, const std::string& name) {
   std::vector<std::string> names;
+  const fs::path extension = fs::path(name).extension();
+  if (extension != ".yaml" && extension != ".yml") {
+    if (const std::string kind = FileKind(text); !kind.empty()) {
+      throw InputError(fmt::format(
+          "{}: is {}; expected the names of the classes, one a line, or data.yaml of YOLO", name,
+          kind));
+    }
+    for (const TextLine& line : TextLines(text, name)) {
+      CheckName(line.text, line.place);
+      names.push_back(line.text);
+    }
+    return names;
+  }
+  const NamedFields fields = YamlFields(text, name);
   const auto list = fields.find("names");
   if (list != fields.end()) {
     names = list->second;
@@ -48,27 +63,10 @@ std::vector<std::string> YamlNames(const NamedFields& fields, const std::string&
     if (static_cast<size_t>(numbered) != names.size()) {
       throw InputError(fmt::format(
           "{}: names has {} entries, but none for class {}; expected one for each class from 0 on",
-          place, numbered, names.size()));
+          name, numbered, names.size()));
     }
   }
-  for (const std::string& name : names) CheckName(name, place);
-  return names;
-}
-
-// The names in a text; none where it has none.
-std::vector<std::string> NamesIn(const std::string& text, const std::string& name) {
-  const fs::path extension = fs::path(name).extension();
-  if (extension == ".yaml" || extension == ".yml") return YamlNames(YamlFields(text, name), name);
-  if (const std::string kind = FileKind(text); !kind.empty()) {
-    throw InputError(fmt::format(
-        "{}: is {}; expected the names of the classes, one a line, or data.yaml of YOLO", name,
-        kind));
-  }
-  std::vector<std::string> names;
-  for (const TextLine& line : TextLines(text, name)) {
-    CheckName(line.text, line.place);
-    names.push_back(line.text);
-  }
+  for (const std::string& listed : names) CheckName(listed, name);
   return names;
 }
 

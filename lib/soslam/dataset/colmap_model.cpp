@@ -92,7 +92,9 @@ NamedPose PoseOfColmapImage(const std::array<double, 7>& v, std::string name,
 }
 
 // The grey value that OpenCV gives to a colour.
-double GreyOf(const Eigen::Vector3d& rgb) { return rgb.dot(Eigen::Vector3d(0.299, 0.587, 0.114)); }
+double ConvertToGrey(const Eigen::Vector3d& rgb) {
+  return rgb.dot(Eigen::Vector3d(0.299, 0.587, 0.114));
+}
 
 static_assert(std::endian::native == std::endian::little);
 
@@ -202,7 +204,7 @@ ColmapPoint TakePoint(BinaryReader* reader, const std::string& place) {
   for (double& value : point.position_in_world) value = reader->TakeReal(place);
   Eigen::Vector3d rgb;
   for (double& value : rgb) value = reader->Take<std::uint8_t>();
-  point.grey = GreyOf(rgb);
+  point.grey = ConvertToGrey(rgb);
   point.reprojection_error_px = reader->TakeReal(place);
   const size_t count = reader->TakeCount(kBytesOfObservation, "observations");
   point.track.reserve(count);
@@ -322,8 +324,8 @@ std::vector<ColmapCamera> ReadCameras(const std::filesystem::path& path) {
 
 // The one camera of the images; of all cameras if there are no images. Cameras of no image do not
 // matter.
-LensCamera CameraOf(const std::vector<ColmapImage>& images,
-                    const std::vector<ColmapCamera>& cameras, std::vector<Finding>* findings) {
+LensCamera FindCamera(const std::vector<ColmapImage>& images,
+                      const std::vector<ColmapCamera>& cameras, std::vector<Finding>* findings) {
   std::map<std::int64_t, const PlacedCamera*> by_id;
   for (const ColmapCamera& camera : cameras) by_id[camera.id] = &camera.placed;
   std::vector<PlacedCamera> used;
@@ -369,8 +371,9 @@ ColmapPoint ParsePoint(const TextLine& line) {
   for (size_t i = 0; i < 3; ++i) {
     point.position_in_world[static_cast<int>(i)] = ParseReal(words[i + 1], line.place, "XYZ");
   }
-  point.grey = GreyOf({ParseReal(words[4], line.place, "R"), ParseReal(words[5], line.place, "G"),
-                       ParseReal(words[6], line.place, "B")});
+  point.grey =
+      ConvertToGrey({ParseReal(words[4], line.place, "R"), ParseReal(words[5], line.place, "G"),
+                     ParseReal(words[6], line.place, "B")});
   point.reprojection_error_px = ParseReal(words[7], line.place, "ERROR");
   for (size_t i = kTrack; i < words.size(); i += 2) {
     point.track.push_back({ParseInteger(words[i], line.place, "IMAGE_ID"),
@@ -424,7 +427,8 @@ LensCamera ReadColmapCamera(const std::filesystem::path& path, std::vector<Findi
   const std::vector<ColmapCamera> cameras = ReadCameras(path);
   const std::filesystem::path images = path.parent_path() / ("images" + path.extension().string());
   const bool has_images = cameras.size() > 1 && IsFile(images);
-  return CameraOf(has_images ? ReadImages(images) : std::vector<ColmapImage>(), cameras, findings);
+  return FindCamera(has_images ? ReadImages(images) : std::vector<ColmapImage>(), cameras,
+                    findings);
 }
 
 std::vector<NamedPose> ReadColmapPoses(const std::filesystem::path& path) {
@@ -451,7 +455,7 @@ ColmapModel ReadColmapModel(const std::filesystem::path& folder) {
   }
   if (!IsFile(model.files.back())) model.files.pop_back();
   model.images = ReadImages(model.files[1]);
-  model.camera = CameraOf(model.images, ReadCameras(model.files[0]), &model.findings);
+  model.camera = FindCamera(model.images, ReadCameras(model.files[0]), &model.findings);
   if (model.files.size() > 2) model.points = ReadColmapPoints(model.files[2]);
   std::ranges::sort(model.points, {}, &ColmapPoint::id);
   CheckTracks(&model);

@@ -161,16 +161,6 @@ Advice AdviceOnTimes(const TimeRange& images, const TimeRange& poses, bool have_
           "give the images' own time stamps, or set max_time_difference_s"};
 }
 
-std::vector<Finding> CheckEqual(const std::vector<double>& times) {
-  const size_t repeated = times.size() - std::set<double>(times.begin(), times.end()).size();
-  if (repeated == 0) return {};
-  return {
-      {"equal_timestamps", Severity::kWarning,
-       fmt::format("{} of {} images have the time stamp of another one", repeated, times.size()),
-       "a time stamp for each image, as images of one time take the same pose",
-       "stamps with too few digits, or in whole seconds", "write stamps with all their digits"}};
-}
-
 }  // namespace
 
 std::vector<Finding> CheckTimestamps(const std::vector<ListedImage>& images,
@@ -178,7 +168,15 @@ std::vector<Finding> CheckTimestamps(const std::vector<ListedImage>& images,
                                      const std::string& trajectory_file, double max_difference_s) {
   std::vector<double> times;
   for (const ListedImage& image : images) times.push_back(image.timestamp);
-  std::vector<Finding> findings = CheckEqual(times);
+  std::vector<Finding> findings;
+  const size_t repeated = times.size() - std::set<double>(times.begin(), times.end()).size();
+  if (repeated > 0) {
+    findings.push_back(
+        {"equal_timestamps", Severity::kWarning,
+         fmt::format("{} of {} images have the time stamp of another one", repeated, times.size()),
+         "a time stamp for each image, as images of one time take the same pose",
+         "stamps with too few digits, or in whole seconds", "write stamps with all their digits"});
+  }
   size_t matched = 0;
   std::set<double> used;  // times of the poses
   for (const double time : times) {

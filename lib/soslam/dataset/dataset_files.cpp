@@ -113,7 +113,6 @@ namespace {
 struct FreeArchive {
   void operator()(archive* opened) const { archive_read_free(opened); }
 };
-using ArchivePointer = std::unique_ptr<archive, FreeArchive>;
 
 [[noreturn]] void Refuse(const std::filesystem::path& path, archive* opened) {
   const char* reason = archive_error_string(opened);
@@ -123,24 +122,6 @@ using ArchivePointer = std::unique_ptr<archive, FreeArchive>;
                   kind.empty() || kind.ends_with("archive")
                       ? fmt::format("cannot be read: {}", reason == nullptr ? "damaged" : reason)
                       : "is " + kind));
-}
-
-ArchivePointer Open(const std::filesystem::path& path) {
-  RecordInput(path);
-  constexpr size_t kBlock = 1 << 16;  // bytes
-  ArchivePointer opened(archive_read_new());
-  // Not "all", because the library runs external programs for some formats.
-  archive_read_support_filter_gzip(opened.get());
-  archive_read_support_filter_bzip2(opened.get());
-  archive_read_support_filter_xz(opened.get());
-  archive_read_support_filter_zstd(opened.get());
-  archive_read_support_format_tar(opened.get());
-  // Not the streaming zip reader, which may search for the next entry endlessly.
-  archive_read_support_format_zip_seekable(opened.get());
-  if (archive_read_open_filename(opened.get(), path.c_str(), kBlock) != ARCHIVE_OK) {
-    Refuse(path, opened.get());
-  }
-  return opened;
 }
 
 // Limits above any detector's boxes of a recording and any archive of them; larger ones are
@@ -172,7 +153,20 @@ std::string ReadEntry(const std::filesystem::path& path, std::int64_t max_bytes,
 std::vector<ArchivedText> ReadTextArchive(
     const std::filesystem::path& path,
     const std::function<bool(const std::filesystem::path&)>& wanted) {
-  const ArchivePointer opened = Open(path);
+  constexpr size_t kBlock = 1 << 16;  // bytes
+  RecordInput(path);
+  const std::unique_ptr<archive, FreeArchive> opened(archive_read_new());
+  // Not "all", because the library runs external programs for some formats.
+  archive_read_support_filter_gzip(opened.get());
+  archive_read_support_filter_bzip2(opened.get());
+  archive_read_support_filter_xz(opened.get());
+  archive_read_support_filter_zstd(opened.get());
+  archive_read_support_format_tar(opened.get());
+  // Not the streaming zip reader, which may search for the next entry endlessly.
+  archive_read_support_format_zip_seekable(opened.get());
+  if (archive_read_open_filename(opened.get(), path.c_str(), kBlock) != ARCHIVE_OK) {
+    Refuse(path, opened.get());
+  }
   std::vector<ArchivedText> texts;
   std::int64_t bytes_left = kMaxTextBytes;
   for (;;) {

@@ -40,29 +40,6 @@ DatasetContent ReadContent(const std::filesystem::path& folder, const ImportOpti
 // Position of a dataset frame in Sequence::frames, or the reason why it is not used.
 using FrameSlot = std::variant<int, RejectReason>;
 
-// Selects the frames to use; returns the slots of all frames, keyed by id.
-std::map<int, FrameSlot> ChooseFrames(const std::vector<ListedFrame>& listed,
-                                      const ImportOptions& options, std::vector<Frame>* frames) {
-  std::map<int, FrameSlot> slots;
-  int in_segment = 0;
-  for (size_t i = 0; i < listed.size(); ++i) {
-    const Frame& frame = listed[i].frame;
-    in_segment = i > 0 && frame.segment == listed[i - 1].frame.segment ? in_segment + 1 : 0;
-    if (in_segment < options.first_frame ||
-        (in_segment - options.first_frame) % options.frame_stride != 0) {
-      slots[frame.id] = RejectReason::kFrameNotUsed;
-    } else if (options.images_only && frame.image.empty()) {
-      slots[frame.id] = RejectReason::kFrameWithoutImage;
-    } else if (!listed[i].has_pose) {
-      slots[frame.id] = RejectReason::kFrameWithoutPose;
-    } else {
-      slots[frame.id] = static_cast<int>(frames->size());
-      frames->push_back(frame);
-    }
-  }
-  return slots;
-}
-
 // Creates the detections of a sequence whose frames, planes and objects are known.
 class Importer {
  public:
@@ -70,12 +47,28 @@ class Importer {
       : content_(content),
         options_(options),
         sequence_(sequence),
-        slots_(ChooseFrames(content.frames, options, &sequence->frames)),
         planes_from_truth_(options.camera_planes == PlanePoses::kGroundTruth &&
                            content.has_true_poses) {
     if (const auto violation = AscendingIdsViolation("object", sequence->objects);
         !violation.empty()) {
       throw InputError(violation);
+    }
+    int in_segment = 0;
+    for (size_t i = 0; i < content.frames.size(); ++i) {
+      const Frame& frame = content.frames[i].frame;
+      const bool is_first = i == 0 || frame.segment != content.frames[i - 1].frame.segment;
+      in_segment = is_first ? 0 : in_segment + 1;
+      if (in_segment < options.first_frame ||
+          (in_segment - options.first_frame) % options.frame_stride != 0) {
+        slots_[frame.id] = RejectReason::kFrameNotUsed;
+      } else if (options.images_only && frame.image.empty()) {
+        slots_[frame.id] = RejectReason::kFrameWithoutImage;
+      } else if (!content.frames[i].has_pose) {
+        slots_[frame.id] = RejectReason::kFrameWithoutPose;
+      } else {
+        slots_[frame.id] = static_cast<int>(sequence->frames.size());
+        sequence->frames.push_back(frame);
+      }
     }
   }
 
@@ -197,7 +190,7 @@ class Importer {
   const DatasetContent& content_;
   const ImportOptions& options_;
   Sequence* sequence_;
-  std::map<int, FrameSlot> slots_;
+  std::map<int, FrameSlot> slots_;  // of all frames, by id
   bool planes_from_truth_;
 };
 

@@ -105,38 +105,24 @@ KittiLabel ParseLabel(std::span<const std::string_view> words, const std::string
   return label;
 }
 
-std::vector<std::string_view> SplitColumns(const TextLine& line, size_t leading) {
-  auto words = SplitWords(line.text);
-  const size_t columns = leading + kKittiColumns.size();
-  if (words.size() != columns && words.size() != columns + 1) {
-    throw InputError(fmt::format("{}: has {} values; expected {}{} [score]", line.place,
-                                 words.size(), leading > 0 ? "frame track " : "",
-                                 fmt::join(kKittiColumns, " ")));
-  }
-  return words;
-}
-
-KittiCalibration FromProjection(const Eigen::Matrix<double, 3, 4>& p, const std::string& place) {
-  const bool is_rectified = p(0, 1) == 0.0 && p(1, 0) == 0.0 &&
-                            p.row(2).head<3>() == Eigen::RowVector3d(0.0, 0.0, 1.0) &&
-                            p(0, 0) > 0.0 && p(1, 1) > 0.0;
-  if (!is_rectified) {
-    throw InputError(place +
-                     ": P2 is not fx 0 cx tx  0 fy cy ty  0 0 1 tz; expected a rectified camera");
-  }
-  KittiCalibration calibration;
-  calibration.camera = {0, 0, p(0, 0), p(1, 1), p(0, 2), p(1, 2)};
-  calibration.camera2_from_camera0 = p.leftCols<3>().inverse() * p.col(3);
-  return calibration;
-}
-
 }  // namespace
 
 KittiCalibration ReadKittiCalibration(const fs::path& path) {
   for (const TextLine& line : ReadTextLines(path)) {
     const auto words = SplitWords(line.text);
     if (words.front() != "P2:") continue;
-    return FromProjection(ParseMatrix34(std::span(words).subspan(1), line.place), line.place);
+    const auto p = ParseMatrix34(std::span(words).subspan(1), line.place);
+    const bool is_rectified = p(0, 1) == 0.0 && p(1, 0) == 0.0 &&
+                              p.row(2).head<3>() == Eigen::RowVector3d(0.0, 0.0, 1.0) &&
+                              p(0, 0) > 0.0 && p(1, 1) > 0.0;
+    if (!is_rectified) {
+      throw InputError(line.place +
+                       ": P2 is not fx 0 cx tx  0 fy cy ty  0 0 1 tz; expected a rectified camera");
+    }
+    KittiCalibration calibration;
+    calibration.camera = {0, 0, p(0, 0), p(1, 1), p(0, 2), p(1, 2)};
+    calibration.camera2_from_camera0 = p.leftCols<3>().inverse() * p.col(3);
+    return calibration;
   }
   throw InputError(path.string() + ": has no line P2:; expected the projection of camera 2");
 }
@@ -145,7 +131,13 @@ std::vector<KittiLabel> ReadKittiLabels(const fs::path& path, bool has_tracks) {
   const size_t leading = has_tracks ? 2 : 0;
   std::vector<KittiLabel> labels;
   for (const TextLine& line : ReadTextLines(path)) {
-    const auto words = SplitColumns(line, leading);
+    const auto words = SplitWords(line.text);
+    const size_t columns = leading + kKittiColumns.size();
+    if (words.size() != columns && words.size() != columns + 1) {
+      throw InputError(fmt::format("{}: has {} values; expected {}{} [score]", line.place,
+                                   words.size(), has_tracks ? "frame track " : "",
+                                   fmt::join(kKittiColumns, " ")));
+    }
     KittiLabel label = ParseLabel(std::span(words).subspan(leading), line.place);
     label.frame = has_tracks ? ParseInteger(words[0], line.place, "frame") : 0;
     label.track =

@@ -171,8 +171,8 @@ CocoNames ReadCocoNames(const json& document, const fs::path& path) {
   return names;
 }
 
-const std::string& NameOf(const std::map<int, std::string>& names, const JsonEntry& entry,
-                          const char* field, const char* list) {
+const std::string& FindName(const std::map<int, std::string>& names, const JsonEntry& entry,
+                            const char* field, const char* list) {
   const auto found = names.find(entry.Integer(field));
   if (found == names.end()) {
     entry.Refuse(field, fmt::format("an id with a name of \"{}\" in the JSON file of the data "
@@ -184,12 +184,12 @@ const std::string& NameOf(const std::map<int, std::string>& names, const JsonEnt
 
 FrameKey ParseFrame(const JsonEntry& entry, const std::optional<CocoNames>& names) {
   if (entry.Field("image_id").is_string()) return entry.Text("image_id");
-  if (names) return NameOf(names->images, entry, "image_id", "images");
+  if (names) return FindName(names->images, entry, "image_id", "images");
   return entry.Integer("image_id");
 }
 
 std::string ParseLabel(const JsonEntry& entry, const std::optional<CocoNames>& names) {
-  if (names) return NameOf(names->categories, entry, "category_id", "categories");
+  if (names) return FindName(names->categories, entry, "category_id", "categories");
   const auto index = CocoClassIndex(entry.Integer("category_id"));
   if (!index) entry.Refuse("category_id", "a category of COCO, 1 to 90");
   return CocoLabels()[*index];
@@ -197,7 +197,7 @@ std::string ParseLabel(const JsonEntry& entry, const std::optional<CocoNames>& n
 
 // The number of a field, also as text; none for words and without a value, as attributes have any
 // names.
-std::optional<double> NumberOf(const JsonEntry& entry, const char* name) {
+std::optional<double> ReadNumber(const JsonEntry& entry, const char* name) {
   if (!entry.Has(name)) return std::nullopt;
   const json& value = entry.Field(name);
   if (value.is_string()) return ParseNumber(value.get<std::string>());
@@ -207,7 +207,8 @@ std::optional<double> NumberOf(const JsonEntry& entry, const char* name) {
 // The four numbers of a box, which has no angle. Throws InputError naming what was `expected`.
 Eigen::Vector4d BoxNumbers(const JsonEntry& entry, const char* expected) {
   for (const char* angle : kAngles) {
-    if (HasValue(entry, angle) && NumberOf(entry, angle) != 0.0) entry.Refuse(angle, kUprightBoxes);
+    if (HasValue(entry, angle) && ReadNumber(entry, angle) != 0.0)
+      entry.Refuse(angle, kUprightBoxes);
   }
   const json& bbox = entry.Field("bbox");
   if (bbox.is_array() && bbox.size() == 5) {
@@ -226,7 +227,7 @@ Box ParseBox(const JsonEntry& entry) {
 }
 
 // The score under this name; 1 without one. Throws InputError for a score under another name.
-double ScoreOf(const JsonEntry& entry, const char* name) {
+double ReadScore(const JsonEntry& entry, const char* name) {
   if (HasValue(entry, name)) return entry.Real(name);
   for (const char* other : {"score", "confidence", "conf"}) {
     if (HasValue(entry, other)) entry.Refuse(other, fmt::format("the score as {}", name));
@@ -308,13 +309,17 @@ void ReadEntry(const JsonEntry& entry, const std::optional<CocoNames>& names, Co
     ++read->left_out[NameOf(is_crowd ? RejectReason::kCrowd : RejectReason::kOutOfView)];
     return;
   }
-  LabelledBox box{entry.place(),           ParseFrame(entry, names), ParseLabel(entry, names),
-                  ScoreOf(entry, "score"), ParseBox(entry),          ParseTrack(entry, attributes)};
+  LabelledBox box{entry.place(),
+                  ParseFrame(entry, names),
+                  ParseLabel(entry, names),
+                  ReadScore(entry, "score"),
+                  ParseBox(entry),
+                  ParseTrack(entry, attributes)};
   if (names && entry.Field("image_id").is_number()) {
     const auto size = names->image_sizes.find(entry.Integer("image_id"));
     if (size != names->image_sizes.end()) box.image_size = size->second;
   }
-  if (const double angle_deg = attributes ? NumberOf(*attributes, "rotation").value_or(0.0) : 0.0;
+  if (const double angle_deg = attributes ? ReadNumber(*attributes, "rotation").value_or(0.0) : 0.0;
       angle_deg != 0.0) {
     box.as_drawn = {box.box, angle_deg};
     box.box = box.as_drawn->Around();
@@ -383,7 +388,7 @@ std::vector<LabelledBox> ReadOaSlamBoxes(const std::filesystem::path& path,
       }
       const Eigen::Vector4d corners = BoxNumbers(entry, kNumbers);
       if (corners[2] < corners[0] || corners[3] < corners[1]) entry.Refuse("bbox", kNumbers);
-      boxes.push_back({entry.place(), name, labels[category], ScoreOf(entry, "detection_score"),
+      boxes.push_back({entry.place(), name, labels[category], ReadScore(entry, "detection_score"),
                        FromCornerOrigin({corners[0], corners[1], corners[2], corners[3]})});
     }
   }

@@ -164,15 +164,6 @@ LensCamera Turned(const LensCamera& before, const ImageTurn& turn) {
   return turned;
 }
 
-// Turns the camera about its optical axis, with the image points.
-void Turn(const ImageTurn& turn, const ImageSize& size, ColmapImage* image) {
-  Eigen::Matrix3d turned_from_camera = Eigen::Matrix3d::Identity();
-  turned_from_camera.topLeftCorner<2, 2>() = turn.Matrix();
-  Eigen::Quaterniond& rotation = image->pose.world_from_camera.rotation;
-  rotation = (rotation * Eigen::Quaterniond(turned_from_camera).conjugate()).normalized();
-  for (Eigen::Vector2d& pixel : image->pixels) pixel = turn.Turned(pixel, size);
-}
-
 }  // namespace
 
 void TurnModel(const std::vector<ListedImage>& images, const fs::path& dataset,
@@ -206,7 +197,12 @@ void TurnModel(const std::vector<ListedImage>& images, const fs::path& dataset,
     if (is_of_stored == is_wanted_stored) continue;
     const ImageTurn turn = is_of_stored ? upright_from_stored : upright_from_stored.Inverse();
     cameras.push_back({image.path.string(), Turned(model->camera, turn)});
-    Turn(turn, size, image.of_model);
+    // A rotation about the optical axis.
+    Eigen::Matrix3d turned_from_camera = Eigen::Matrix3d::Identity();
+    turned_from_camera.topLeftCorner<2, 2>() = turn.Matrix();
+    Eigen::Quaterniond& rotation = image.of_model->pose.world_from_camera.rotation;
+    rotation = (rotation * Eigen::Quaterniond(turned_from_camera).conjugate()).normalized();
+    for (Eigen::Vector2d& pixel : image.of_model->pixels) pixel = turn.Turned(pixel, size);
   }
   if (cameras.empty()) return;
   model->camera =

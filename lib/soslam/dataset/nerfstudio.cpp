@@ -30,30 +30,19 @@ double RealOr(const JsonEntry& entry, const char* name, double value) {
   return entry.Has(name) ? entry.Real(name) : value;
 }
 
-std::vector<JsonEntry> FramesOf(const JsonEntry& all) {
+std::vector<JsonEntry> ListFrames(const JsonEntry& all) {
   return EntriesOf(all.List("frames"), all.place() + "#/frames");
 }
 
 // The path of a frame's image, with the extension that Blender's scenes leave out: that of a file
 // in the folder, otherwise .png.
-std::string ImageOf(const JsonEntry& frame, const std::filesystem::path& folder) {
+std::string FindImage(const JsonEntry& frame, const std::filesystem::path& folder) {
   const std::string image = frame.Text("file_path");
   if (std::filesystem::path(image).has_extension()) return image;
   for (const char* extension : {".png", ".jpg", ".jpeg", ".PNG", ".JPG", ".JPEG"}) {
     if (IsFile(folder / (image + extension))) return image + extension;
   }
   return image + ".png";
-}
-
-// The size of the first image that is there; none if EXIF turns it, so that it has two.
-std::optional<ImageSize> SizeOfImages(const std::vector<JsonEntry>& frames,
-                                      const std::filesystem::path& folder) {
-  for (const JsonEntry& frame : frames) {
-    const auto header = ReadImageHeader(ImagePath(folder, ImageOf(frame, folder), frame.place()));
-    if (header && header->IsTurnedByAQuarter()) return std::nullopt;
-    if (header) return header->stored;
-  }
-  return std::nullopt;
 }
 
 LensCamera ParseNerfstudioCamera(const JsonEntry& entry) {
@@ -95,7 +84,7 @@ LensCamera ParseNerfstudioCamera(const JsonEntry& entry) {
 }
 
 // The camera of each frame, by its own values or those of the file.
-std::vector<PlacedCamera> CamerasOf(const json& document, const std::filesystem::path& path) {
+std::vector<PlacedCamera> ListCameras(const json& document, const std::filesystem::path& path) {
   const JsonEntry all(document, path.string());
   json common = document;
   common.erase("frames");
@@ -103,11 +92,18 @@ std::vector<PlacedCamera> CamerasOf(const json& document, const std::filesystem:
     return PlacedCamera{place, ParseNerfstudioCamera(JsonEntry(fields, place))};
   };
   if (!all.Has("frames")) return {camera_of(common, all.place())};
-  const std::vector<JsonEntry> frames = FramesOf(all);
+  const std::vector<JsonEntry> frames = ListFrames(all);
   const auto has_size = [](const JsonEntry& entry) { return entry.Has("w") || entry.Has("h"); };
   if (!has_size(all) && std::ranges::none_of(frames, has_size)) {
-    if (const auto size = SizeOfImages(frames, path.parent_path())) {
-      common.update({{"w", size->width}, {"h", size->height}});
+    for (const JsonEntry& frame : frames) {
+      const std::string image = FindImage(frame, path.parent_path());
+      const auto header = ReadImageHeader(ImagePath(path.parent_path(), image, frame.place()));
+      if (!header) continue;
+      // An image that EXIF turns has two sizes.
+      if (!header->IsTurnedByAQuarter()) {
+        common.update({{"w", header->stored.width}, {"h", header->stored.height}});
+      }
+      break;
     }
   }
   std::vector<PlacedCamera> cameras;
@@ -135,7 +131,7 @@ std::optional<LensCamera> ReadNerfstudioCamera(const std::filesystem::path& path
   if (!entry.Has("frames") && !entry.Has("fl_x") && !entry.Has("camera_angle_x")) {
     return std::nullopt;
   }
-  return OneCamera(CamerasOf(document, path), "images with one zoom and focus", findings);
+  return OneCamera(ListCameras(document, path), "images with one zoom and focus", findings);
 }
 
 std::vector<NamedPose> ReadNerfstudioPoses(const std::filesystem::path& path,
@@ -144,7 +140,7 @@ std::vector<NamedPose> ReadNerfstudioPoses(const std::filesystem::path& path,
   const JsonEntry entry(document, path.string());
   std::vector<NamedPose> poses;
   const Eigen::Quaterniond half_turn_about_x(0.0, 1.0, 0.0, 0.0);
-  for (const JsonEntry& frame : FramesOf(entry)) {
+  for (const JsonEntry& frame : ListFrames(entry)) {
     const auto matrix = MatrixFromJson<Eigen::Matrix4d>(frame.Field("transform_matrix"));
     if (!matrix) frame.Refuse("transform_matrix", "4 rows of 4 numbers");
     const Rigid3d world_from_opengl = RigidMotion(*matrix, frame.place());
@@ -171,8 +167,8 @@ std::vector<NamedPose> ReadNerfstudioPoses(const std::filesystem::path& path,
 std::vector<ListedImage> ReadNerfstudioImages(const std::filesystem::path& path) {
   const json document = ParseJsonFile(path);
   std::vector<ListedImage> images;
-  for (const JsonEntry& frame : FramesOf(JsonEntry(document, path.string()))) {
-    images.push_back({0.0, ImageOf(frame, path.parent_path())});
+  for (const JsonEntry& frame : ListFrames(JsonEntry(document, path.string()))) {
+    images.push_back({0.0, FindImage(frame, path.parent_path())});
   }
   std::ranges::stable_sort(
       images, {}, [](const ListedImage& image) { return std::filesystem::path(image.image); });

@@ -13,22 +13,6 @@
 #include "soslam/dataset/soslam_folder.h"
 
 namespace soslam {
-namespace {
-
-bool ZeroIsOfNoTrack(const std::vector<LabelledBox>& boxes) {
-  std::map<std::pair<FrameKey, int>, int> counts;
-  std::map<int, int> images;  // number of images in which an id occurs more than once
-  bool has_others = false;
-  for (const LabelledBox& box : boxes) {
-    if (!box.object_id || *box.object_id < 0) continue;
-    if (++counts[{box.frame, *box.object_id}] == 2) ++images[*box.object_id];
-    has_others = has_others || *box.object_id > 0;
-  }
-  return images.size() == 1 && images.contains(0) && images.at(0) >= (has_others ? 2 : 1);
-}
-
-}  // namespace
-
 std::vector<LabelledBox> WithoutIdsOfNoTrack(std::vector<LabelledBox> boxes,
                                              const std::vector<ListedObject>& objects,
                                              const std::filesystem::path& file,
@@ -37,7 +21,16 @@ std::vector<LabelledBox> WithoutIdsOfNoTrack(std::vector<LabelledBox> boxes,
   if (!HaveObjectIds(boxes)) return boxes;
   std::set<int> listed;
   for (const ListedObject& object : objects) listed.insert(object.id);
-  const bool zero_is_of_none = ZeroIsOfNoTrack(boxes);
+  std::map<std::pair<FrameKey, int>, int> counts;
+  std::map<int, int> images;  // number of images in which an id occurs more than once
+  bool has_others = false;
+  for (const LabelledBox& box : boxes) {
+    if (!box.object_id || *box.object_id < 0) continue;
+    if (++counts[{box.frame, *box.object_id}] == 2) ++images[*box.object_id];
+    has_others = has_others || *box.object_id > 0;
+  }
+  const bool zero_is_of_none =
+      images.size() == 1 && images.contains(0) && images.at(0) >= (has_others ? 2 : 1);
   std::set<int> ids_of_none;
   for (LabelledBox& box : boxes) {
     if (!box.object_id || listed.contains(*box.object_id)) continue;

@@ -92,14 +92,6 @@ void RejectBoxesOfNoTrack(const std::vector<LabelledBox>& boxes,
   rejected->counts[NameOf(RejectReason::kWithoutObjectId)] = static_cast<int>(boxes.size());
 }
 
-std::vector<TrueObject> TrueObjects(const std::vector<ListedObject>& listed) {
-  std::vector<TrueObject> objects;
-  for (const ListedObject& object : listed) {
-    if (object.ground_truth) objects.push_back({object.id, object.label, *object.ground_truth});
-  }
-  return objects;
-}
-
 // Reports that `count` boxes were changed on reading: on stdout, and as a finding when more than a
 // third.
 void ReportMended(const DatasetFiles& files, int count, size_t boxes, Finding finding,
@@ -157,7 +149,9 @@ DatasetContent ReadSoslamFolder(const std::filesystem::path& folder, const Impor
                                &content.rejected.counts);
   }
   RejectBoxesOfNoTrack(of_no_track, images, camera, &content.rejected);
-  content.sequence.true_objects = TrueObjects(listed);
+  for (const auto& [id, label, plane_id, truth] : listed) {
+    if (truth) content.sequence.true_objects.push_back({id, label, *truth});
+  }
   content.sequence.ignored = given.ignored;
   content.sequence.objects =
       ListObjects(files, listed, content.rows, content.sequence.planes, content.has_object_ids);

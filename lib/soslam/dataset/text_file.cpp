@@ -32,7 +32,7 @@ bool IsUtf8(const std::string& text) {
 namespace {
 
 // The lines of a text, all of them or neither blank ones nor comments.
-std::vector<TextLine> LinesOf(const std::string& text, const std::string& name, bool all) {
+std::vector<TextLine> SplitLines(const std::string& text, const std::string& name, bool all) {
   CheckIsText(text, name, "UTF-8 text");
   std::string_view rest = text;
   if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
@@ -44,12 +44,12 @@ std::vector<TextLine> LinesOf(const std::string& text, const std::string& name, 
     line.erase(line.find_last_not_of('\r') + 1);
     const bool is_comment = Trimmed(line).starts_with('#');
     if (!all && (is_comment || Trimmed(line).empty())) continue;
-    const std::string place = fmt::format("{}:{}", name, number);
+    std::string place = fmt::format("{}:{}", name, number);
     if (!is_comment && line.find('\0') != line.npos) {
       throw InputError(place + ": has a zero byte, as UTF-16 text has; expected UTF-8");
     }
     if (!is_comment && !IsUtf8(line)) throw InputError(place + ": is not UTF-8 text");
-    lines.push_back({place, std::move(line)});
+    lines.push_back({std::move(place), std::move(line)});
     constexpr size_t kMaxLines = 20'000'000;  // short lines take much more memory than in the file
     if (lines.size() > kMaxLines) {
       throw InputError(fmt::format("{}: has more than {} lines", name, kMaxLines));
@@ -61,7 +61,7 @@ std::vector<TextLine> LinesOf(const std::string& text, const std::string& name, 
 // Lines without the characters of `blanks` at both ends; neither blank lines nor comments.
 std::vector<TextLine> LinesWithout(std::string_view blanks, const std::string& text,
                                    const std::string& name) {
-  std::vector<TextLine> lines = LinesOf(text, name, /*all=*/false);
+  std::vector<TextLine> lines = SplitLines(text, name, /*all=*/false);
   for (TextLine& line : lines) {
     line.text.erase(line.text.find_last_not_of(blanks) + 1);
     line.text.erase(0, line.text.find_first_not_of(blanks));
@@ -105,7 +105,7 @@ std::vector<TextLine> TextLines(const std::string& text, const std::string& name
 }
 
 std::vector<TextLine> RawLines(const std::string& text, const std::string& name) {
-  return LinesOf(text, name, /*all=*/true);
+  return SplitLines(text, name, /*all=*/true);
 }
 
 double ParseReal(std::string_view text, const std::string& place, const std::string& field) {
@@ -186,7 +186,7 @@ std::vector<std::string> SplitCsvLine(std::string_view line, char separator,
 }
 
 // Index of each column that is read, by its name.
-std::map<std::string, size_t> PositionsOf(const CsvColumns& columns,
+std::map<std::string, size_t> FindColumns(const CsvColumns& columns,
                                           const std::vector<std::string>& header,
                                           const std::string& place) {
   double number = 0.0;
@@ -245,7 +245,7 @@ void ForEachCsvRow(const std::filesystem::path& path, const CsvColumns& columns,
     if (std::ranges::count(first, other) > std::ranges::count(first, separator)) separator = other;
   }
   const auto header = SplitCsvLine(lines[0].text, separator, lines[0].place);
-  const auto positions = PositionsOf(columns, header, lines[0].place);
+  const auto positions = FindColumns(columns, header, lines[0].place);
   for (size_t i = 1; i < lines.size(); ++i) {
     const auto fields = SplitCsvLine(lines[i].text, separator, lines[i].place);
     if (fields.size() != header.size()) {

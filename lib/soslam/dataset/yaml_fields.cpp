@@ -61,7 +61,16 @@ class YamlReader {
     if (++nodes_ > kMaxFieldValues) {
       Refuse(node.Mark(), fmt::format("has more than {} values", kMaxFieldValues));
     }
-    if (node.IsScalar()) AddValue(path, node);
+    if (node.IsScalar()) {
+      // Aliases repeat values: what they come to is bounded as well.
+      value_bytes_ += node.Scalar().size();
+      if (value_bytes_ > kMaxFieldBytes) {
+        Refuse(node.Mark(),
+               fmt::format("has values of more than {} bytes, those of aliases included",
+                           kMaxFieldBytes));
+      }
+      fields_[path].push_back(node.Scalar());
+    }
     if (node.IsSequence()) {
       fields_[path];  // there, though it may be empty
       for (const YAML::Node& item : node) {
@@ -85,16 +94,6 @@ class YamlReader {
       }
       Add(key, entry.second, depth + 1);
     }
-  }
-
-  // Aliases repeat values: what they come to is bounded as well.
-  void AddValue(const std::string& path, const YAML::Node& node) {
-    value_bytes_ += node.Scalar().size();
-    if (value_bytes_ > kMaxFieldBytes) {
-      Refuse(node.Mark(), fmt::format("has values of more than {} bytes, those of aliases included",
-                                      kMaxFieldBytes));
-    }
-    fields_[path].push_back(node.Scalar());
   }
 
   std::string name_;
