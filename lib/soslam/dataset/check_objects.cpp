@@ -175,19 +175,6 @@ std::string PlaneInWords(const SupportPlane& plane) {
 constexpr const char* kWall =
     "a wall given as the floor, another axis of the world up, or cameras that were rolled";
 
-// Median angle (deg) between the plane's normal and the images' up.
-double AngleToImagesUpDeg(const std::vector<const Detection*>& detections) {
-  return *MedianOf(ValuesOf(detections, [](const Detection* detection) {
-    return AngleBetweenDeg(detection->plane_in_camera.normal, -Eigen::Vector3d::UnitY());
-  }));
-}
-
-// True if the plane is about vertical, given the way cameras are held.
-bool IsUpright(const std::vector<const Detection*>& detections) {
-  const double angle_deg = AngleToImagesUpDeg(detections);
-  return angle_deg > 60.0 && angle_deg < 120.0;
-}
-
 // Triangulated points of the objects on a plane, in the world of the planes.
 std::vector<Eigen::Vector3d> PointsOnPlane(const ImportView& view, int plane_index) {
   const bool has_true_planes =
@@ -209,47 +196,45 @@ std::vector<Eigen::Vector3d> PointsOnPlane(const ImportView& view, int plane_ind
   return points;
 }
 
-std::vector<double> HeightsOver(const Plane& plane, const std::vector<Eigen::Vector3d>& points) {
-  return ValuesOf(points, [&](const auto& point) { return plane.SignedDistance(point); });
-}
+}  // namespace
 
-// The main plane and the objects on it.
-struct MainPlane {
-  SupportPlane plane;
-  std::vector<const Detection*> detections;
-  std::vector<Eigen::Vector3d> points_in_world;
-};
-
-// Checks on which side of the plane cameras and objects are. Cameras alone may be below it, as
-// those of a robot below a table.
-std::vector<Finding> CheckSide(const MainPlane& main) {
-  const auto below = std::ranges::count_if(main.detections, [](const Detection* detection) {
-    return detection->plane_in_camera.offset <= 0.0;
-  });
-  const auto all = std::ssize(main.detections);
-  if (2 * below <= all) return {};
-  const auto height = MedianOf(HeightsOver(main.plane.plane_in_world, main.points_in_world));
-  if (height && *height > 0.0) return {};
-  const bool is_upright = IsUpright(main.detections);
-  return {{"plane_side", height ? Severity::kError : Severity::kWarning,
-           fmt::format("{} of {} views of objects on {} are from below it or from within, and so "
-                       "{} the objects, as far as boxes tell",
-                       below, all, PlaneInWords(main.plane), height ? "are" : "may be"),
-           "cameras and objects on the side that the normal points to: normal . x + d > 0",
-           is_upright ? kWall : "a normal that points down, or d of the other sign",
-           is_upright ? "give the plane that objects stand on"
-                      : "turn the sign of the normal and of d, or of d alone"}};
-}
-
-std::vector<Finding> CheckAttitude(const MainPlane& main) {
+std::vector<Finding> CheckPlanes(const ImportView& view) {
   constexpr size_t kFewestPoints = 3;
   constexpr double kTolerance = 0.1;
   constexpr double kFlat = 0.5;
-  if (!IsUpright(main.detections) || main.points_in_world.size() < kFewestPoints) return {};
+  const std::vector<const Detection*> detections = DetectionsOnMainPlane(view.sequence);
+  if (detections.empty()) return {};
+  const int index = view.sequence.ObjectOf(*detections.front()).plane_index;
+  const SupportPlane& plane = view.sequence.planes.at(index);
+  const std::vector<Eigen::Vector3d> points_in_world = PointsOnPlane(view, index);
+  const std::vector<double> heights = ValuesOf(points_in_world, [&](const auto& point) {
+    return plane.plane_in_world.SignedDistance(point);
+  });
+  // Median angle between the normal and the images' up, which is about the world's as cameras are
+  // held.
+  const double angle_deg = *MedianOf(ValuesOf(detections, [](const Detection* detection) {
+    return AngleBetweenDeg(detection->plane_in_camera.normal, -Eigen::Vector3d::UnitY());
+  }));
+  const bool is_upright = angle_deg > 60.0 && angle_deg < 120.0;
+  const auto below = std::ranges::count_if(detections, [](const Detection* detection) {
+    return detection->plane_in_camera.offset <= 0.0;
+  });
+  const auto height = MedianOf(heights);
+  // Cameras alone may be below the plane, as those of a robot below a table.
+  if (2 * below > std::ssize(detections) && !(height && *height > 0.0)) {
+    return {{"plane_side", height ? Severity::kError : Severity::kWarning,
+             fmt::format("{} of {} views of objects on {} are from below it or from within, and so "
+                         "{} the objects, as far as boxes tell",
+                         below, detections.size(), PlaneInWords(plane), height ? "are" : "may be"),
+             "cameras and objects on the side that the normal points to: normal . x + d > 0",
+             is_upright ? kWall : "a normal that points down, or d of the other sign",
+             is_upright ? "give the plane that objects stand on"
+                        : "turn the sign of the normal and of d, or of d alone"}};
+  }
+  if (!is_upright || points_in_world.size() < kFewestPoints) return {};
   Eigen::AlignedBox3d around;
-  for (const Eigen::Vector3d& point : main.points_in_world) around.extend(point);
+  for (const Eigen::Vector3d& point : points_in_world) around.extend(point);
   const double size = around.diagonal().norm();
-  const std::vector<double> heights = HeightsOver(main.plane.plane_in_world, main.points_in_world);
   const auto [lowest, highest] = std::ranges::minmax(heights);
   // Objects on a plane are about equally high above it; objects in front of a wall are not.
   if (lowest > -kTolerance * size && highest - lowest < kFlat * size) return {};
@@ -257,23 +242,9 @@ std::vector<Finding> CheckAttitude(const MainPlane& main) {
       {"plane_attitude", Severity::kWarning,
        fmt::format("the normal of {} is {:.0f} degrees from the images' up, and objects are not "
                    "along it",
-                   PlaneInWords(main.plane), AngleToImagesUpDeg(main.detections)),
+                   PlaneInWords(plane), angle_deg),
        "a plane that most objects stand on, about level as cameras are held", kWall,
        "give the plane that objects stand on, in the world of the poses"}};
-}
-
-}  // namespace
-
-std::vector<Finding> CheckPlanes(const ImportView& view) {
-  MainPlane main;
-  main.detections = DetectionsOnMainPlane(view.sequence);
-  if (main.detections.empty()) return {};
-  const int index = view.sequence.ObjectOf(*main.detections.front()).plane_index;
-  main.plane = view.sequence.planes.at(index);
-  main.points_in_world = PointsOnPlane(view, index);
-  std::vector<Finding> findings = CheckSide(main);
-  if (findings.empty()) findings = CheckAttitude(main);
-  return findings;
 }
 
 }  // namespace soslam

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <initializer_list>
 #include <iterator>
-#include <map>
 #include <set>
 #include <span>
 

@@ -34,7 +34,7 @@ std::vector<ListedImage> ImagesOfBoxes(const std::vector<LabelledBox>& boxes) {
           "{}: image is row {} of a list; expected a list of images, or a name that is a timestamp",
           box.place, std::get<int>(box.frame)));
     }
-    // With or without extension: "12.5" has none.
+    // The name may lack an extension: that of "12.5" is a part of the number.
     const fs::path file = fs::path(*name).filename();
     const bool is_decimals = std::ranges::all_of(
         file.extension().string(), [](char c) { return c == '.' || (c >= '0' && c <= '9'); });

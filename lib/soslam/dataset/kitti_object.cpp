@@ -5,11 +5,9 @@
 
 #include "soslam/base/error.h"
 #include "soslam/base/paths.h"
-#include "soslam/base/text.h"
 #include "soslam/dataset/dataset_content.h"
 #include "soslam/dataset/image_path.h"
 #include "soslam/dataset/kitti_label.h"
-#include "soslam/geometry/image_size.h"
 
 namespace soslam {
 namespace {

@@ -16,7 +16,6 @@
 #include "soslam/dataset/kitti_label.h"
 #include "soslam/dataset/trajectories.h"
 #include "soslam/evaluation/statistics.h"
-#include "soslam/geometry/image_size.h"
 
 namespace soslam {
 namespace {

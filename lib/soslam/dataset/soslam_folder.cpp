@@ -11,7 +11,6 @@
 #include "soslam/base/error.h"
 #include "soslam/dataset/calibration_file.h"
 #include "soslam/dataset/text_file.h"
-#include "soslam/geometry/camera.h"
 #include "soslam/geometry/image_size.h"
 
 namespace soslam {

@@ -207,36 +207,32 @@ namespace {
 // What a convention makes of the four numbers of a box. Throws InputError naming `place`.
 using ToBox = std::function<Box(const std::array<double, 4>&, const std::string& place)>;
 
-YoloRow ParseLine(const TextLine& line, const std::string& image,
-                  const std::vector<std::string>& labels, const std::array<const char*, 4>& names,
-                  const ToBox& to_box) {
-  const auto words = SplitWords(line.text);
-  if (words.size() < 5 || words.size() > 7) {
-    throw InputError(fmt::format("{}: has {} numbers; expected class {} [score] [track]{}",
-                                 line.place, words.size(), fmt::join(names, " "),
-                                 words.size() > 7 ? ": labels of segmentation (polygons), poses "
-                                                    "and oriented boxes are not read, save boxes"
-                                                  : ""));
-  }
-  const int index = ParseInteger(words[0], line.place, "class");
-  if (index < 0 || index >= static_cast<int>(labels.size())) {
-    throw InputError(fmt::format("{}: class is {}; expected 0 to {}, one of {} labels", line.place,
-                                 index, labels.size() - 1, labels.size()));
-  }
-  const auto numbers = ParseReals(std::span(words).subspan(1), line.place, names);
-  YoloRow row{{line.place, image, labels[index], 1.0, to_box(numbers, line.place)}, {}};
-  for (size_t i = 5; i < words.size(); ++i) {
-    row.extras.push_back(ParseReal(words[i], line.place, fmt::format("number {}", i + 1)));
-  }
-  return row;
-}
-
 std::vector<LabelledBox> ReadBoxes(const YoloTexts& texts, const std::vector<std::string>& labels,
                                    const std::array<const char*, 4>& names, const ToBox& to_box) {
   std::vector<YoloRow> rows;
   for (const YoloText& text : texts.images) {
     for (const TextLine& line : text.lines) {
-      rows.push_back(ParseLine(line, text.image, labels, names, to_box));
+      const auto words = SplitWords(line.text);
+      if (words.size() < 5 || words.size() > 7) {
+        throw InputError(fmt::format("{}: has {} numbers; expected class {} [score] [track]{}",
+                                     line.place, words.size(), fmt::join(names, " "),
+                                     words.size() > 7
+                                         ? ": labels of segmentation (polygons), poses "
+                                           "and oriented boxes are not read, save boxes"
+                                         : ""));
+      }
+      const int index = ParseInteger(words[0], line.place, "class");
+      if (index < 0 || index >= static_cast<int>(labels.size())) {
+        throw InputError(fmt::format("{}: class is {}; expected 0 to {}, one of {} labels",
+                                     line.place, index, labels.size() - 1, labels.size()));
+      }
+      const auto numbers = ParseReals(std::span(words).subspan(1), line.place, names);
+      const Box box = to_box(numbers, line.place);
+      YoloRow& row =
+          rows.emplace_back(YoloRow{{line.place, text.image, labels[index], 1.0, box}, {}});
+      for (size_t i = 5; i < words.size(); ++i) {
+        row.extras.push_back(ParseReal(words[i], line.place, fmt::format("number {}", i + 1)));
+      }
     }
   }
   ReadYoloExtras(&rows);
