@@ -78,23 +78,6 @@ struct Votes {
 // Votes of the rows of one object, keyed by label.
 using Ballot = std::map<std::string, Votes>;
 
-void RefuseOtherThanListed(const ListedObject& object, const Ballot& ballot,
-                           const std::vector<DetectionRow>& rows) {
-  int all = 0, others = 0;
-  for (const auto& [label, votes] : ballot) {
-    all += votes.rows;
-    if (label != object.label) others += votes.rows;
-  }
-  if (2 * others <= all) return;
-  for (const DetectionRow& row : rows) {
-    if (row.object_id != object.id || row.label == object.label) continue;
-    throw InputError(fmt::format(
-        "{}: label of object {} is '{}', as another than '{}' is in {} of its {} boxes; expected "
-        "'{}', as in objects.json",
-        row.place, row.object_id, row.label, object.label, others, all, object.label));
-  }
-}
-
 }  // namespace
 
 int UnifyLabels(const std::vector<ListedObject>& objects, std::vector<DetectionRow>* rows) {
@@ -114,7 +97,20 @@ int UnifyLabels(const std::vector<ListedObject>& objects, std::vector<DetectionR
   for (const ListedObject& object : objects) {
     const auto ballot = ballots.find(object.id);
     if (ballot == ballots.end()) continue;
-    RefuseOtherThanListed(object, ballot->second, *rows);
+    int all = 0, others = 0;
+    for (const auto& [label, votes] : ballot->second) {
+      all += votes.rows;
+      if (label != object.label) others += votes.rows;
+    }
+    if (2 * others > all) {
+      const auto other = std::ranges::find_if(*rows, [&](const DetectionRow& row) {
+        return row.object_id == object.id && row.label != object.label;
+      });
+      throw InputError(fmt::format(
+          "{}: label of object {} is '{}', as another than '{}' is in {} of its {} boxes; expected "
+          "'{}', as in objects.json",
+          other->place, object.id, other->label, object.label, others, all, object.label));
+    }
     labels[object.id] = object.label;
   }
   int changed = 0;
