@@ -15,36 +15,6 @@ Box Union(const Box& first, const Box& second) {
           std::max(first.x_max, second.x_max), std::max(first.y_max, second.y_max)};
 }
 
-std::optional<Box> CuboidOutline(const Camera& camera, const Landmark& landmark_in_camera) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Box box = {kInfinity, kInfinity, -kInfinity, -kInfinity};
-  for (const LineSegment3& edge : UnitCuboidEdges()) {
-    for (const Eigen::Vector3d& corner : edge) {
-      const auto pixel = camera.Project(PointAt(landmark_in_camera, corner));
-      if (!pixel) return std::nullopt;
-      box = Union(box, {pixel->x(), pixel->y(), pixel->x(), pixel->y()});
-    }
-  }
-  return box;
-}
-
-// A cylinder is the convex hull of its two rims. A rim is a flat ellipsoid, and OutlineBox handles
-// it like any other.
-std::optional<Box> CylinderOutline(const Camera& camera, const Landmark& landmark_in_camera) {
-  std::optional<Box> rims[2];
-  for (int end = 0; end < 2; ++end) {
-    Landmark rim = landmark_in_camera;
-    const double height = (end == 0 ? -1.0 : 1.0) * landmark_in_camera.half_axes.z();
-    rim.frame_from_object.translation =
-        landmark_in_camera.frame_from_object * Eigen::Vector3d(0.0, 0.0, height);
-    rim.half_axes.z() = 0.0;
-    rim.shape_exponents = kEllipsoidExponent;
-    rims[end] = OutlineBox(camera, rim);
-  }
-  if (!rims[0] || !rims[1]) return std::nullopt;
-  return Union(*rims[0], *rims[1]);
-}
-
 }  // namespace
 
 ShapeExponents ExponentsOf(Shape shape) {
@@ -67,9 +37,33 @@ Eigen::Vector3d OutwardNormal(const Landmark& body, const Eigen::Vector3d& point
 
 std::optional<Box> ExactOutline(const Camera& camera, const Landmark& body_in_camera) {
   const ShapeExponents& exponents = body_in_camera.shape_exponents;
-  if (exponents.HasAxis()) return CylinderOutline(camera, body_in_camera);
-  return exponents == kCuboidExponent ? CuboidOutline(camera, body_in_camera)
-                                      : OutlineBox(camera, body_in_camera);
+  if (exponents.HasAxis()) {
+    // A cylinder is the convex hull of its two rims. A rim is a flat ellipsoid, and OutlineBox
+    // handles it like any other.
+    std::optional<Box> rims[2];
+    for (int end = 0; end < 2; ++end) {
+      Landmark rim = body_in_camera;
+      const double height = (end == 0 ? -1.0 : 1.0) * body_in_camera.half_axes.z();
+      rim.frame_from_object.translation =
+          body_in_camera.frame_from_object * Eigen::Vector3d(0.0, 0.0, height);
+      rim.half_axes.z() = 0.0;
+      rim.shape_exponents = kEllipsoidExponent;
+      rims[end] = OutlineBox(camera, rim);
+    }
+    if (!rims[0] || !rims[1]) return std::nullopt;
+    return Union(*rims[0], *rims[1]);
+  }
+  if (exponents != kCuboidExponent) return OutlineBox(camera, body_in_camera);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Box box = {kInfinity, kInfinity, -kInfinity, -kInfinity};
+  for (const LineSegment3& edge : UnitCuboidEdges()) {
+    for (const Eigen::Vector3d& corner : edge) {
+      const auto pixel = camera.Project(PointAt(body_in_camera, corner));
+      if (!pixel) return std::nullopt;
+      box = Union(box, {pixel->x(), pixel->y(), pixel->x(), pixel->y()});
+    }
+  }
+  return box;
 }
 
 }  // namespace soslam

@@ -26,21 +26,6 @@ const std::array<Eigen::Vector3d, 7> kPatchColours = {
     Eigen::Vector3d(28, 118, 222), Eigen::Vector3d(118, 46, 98), Eigen::Vector3d(124, 104, 0),
     Eigen::Vector3d(44, 40, 40)};
 
-// The point where the ray from the object's centre in that direction leaves it, in the object
-// frame.
-Eigen::Vector3d SurfacePoint(const SceneObject& object, const Eigen::Vector3d& direction) {
-  return (direction / Gauge(ExponentsOf(object.shape), direction)).cwiseProduct(object.half_axes);
-}
-
-// The approximate radius of a disc with the mean area of a patch.
-double MeanPatchRadius(const Eigen::Vector3d& half_axes) {
-  constexpr double kShareOfBoundingBox = 0.65;  // of its surface; the ellipsoid's is about half
-  const double half_surface = kShareOfBoundingBox * 4.0 *
-                              (half_axes.x() * half_axes.y() + half_axes.y() * half_axes.z() +
-                               half_axes.z() * half_axes.x());
-  return std::sqrt(half_surface / (kPatches * std::numbers::pi));
-}
-
 }  // namespace
 
 SurfaceTexture::SurfaceTexture(const SceneObject& object) {
@@ -48,14 +33,22 @@ SurfaceTexture::SurfaceTexture(const SceneObject& object) {
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> relative_radius(0.4, 0.95);
   base_colour_ = kBaseColours[random() % kBaseColours.size()];
-  const double mean_radius = MeanPatchRadius(object.half_axes);
+  const Eigen::Vector3d& half_axes = object.half_axes;
+  constexpr double kShareOfBoundingBox = 0.65;  // of its surface; the ellipsoid's is about half
+  const double half_surface = kShareOfBoundingBox * 4.0 *
+                              (half_axes.x() * half_axes.y() + half_axes.y() * half_axes.z() +
+                               half_axes.z() * half_axes.x());
+  // The approximate radius of a disc with the mean area of a patch.
+  const double mean_radius = std::sqrt(half_surface / (kPatches * std::numbers::pi));
 
   while (patches_.size() < kPatches) {
     Eigen::Vector3d best = Eigen::Vector3d::Zero();
     double best_distance = -1.0;
     for (int i = 0; i < kCandidates; ++i) {
       const double x = normal(random), y = normal(random), z = normal(random);
-      const Eigen::Vector3d candidate = SurfacePoint(object, {x, std::abs(y), z});
+      const Eigen::Vector3d direction(x, std::abs(y), z);
+      const Eigen::Vector3d candidate =
+          (direction / Gauge(ExponentsOf(object.shape), direction)).cwiseProduct(half_axes);
       double distance = std::numeric_limits<double>::infinity();
       for (const Patch& patch : patches_) {
         distance = std::min(distance, (candidate - patch.centre_in_object).norm());
@@ -184,33 +177,26 @@ class Surroundings {
       const double depth = PlaneDepth(scene_.planes[i].plane_in_world, origin_in_world, direction);
       if (scene_.planes[i].table || !(depth < distance)) continue;
       distance = depth;
-      colour = FloorColour(static_cast<int>(i), origin_in_world + depth * direction, depth);
+      const Eigen::Vector3d point_in_plane =
+          plane_from_world_[i] * Eigen::Vector3d(origin_in_world + depth * direction);
+      colour = ContactShadow(static_cast<int>(i), point_in_plane) *
+               (kFloorColour.array() + TilePattern(point_in_plane, depth)).matrix();
     }
     for (const Plane& wall_in_world : scene_.walls_in_world) {
       const double depth = PlaneDepth(wall_in_world, origin_in_world, direction);
       if (!(depth < distance)) continue;
       distance = depth;
-      colour = WallColour(wall_in_world, origin_in_world + depth * direction);
+      const double height =
+          scene_.planes[0].plane_in_world.SignedDistance(origin_in_world + depth * direction);
+      const double light = 0.95 + 0.07 * wall_in_world.normal.dot(light_in_world_) +
+                           0.03 * SmoothStep(0.0, 2.5, height);
+      colour = light * (height < kSkirtingHeight ? kSkirtingColour : kWallColour);
     }
     const double clarity = std::exp(-distance / kHazeDistance);
     return clarity * colour + (1.0 - clarity) * kHazeColour;
   }
 
  private:
-  Colour FloorColour(int plane_index, const Eigen::Vector3d& point_in_world,
-                     double distance) const {
-    const Eigen::Vector3d point_in_plane = plane_from_world_[plane_index] * point_in_world;
-    return ContactShadow(plane_index, point_in_plane) *
-           (kFloorColour.array() + TilePattern(point_in_plane, distance)).matrix();
-  }
-
-  Colour WallColour(const Plane& wall_in_world, const Eigen::Vector3d& point_in_world) const {
-    const double height = scene_.planes[0].plane_in_world.SignedDistance(point_in_world);
-    const double light = 0.95 + 0.07 * wall_in_world.normal.dot(light_in_world_) +
-                         0.03 * SmoothStep(0.0, 2.5, height);
-    return light * (height < kSkirtingHeight ? kSkirtingColour : kWallColour);
-  }
-
   // Soft shadow under and around the objects on the plane, as a factor on its colour.
   double ContactShadow(int plane_index, const Eigen::Vector3d& point_in_plane) const {
     double shadow = 1.0;
@@ -267,7 +253,14 @@ class FrameRenderer {
       for (const Solid& solid : solids_) {
         if (solid.MayCover(u, v)) in_pixel.push_back(&solid);
       }
-      const Colour colour = PixelColour(u, v, in_pixel);
+      Colour sum = Colour::Zero();
+      for (int i = 0; i < kSamplesPerSide * kSamplesPerSide; ++i) {
+        const int row_of_sample = i / kSamplesPerSide, column = i % kSamplesPerSide;
+        const Eigen::Vector2d offset((column + 0.5) / kSamplesPerSide - 0.5,
+                                     (row_of_sample + 0.5) / kSamplesPerSide - 0.5);
+        sum += RayColour(camera_.Ray(Eigen::Vector2d(u, v) + offset), in_pixel);
+      }
+      const Colour colour = sum / (kSamplesPerSide * kSamplesPerSide);
       for (int channel = 0; channel < 3; ++channel) {
         row[u][channel] = cv::saturate_cast<uchar>(colour[channel]);
       }
@@ -275,17 +268,6 @@ class FrameRenderer {
   }
 
  private:
-  Colour PixelColour(int u, int v, const Solids& solids) const {
-    Colour sum = Colour::Zero();
-    for (int i = 0; i < kSamplesPerSide * kSamplesPerSide; ++i) {
-      const int row = i / kSamplesPerSide, column = i % kSamplesPerSide;
-      const Eigen::Vector2d offset((column + 0.5) / kSamplesPerSide - 0.5,
-                                   (row + 0.5) / kSamplesPerSide - 0.5);
-      sum += RayColour(camera_.Ray(Eigen::Vector2d(u, v) + offset), solids);
-    }
-    return sum / (kSamplesPerSide * kSamplesPerSide);
-  }
-
   Colour RayColour(const Eigen::Vector3d& ray_in_camera, const Solids& solids) const {
     double depth = std::numeric_limits<double>::infinity();
     const Solid* nearest = nullptr;
@@ -297,20 +279,20 @@ class FrameRenderer {
         nearest = solid;
       }
     }
-    if (nearest) return SolidColour(*nearest, depth * ray_in_camera);
-    return surroundings_.BackgroundColour(world_from_camera_.translation,
-                                          world_from_camera_.rotation * ray_in_camera);
-  }
-
-  Colour SolidColour(const Solid& solid, const Eigen::Vector3d& point_in_camera) const {
-    const Eigen::Vector3d point_in_object = solid.object_from_camera * point_in_camera;
-    const Eigen::Vector3d normal_in_camera = solid.body_in_camera.frame_from_object.rotation *
-                                             OutwardNormal(solid.body_in_camera, point_in_object);
+    if (!nearest) {
+      return surroundings_.BackgroundColour(world_from_camera_.translation,
+                                            world_from_camera_.rotation * ray_in_camera);
+    }
+    const Eigen::Vector3d point_in_camera = depth * ray_in_camera;
+    const Eigen::Vector3d point_in_object = nearest->object_from_camera * point_in_camera;
+    const Eigen::Vector3d normal_in_camera =
+        nearest->body_in_camera.frame_from_object.rotation *
+        OutwardNormal(nearest->body_in_camera, point_in_object);
     const Eigen::Vector3d normal_in_world = world_from_camera_.rotation * normal_in_camera;
-    if (!solid.texture) {
+    if (!nearest->texture) {
       return surroundings_.TableColour(world_from_camera_ * point_in_camera, normal_in_world);
     }
-    return surroundings_.Light(normal_in_world) * solid.texture->Colour(point_in_object);
+    return surroundings_.Light(normal_in_world) * nearest->texture->Colour(point_in_object);
   }
 
   Camera camera_;

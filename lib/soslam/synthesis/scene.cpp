@@ -57,19 +57,6 @@ double Reach(Shape shape, const Eigen::Vector3d& half_axes, const Eigen::Vector3
   return 0.0;
 }
 
-// A camera without roll: its x axis is horizontal. None if that does not determine the pose.
-std::optional<Rigid3d> LookingPose(const Waypoint& waypoint, const Eigen::Vector3d& up) {
-  constexpr double kMinSine = 1e-6;
-  const Eigen::Vector3d forward = waypoint.look_at_in_world - waypoint.position_in_world;
-  const Eigen::Vector3d right = forward.cross(up);
-  if (!(right.norm() > kMinSine * forward.norm())) return std::nullopt;
-  Eigen::Matrix3d axes;
-  axes.col(2) = forward.normalized();
-  axes.col(0) = right.normalized();
-  axes.col(1) = axes.col(2).cross(axes.col(0));
-  return Rigid3d{Eigen::Quaterniond(axes).normalized(), waypoint.position_in_world};
-}
-
 }  // namespace
 
 Scene SceneAt(Scene scene, int frame_index) {
@@ -138,20 +125,27 @@ std::vector<Landmark> AllBodies(const Scene& scene) {
 }
 
 std::vector<Rigid3d> TruePoses(const Scene& scene) {
+  constexpr double kMinSine = 1e-6;
   const Trajectory& trajectory = scene.trajectory;
   const Eigen::Vector3d up = scene.planes.at(0).plane_in_world.normal;
   const double segments = static_cast<double>(trajectory.waypoints.size()) - 1.0;
   std::vector<Rigid3d> poses;
   for (int i = 0; i < trajectory.frames; ++i) {
     const double fraction = trajectory.frames > 1 ? i / (trajectory.frames - 1.0) : 0.0;
-    const auto pose = LookingPose(Interpolate(trajectory.waypoints, fraction * segments), up);
-    if (!pose) {
+    const auto& [position, look_at] = Interpolate(trajectory.waypoints, fraction * segments);
+    const Eigen::Vector3d forward = look_at - position;
+    const Eigen::Vector3d right = forward.cross(up);
+    if (!(right.norm() > kMinSine * forward.norm())) {
       throw InputError(
           fmt::format("scene {}: trajectory: the camera in frame {} looks straight up "
                       "or down, or at its own position",
                       scene.name, i));
     }
-    poses.push_back(*pose);
+    Eigen::Matrix3d axes;  // without roll: the x axis is horizontal
+    axes.col(2) = forward.normalized();
+    axes.col(0) = right.normalized();
+    axes.col(1) = axes.col(2).cross(axes.col(0));
+    poses.push_back({Eigen::Quaterniond(axes).normalized(), position});
   }
   return poses;
 }
@@ -171,34 +165,29 @@ void CheckUniqueIds(const Entries& entries, const std::string& where) {
   }
 }
 
-// Throws unless the camera at one pose has a free view.
-void CheckCameraPose(const Scene& scene, const Rigid3d& world_from_camera,
-                     const std::vector<Landmark>& bodies, const std::string& where) {
-  const Eigen::Vector3d& position = world_from_camera.translation;
-  for (const ScenePlane& plane : scene.planes) {
-    if (!plane.table && !(plane.plane_in_world.SignedDistance(position) > 0.0)) {
-      throw InputError(fmt::format("{} is behind the plane with id {}", where, plane.id));
-    }
-  }
-  for (size_t i = 0; i < scene.walls_in_world.size(); ++i) {
-    if (!(scene.walls_in_world[i].SignedDistance(position) > 0.0)) {
-      throw InputError(fmt::format("{} is behind walls/{}", where, i));
-    }
-  }
-  for (size_t i = 0; i < bodies.size(); ++i) {
-    if (!Contains(bodies[i], position)) continue;
-    throw InputError(i < scene.objects.size() ? fmt::format("{} is inside the object with id {}",
-                                                            where, scene.objects[i].id)
-                                              : where + " is inside a table");
-  }
-}
-
+// Throws unless the camera has a free view in all frames.
 void CheckTrajectory(const Scene& scene, const std::string& where) {
   const std::vector<Landmark> bodies = AllBodies(scene);
   const std::vector<Rigid3d> poses = TruePoses(scene);
-  for (size_t i = 0; i < poses.size(); ++i) {
-    CheckCameraPose(scene, poses[i], bodies,
-                    fmt::format("{}: trajectory: the camera in frame {}", where, i));
+  for (size_t frame = 0; frame < poses.size(); ++frame) {
+    const Eigen::Vector3d& position = poses[frame].translation;
+    const std::string camera = fmt::format("{}: trajectory: the camera in frame {}", where, frame);
+    for (const ScenePlane& plane : scene.planes) {
+      if (!plane.table && !(plane.plane_in_world.SignedDistance(position) > 0.0)) {
+        throw InputError(fmt::format("{} is behind the plane with id {}", camera, plane.id));
+      }
+    }
+    for (size_t i = 0; i < scene.walls_in_world.size(); ++i) {
+      if (!(scene.walls_in_world[i].SignedDistance(position) > 0.0)) {
+        throw InputError(fmt::format("{} is behind walls/{}", camera, i));
+      }
+    }
+    for (size_t i = 0; i < bodies.size(); ++i) {
+      if (!Contains(bodies[i], position)) continue;
+      throw InputError(i < scene.objects.size() ? fmt::format("{} is inside the object with id {}",
+                                                              camera, scene.objects[i].id)
+                                                : camera + " is inside a table");
+    }
   }
 }
 

@@ -18,12 +18,6 @@ struct VisiblePart {
   int silhouette = 0;  // rays that meet the body, inside and outside the image
   int visible = 0;     // rays inside the image that meet it first
   Eigen::AlignedBox2d pixels;
-
-  double Share() const { return silhouette > 0 ? static_cast<double>(visible) / silhouette : 0.0; }
-  Box Around() const {
-    return {pixels.min().x() - 0.5, pixels.min().y() - 0.5, pixels.max().x() + 0.5,
-            pixels.max().y() + 0.5};
-  }
 };
 
 // What a camera sees of each body. Silhouettes are counted as far as three images reach in each
@@ -90,8 +84,10 @@ std::vector<SimulatedBox> BoxesInSight(const Scene& scene, int frame,
   }
   const std::vector<VisiblePart> parts = VisibleParts(scene.camera, bodies_in_camera);
   for (int object = 0; object < objects; ++object) {
-    const double share = parts[object].Share();
-    const Box box = parts[object].Around();
+    const auto& [silhouette, visible, pixels] = parts[object];
+    const double share = silhouette > 0 ? static_cast<double>(visible) / silhouette : 0.0;
+    const Box box = {pixels.min().x() - 0.5, pixels.min().y() - 0.5, pixels.max().x() + 0.5,
+                     pixels.max().y() + 0.5};
     if (share < scene.min_visible_share || !(std::min(box.Width(), box.Height()) >= kMinSizePx)) {
       continue;
     }
@@ -116,24 +112,6 @@ std::optional<SimulatedBox> FalseBox(const Scene& scene, int frame_index, int ob
   const Box box = {x, y, std::min(x + width, scene.camera.width - 0.5), y + height};
   return SimulatedBox{frame_index, static_cast<int>(random() % scene.objects.size()), box, score,
                       true};
-}
-
-// The box with noise on each edge, cut at the image border; none if it is missed or empty.
-std::optional<Box> NoisyBox(const Scene& scene, int frame_index, const SceneObject& object,
-                            const Box& exact) {
-  auto random = NoiseGenerator(scene.seed, NoiseKind::kDetection, frame_index, object.id);
-  std::uniform_real_distribution<double> uniform;
-  std::normal_distribution<double> normal;
-  if (uniform(random) < scene.noise.miss_probability) return std::nullopt;
-  const auto sigma = [&](double extent) {
-    return std::hypot(scene.noise.box_edge_sigma * extent, scene.noise.box_sigma_px);
-  };
-  Box box = exact;
-  box.x_min += sigma(exact.Width()) * normal(random);
-  box.y_min += sigma(exact.Height()) * normal(random);
-  box.x_max += sigma(exact.Width()) * normal(random);
-  box.y_max += sigma(exact.Height()) * normal(random);
-  return CutToImage(box, scene.camera.width, scene.camera.height);
 }
 
 // The true motions with noise, integrated from the first true pose.
@@ -206,9 +184,21 @@ Simulation Simulate(const Scene& scene, bool noise) {
         simulation.detections.push_back(row);
         continue;
       }
-      const auto noisy = NoisyBox(scene, frame, object, row.box);
-      if (!noisy) continue;
-      row.box = *noisy;
+      auto random = NoiseGenerator(scene.seed, NoiseKind::kDetection, frame, object.id);
+      std::uniform_real_distribution<double> uniform;
+      std::normal_distribution<double> normal;
+      if (uniform(random) < scene.noise.miss_probability) continue;
+      const auto sigma = [&](double extent) {
+        return std::hypot(scene.noise.box_edge_sigma * extent, scene.noise.box_sigma_px);
+      };
+      const Box exact = row.box;
+      row.box.x_min += sigma(exact.Width()) * normal(random);
+      row.box.y_min += sigma(exact.Height()) * normal(random);
+      row.box.x_max += sigma(exact.Width()) * normal(random);
+      row.box.y_max += sigma(exact.Height()) * normal(random);
+      const auto in_image = CutToImage(row.box, scene.camera.width, scene.camera.height);
+      if (!in_image) continue;
+      row.box = *in_image;
       simulation.detections.push_back(row);
       if (const auto box = FalseBox(scene, frame, object.id)) {
         simulation.detections.push_back(*box);

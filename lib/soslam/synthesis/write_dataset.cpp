@@ -18,18 +18,6 @@ namespace fs = std::filesystem;
 
 using nlohmann::ordered_json;
 
-std::string Timestamp(const Scene& scene, int frame_index) {
-  return fmt::format("{}", frame_index * scene.trajectory.frame_interval);
-}
-
-std::string ImageListText(const Scene& scene) {
-  std::string text = "# timestamp filename\n";
-  for (int i = 0; i < scene.trajectory.frames; ++i) {
-    text += fmt::format("{} {}\n", Timestamp(scene, i), ImageName(i));
-  }
-  return text;
-}
-
 std::string TrajectoryText(const Scene& scene, const std::vector<Rigid3d>& world_from_camera) {
   std::string text = "# timestamp tx ty tz qx qy qz qw  (world_from_camera, metres)\n";
   for (int i = 0; i < scene.trajectory.frames; ++i) {
@@ -52,13 +40,6 @@ std::string BoxesText(const Scene& scene, const std::vector<SimulatedBox>& boxes
   return text;
 }
 
-std::string CameraText(const Camera& camera) {
-  const ordered_json document = {
-      {"model", "pinhole"}, {"width", camera.width}, {"height", camera.height}, {"fx", camera.fx},
-      {"fy", camera.fy},    {"cx", camera.cx},       {"cy", camera.cy}};
-  return document.dump() + "\n";
-}
-
 template <typename Vector>
 std::vector<double> Numbers(const Vector& vector) {
   return {vector.begin(), vector.end()};
@@ -71,17 +52,6 @@ std::string ArrayText(const ordered_json& entries) {
     text += (i == 0 ? "\n " : ",\n ") + entries[i].dump();
   }
   return text + "\n]\n";
-}
-
-std::string PlanesText(const Scene& scene) {
-  ordered_json entries = ordered_json::array();
-  for (const ScenePlane& plane : scene.planes) {
-    entries.push_back({{"id", plane.id},
-                       {"label", plane.label},
-                       {"normal", Numbers(plane.plane_in_world.normal)},
-                       {"d", plane.plane_in_world.offset}});
-  }
-  return ArrayText(entries);
 }
 
 std::string ObjectsText(const Scene& scene) {
@@ -106,34 +76,33 @@ std::string ObjectsText(const Scene& scene) {
   return ArrayText(entries);
 }
 
-std::string NoiseText(const Scene& scene) {
+std::string ReadmeText(const Scene& scene, bool has_noise, const std::string& mark) {
+  const std::string boxed_part =
+      scene.boxes == BoxedPart::kWhole
+          ? "the box of each whole object, also where another one covers a part;\n"
+            "  only objects that are wholly inside the image with their centre in sight"
+          : fmt::format(
+                "the box of the visible part of each object of which at least\n"
+                "  {} of the silhouette is visible",
+                scene.min_visible_share);
   const SceneNoise& noise = scene.noise;
-  const std::string text = fmt::format(
-      "Seed {}. Box edges: standard deviation {} of the box's width or height and {} px; {} of "
-      "the\n"
-      "detections missing; boxes cut at the image border. Odometry: random walk of {} m per\n"
-      "square-root metre on each axis, scale error of standard deviation {}, rotation random walk\n"
-      "of {} degrees per square root of (metres + turn / 30 degrees). Images: {} grey levels.\n",
-      scene.seed, noise.box_edge_sigma, noise.box_sigma_px, noise.miss_probability,
-      noise.odometry_translation_sigma, noise.odometry_scale_sigma,
-      noise.odometry_rotation_sigma_deg, noise.image_sigma);
-  if (noise.false_share == 0.0) return text;
-  return text + fmt::format("Boxes of nothing, with object_id {}: {} for each detection.\n",
-                            kNoObjectId, noise.false_share);
-}
-
-std::string BoxedPartText(const Scene& scene) {
-  if (scene.boxes == BoxedPart::kWhole) {
-    return "the box of each whole object, also where another one covers a part;\n"
-           "  only objects that are wholly inside the image with their centre in sight";
+  std::string noise_in_words = "None: detections and odometry are exact.\n";
+  if (has_noise) {
+    noise_in_words = fmt::format(
+        "Seed {}. Box edges: standard deviation {} of the box's width or height and {} px; {} of "
+        "the\n"
+        "detections missing; boxes cut at the image border. Odometry: random walk of {} m per\n"
+        "square-root metre on each axis, scale error of standard deviation {}, rotation random "
+        "walk\n"
+        "of {} degrees per square root of (metres + turn / 30 degrees). Images: {} grey levels.\n",
+        scene.seed, noise.box_edge_sigma, noise.box_sigma_px, noise.miss_probability,
+        noise.odometry_translation_sigma, noise.odometry_scale_sigma,
+        noise.odometry_rotation_sigma_deg, noise.image_sigma);
+    if (noise.false_share != 0.0) {
+      noise_in_words += fmt::format("Boxes of nothing, with object_id {}: {} for each detection.\n",
+                                    kNoObjectId, noise.false_share);
+    }
   }
-  return fmt::format(
-      "the box of the visible part of each object of which at least\n"
-      "  {} of the silhouette is visible",
-      scene.min_visible_share);
-}
-
-std::string ReadmeText(const Scene& scene, bool noise, const std::string& mark) {
   return fmt::format(
       "{} from a scene description; the next run into this folder replaces it. -->\n"
       "# {}\n\n"
@@ -154,25 +123,21 @@ std::string ReadmeText(const Scene& scene, bool noise, const std::string& mark) 
       "- `objects.json`: `mirror_symmetric` and `mirror_symmetric_yz` are of shape and texture,\n"
       "  `rotationally_symmetric` of the shape.\n\n"
       "## Noise\n\n{}",
-      mark, scene.name, scene.trajectory.frames, scene.objects.size(), BoxedPartText(scene),
-      noise ? NoiseText(scene) : "None: detections and odometry are exact.\n");
-}
-
-void AddImageNoise(const Scene& scene, int frame_index, cv::Mat* image) {
-  if (scene.noise.image_sigma == 0.0) return;
-  auto random = NoiseGenerator(scene.seed, NoiseKind::kImage, frame_index, 0);
-  std::normal_distribution<double> normal(0.0, scene.noise.image_sigma);
-  for (cv::Vec3b& pixel : cv::Mat_<cv::Vec3b>(*image)) {
-    for (int channel = 0; channel < 3; ++channel) {
-      pixel[channel] = cv::saturate_cast<uchar>(pixel[channel] + normal(random));
-    }
-  }
+      mark, scene.name, scene.trajectory.frames, scene.objects.size(), boxed_part, noise_in_words);
 }
 
 void WriteImage(const Scene& scene, bool noise, int frame_index, const Rigid3d& world_from_camera,
                 const DatasetFolder& output) {
   cv::Mat image = RenderFrame(SceneAt(scene, frame_index), world_from_camera);
-  if (noise) AddImageNoise(scene, frame_index, &image);
+  if (noise && scene.noise.image_sigma != 0.0) {
+    auto random = NoiseGenerator(scene.seed, NoiseKind::kImage, frame_index, 0);
+    std::normal_distribution<double> normal(0.0, scene.noise.image_sigma);
+    for (cv::Vec3b& pixel : cv::Mat_<cv::Vec3b>(image)) {
+      for (int channel = 0; channel < 3; ++channel) {
+        pixel[channel] = cv::saturate_cast<uchar>(pixel[channel] + normal(random));
+      }
+    }
+  }
   std::vector<uchar> bytes;
   cv::imencode(".png", image, bytes);
   output.Write(ImageName(frame_index), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
@@ -184,11 +149,26 @@ void WriteDataset(const Scene& scene, bool noise, const fs::path& folder, int th
   DatasetFolder output(folder, "soslam-synthesise");
   const Simulation simulation = Simulate(scene, noise);
   output.Write("README.md", ReadmeText(scene, noise, output.Mark()));
-  output.Write("rgb.txt", ImageListText(scene));
+  std::string image_list = "# timestamp filename\n";
+  for (int i = 0; i < scene.trajectory.frames; ++i) {
+    image_list += fmt::format("{} {}\n", i * scene.trajectory.frame_interval, ImageName(i));
+  }
+  output.Write("rgb.txt", image_list);
   output.Write("groundtruth.txt", TrajectoryText(scene, simulation.true_world_from_camera));
   output.Write("odometry.txt", TrajectoryText(scene, simulation.odometry_world_from_camera));
-  output.Write("camera.json", CameraText(scene.camera));
-  output.Write("planes.json", PlanesText(scene));
+  const Camera& camera = scene.camera;
+  const ordered_json intrinsics = {
+      {"model", "pinhole"}, {"width", camera.width}, {"height", camera.height}, {"fx", camera.fx},
+      {"fy", camera.fy},    {"cx", camera.cx},       {"cy", camera.cy}};
+  output.Write("camera.json", intrinsics.dump() + "\n");
+  ordered_json planes = ordered_json::array();
+  for (const ScenePlane& plane : scene.planes) {
+    planes.push_back({{"id", plane.id},
+                      {"label", plane.label},
+                      {"normal", Numbers(plane.plane_in_world.normal)},
+                      {"d", plane.plane_in_world.offset}});
+  }
+  output.Write("planes.json", ArrayText(planes));
   output.Write("objects.json", ObjectsText(scene));
   output.Write("detections.csv", BoxesText(scene, simulation.detections, true));
   output.Write("boxes_exact.csv", BoxesText(scene, simulation.exact_boxes, false));
