@@ -2,7 +2,6 @@
 #include <array>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <utility>
 
 #include "soslam/dataset/class_names.h"
@@ -33,15 +32,6 @@ std::map<std::string, int> CategoryIds(const std::vector<World>& worlds) {
   return ids;
 }
 
-// The part of the outline box that is in the image, measured from the image's outer corner.
-std::optional<Box> VisibleBox(const WorldFrame& frame, const Landmark& landmark_in_world) {
-  const auto outline =
-      OutlineBox(frame.camera, Transform(frame.world_from_camera.Inverse(), landmark_in_world));
-  if (!outline) return std::nullopt;
-  const auto visible = CutToImage(*outline, frame.camera.width, frame.camera.height);
-  return visible ? std::optional(ToCornerOrigin(*visible)) : std::nullopt;
-}
-
 // Boxes of all landmarks, with the fields that results and annotations have in common.
 std::vector<std::pair<json, const WorldObject*>> VisibleBoxes(const std::vector<World>& worlds) {
   const std::map<std::string, int> category_ids = CategoryIds(worlds);
@@ -50,32 +40,22 @@ std::vector<std::pair<json, const WorldObject*>> VisibleBoxes(const std::vector<
     for (const WorldFrame& frame : world.frames) {
       for (const WorldObject& object : world.objects) {
         if (!object.estimate.landmark_in_world) continue;
-        const auto box = VisibleBox(frame, *object.estimate.landmark_in_world);
-        if (!box) continue;
+        const auto outline = OutlineBox(
+            frame.camera,
+            Transform(frame.world_from_camera.Inverse(), *object.estimate.landmark_in_world));
+        if (!outline) continue;
+        const auto visible = CutToImage(*outline, frame.camera.width, frame.camera.height);
+        if (!visible) continue;
+        const Box box = ToCornerOrigin(*visible);
         boxes.emplace_back(json{{"image_id", frame.id},
                                 {"category_id", category_ids.at(object.label)},
-                                {"bbox", {box->x_min, box->y_min, box->Width(), box->Height()}},
+                                {"bbox", {box.x_min, box.y_min, box.Width(), box.Height()}},
                                 {"object_id", object.id}},
                            &object);
       }
     }
   }
   return boxes;
-}
-
-// pycocotools treats an id of 0 as no match, and draws the segmentation.
-json Annotations(const std::vector<World>& worlds) {
-  json annotations = json::array();
-  for (auto& [annotation, object] : VisibleBoxes(worlds)) {
-    const auto bbox = annotation.at("bbox").get<std::array<double, 4>>();
-    const double x1 = bbox[0], y1 = bbox[1], x2 = x1 + bbox[2], y2 = y1 + bbox[3];
-    annotation["id"] = annotations.size() + 1;
-    annotation["area"] = bbox[2] * bbox[3];
-    annotation["iscrowd"] = 0;
-    annotation["segmentation"] = {{x1, y1, x1, y2, x2, y2, x2, y1}};
-    annotations.push_back(annotation);
-  }
-  return annotations;
 }
 
 }  // namespace
@@ -108,13 +88,25 @@ std::string CocoDatasetText(const std::vector<World>& worlds, CocoAnnotations an
   for (const auto& [id, name] : names) {
     categories.push_back({{"id", id}, {"name", name}, {"supercategory", "object"}});
   }
-  const bool has_boxes = annotations == CocoAnnotations::kVisibleBoxes;
+  json boxes = json::array();
+  if (annotations == CocoAnnotations::kVisibleBoxes) {
+    for (auto& [box, object] : VisibleBoxes(worlds)) {
+      const auto bbox = box.at("bbox").get<std::array<double, 4>>();
+      const double x1 = bbox[0], y1 = bbox[1], x2 = x1 + bbox[2], y2 = y1 + bbox[3];
+      // pycocotools treats an id of 0 as no match, and draws the segmentation.
+      box["id"] = boxes.size() + 1;
+      box["area"] = bbox[2] * bbox[3];
+      box["iscrowd"] = 0;
+      box["segmentation"] = {{x1, y1, x1, y2, x2, y2, x2, y1}};
+      boxes.push_back(box);
+    }
+  }
   const json dataset = {
       {"info", {{"description", "objects of soslam"}, {"version", SOSLAM_VERSION}}},
       {"licenses", json::array()},
       {"images", images},
       {"categories", categories},
-      {"annotations", has_boxes ? Annotations(worlds) : json::array()}};
+      {"annotations", boxes}};
   return dataset.dump(1) + "\n";
 }
 

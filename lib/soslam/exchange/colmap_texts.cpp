@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,22 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 int ImageId(int frame_id) { return frame_id + 1; }
-
-std::string NameOfImage(const WorldFrame& frame, const fs::path& images) {
-  const std::string name = fs::path(frame.image).lexically_relative(images).generic_string();
-  if (name.find_first_of(" \t\r\n") == std::string::npos) return name;
-  throw InputError(
-      fmt::format("frame {}: image '{}' has a blank in its name, at which COLMAP cuts "
-                  "it off; expected a name without blanks",
-                  frame.id, frame.image));
-}
-
-std::string CameraLine(size_t id, const Camera& camera,
-                       const std::optional<Distortion>& distortion) {
-  auto [model, parameters] = ToColmap({camera, distortion});
-  std::ranges::replace(parameters, ',', ' ');
-  return fmt::format("{} {} {} {} {}\n", id, model, camera.width, camera.height, parameters);
-}
 
 }  // namespace
 
@@ -71,14 +54,23 @@ ColmapTexts ColmapModelTexts(const World& world, const fs::path& images) {
     auto camera = std::ranges::find(cameras, frame.camera);
     if (camera == cameras.end()) {
       camera = cameras.insert(cameras.end(), frame.camera);
-      texts.cameras += CameraLine(cameras.size(), frame.camera, world.image_distortion);
+      auto [model, parameters] = ToColmap({frame.camera, world.image_distortion});
+      std::ranges::replace(parameters, ',', ' ');
+      texts.cameras += fmt::format("{} {} {} {} {}\n", cameras.size(), model, frame.camera.width,
+                                   frame.camera.height, parameters);
+    }
+    const std::string name = fs::path(frame.image).lexically_relative(images).generic_string();
+    if (name.find_first_of(" \t\r\n") != std::string::npos) {
+      throw InputError(
+          fmt::format("frame {}: image '{}' has a blank in its name, at which COLMAP cuts "
+                      "it off; expected a name without blanks",
+                      frame.id, frame.image));
     }
     const Rigid3d camera_from_world = frame.world_from_camera.Inverse();
     const Eigen::Quaterniond& q = camera_from_world.rotation;
-    texts.images +=
-        fmt::format("{} {} {} {} {} {} {} {}\n{}\n", ImageId(frame.id), q.w(), q.x(), q.y(), q.z(),
-                    fmt::join(camera_from_world.translation, " "), camera - cameras.begin() + 1,
-                    NameOfImage(frame, images), seen.at(frame.id).words);
+    texts.images += fmt::format("{} {} {} {} {} {} {} {}\n{}\n", ImageId(frame.id), q.w(), q.x(),
+                                q.y(), q.z(), fmt::join(camera_from_world.translation, " "),
+                                camera - cameras.begin() + 1, name, seen.at(frame.id).words);
   }
   return texts;
 }

@@ -33,32 +33,6 @@ void AppendLittleEndian(std::uint32_t value, std::string* bytes) {
   for (int shift = 0; shift < 32; shift += 8) *bytes += static_cast<char>(value >> shift & 0xFF);
 }
 
-json ExtrasOf(const WorldObject& object) {
-  const Landmark& landmark = *object.estimate.landmark_in_world;
-  json extras = {{"id", object.id},
-                 {"label", object.label},
-                 {"observations", object.estimate.observations},
-                 {"half_axes", landmark.half_axes},
-                 {"yaw_deg", YawOf(object) * kDegPerRad},
-                 {"shape_exponent", landmark.shape_exponents.horizontal},
-                 {"vertical_exponent", landmark.shape_exponents.vertical}};
-  if (landmark.rests_on != RestingFace::kBottom) {
-    extras["rests_on"] = kRestingFaceNames[static_cast<size_t>(landmark.rests_on)];
-  }
-  if (object.estimate.front_probability) {
-    extras["front_probability"] = *object.estimate.front_probability;
-  }
-  if (object.estimate.covariance) {
-    extras["covariance"] = *object.estimate.covariance;
-  }
-  if (object.verdict) {
-    extras["fate"] = object.verdict->fate;
-    if (object.verdict->iou) extras["iou"] = *object.verdict->iou;
-    if (!object.verdict->reason.empty()) extras["reason"] = object.verdict->reason;
-  }
-  return extras;
-}
-
 // The document under construction: JSON, and the one buffer that it refers to.
 class GltfBuilder {
  public:
@@ -132,7 +106,7 @@ class GltfBuilder {
                                {"roughnessFactor", 0.9}}}});
   }
 
-  size_t MaterialOf(const std::string& label) {
+  size_t FindOrAddMaterial(const std::string& label) {
     const auto found = materials_.find(label);
     if (found != materials_.end()) return found->second;
     return materials_[label] = AddMaterial(label, colours_.at(label));
@@ -151,11 +125,32 @@ class GltfBuilder {
     const TriangleMesh mesh = BodyMesh(landmark.half_axes, landmark.shape_exponents);
     const json primitive = {{"attributes", {{"POSITION", AddPositions(mesh.vertices)}}},
                             {"indices", AddIndices(mesh)},
-                            {"material", MaterialOf(object.label)}};
+                            {"material", FindOrAddMaterial(object.label)}};
+    json extras = {{"id", object.id},
+                   {"label", object.label},
+                   {"observations", object.estimate.observations},
+                   {"half_axes", landmark.half_axes},
+                   {"yaw_deg", YawOf(object) * kDegPerRad},
+                   {"shape_exponent", landmark.shape_exponents.horizontal},
+                   {"vertical_exponent", landmark.shape_exponents.vertical}};
+    if (landmark.rests_on != RestingFace::kBottom) {
+      extras["rests_on"] = kRestingFaceNames[static_cast<size_t>(landmark.rests_on)];
+    }
+    if (object.estimate.front_probability) {
+      extras["front_probability"] = *object.estimate.front_probability;
+    }
+    if (object.estimate.covariance) {
+      extras["covariance"] = *object.estimate.covariance;
+    }
+    if (object.verdict) {
+      extras["fate"] = object.verdict->fate;
+      if (object.verdict->iou) extras["iou"] = *object.verdict->iou;
+      if (!object.verdict->reason.empty()) extras["reason"] = object.verdict->reason;
+    }
     AddNode({{"name", fmt::format("{} {}", object.label, object.id)},
              {"translation", landmark.Centre()},
              {"rotation", landmark.frame_from_object.rotation.coeffs()},
-             {"extras", ExtrasOf(object)}},
+             {"extras", extras}},
             primitive);
   }
 

@@ -27,29 +27,28 @@ void Append(const Numbers& numbers, std::vector<std::string>* row) {
   for (const double number : numbers) row->push_back(fmt::format("{}", number));
 }
 
-void AppendLandmark(const WorldObject& object, std::vector<std::string>* row) {
-  const Landmark& landmark = *object.estimate.landmark_in_world;
-  Append(landmark.Centre(), row);
-  Append(landmark.frame_from_object.rotation.coeffs(), row);
-  Append(landmark.half_axes, row);
-  Append(std::array{YawOf(object) * kDegPerRad, landmark.shape_exponents.horizontal,
-                    landmark.shape_exponents.vertical},
-         row);
-  if (!object.estimate.covariance) return;
-  const Covariance9& covariance = *object.estimate.covariance;
-  const Eigen::Matrix<double, 9, 1> sigmas = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-  const Eigen::Vector3d& up = object.support_normal;
-  const double yaw_variance = up.dot(covariance.topLeftCorner<3, 3>() * up);
-  Append(sigmas.segment<3>(3), row);
-  Append(Eigen::Vector3d(landmark.half_axes.cwiseProduct(sigmas.tail<3>())), row);
-  Append(std::array{std::sqrt(std::max(yaw_variance, 0.0)) * kDegPerRad}, row);
-}
-
-std::vector<std::string> RowOf(const WorldObject& object) {
+std::vector<std::string> MakeCsvRow(const WorldObject& object) {
   std::vector<std::string> row = {std::to_string(object.id), CsvText(object.label),
                                   object.segment ? std::to_string(*object.segment) : "",
                                   std::to_string(object.estimate.observations)};
-  if (object.estimate.landmark_in_world) AppendLandmark(object, &row);
+  if (object.estimate.landmark_in_world) {
+    const Landmark& landmark = *object.estimate.landmark_in_world;
+    Append(landmark.Centre(), &row);
+    Append(landmark.frame_from_object.rotation.coeffs(), &row);
+    Append(landmark.half_axes, &row);
+    Append(std::array{YawOf(object) * kDegPerRad, landmark.shape_exponents.horizontal,
+                      landmark.shape_exponents.vertical},
+           &row);
+    if (object.estimate.covariance) {
+      const Covariance9& covariance = *object.estimate.covariance;
+      const Eigen::Matrix<double, 9, 1> sigmas = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+      const Eigen::Vector3d& up = object.support_normal;
+      const double yaw_variance = up.dot(covariance.topLeftCorner<3, 3>() * up);
+      Append(sigmas.segment<3>(3), &row);
+      Append(Eigen::Vector3d(landmark.half_axes.cwiseProduct(sigmas.tail<3>())), &row);
+      Append(std::array{std::sqrt(std::max(yaw_variance, 0.0)) * kDegPerRad}, &row);
+    }
+  }
   row.resize(kFailureColumn);
   row.push_back(CsvText(object.estimate.failure));
   if (object.verdict) {
@@ -71,7 +70,7 @@ std::string LandmarksCsvText(const std::vector<World>& worlds) {
   std::string text = fmt::format("{}\n", kHeader);
   for (const World& world : worlds) {
     for (const WorldObject& object : world.objects) {
-      text += fmt::format("{}\n", fmt::join(RowOf(object), ","));
+      text += fmt::format("{}\n", fmt::join(MakeCsvRow(object), ","));
     }
   }
   return text;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,27 +22,6 @@ ordered_json Intrinsics(const Camera& camera) {
           {"fl_y", camera.fy}, {"cx", camera.cx + 0.5}, {"cy", camera.cy + 0.5}};
 }
 
-ordered_json Lens(const std::optional<Distortion>& distortion) {
-  const Distortion lens = distortion.value_or(Distortion());
-  if (DistortionCoefficients(lens).size() > 5) {
-    throw InputError(
-        "distortion: has k4 and more coefficients; expected a lens that nerfstudio has a model of: "
-        "k1, k2, k3, p1, p2");
-  }
-  return {{"k1", lens.k1}, {"k2", lens.k2}, {"k3", lens.k3}, {"p1", lens.p1}, {"p2", lens.p2}};
-}
-
-// The rows of world_from_opengl.
-ordered_json TransformMatrix(const Rigid3d& world_from_camera) {
-  Eigen::Matrix4d matrix = world_from_camera.Matrix();
-  matrix.block<3, 2>(0, 1) *= -1.0;
-  ordered_json rows = ordered_json::array();
-  for (int i = 0; i < 4; ++i) {
-    rows.push_back({matrix(i, 0), matrix(i, 1), matrix(i, 2), matrix(i, 3)});
-  }
-  return rows;
-}
-
 }  // namespace
 
 std::string TransformsText(const World& world, const fs::path& dataset) {
@@ -53,11 +31,23 @@ std::string TransformsText(const World& world, const fs::path& dataset) {
       frames, [&](const WorldFrame& frame) { return frame.camera == frames.front().camera; });
   ordered_json document = {{"camera_model", "OPENCV"}};
   if (is_one_camera) document.update(Intrinsics(frames.front().camera));
-  document.update(Lens(world.image_distortion));
+  const Distortion lens = world.image_distortion.value_or(Distortion());
+  if (DistortionCoefficients(lens).size() > 5) {
+    throw InputError(
+        "distortion: has k4 and more coefficients; expected a lens that nerfstudio has a model of: "
+        "k1, k2, k3, p1, p2");
+  }
+  document.update(ordered_json{
+      {"k1", lens.k1}, {"k2", lens.k2}, {"k3", lens.k3}, {"p1", lens.p1}, {"p2", lens.p2}});
   for (const WorldFrame& frame : frames) {
     ordered_json entry = {{"file_path", (dataset / frame.image).generic_string()}};
     if (!is_one_camera) entry.update(Intrinsics(frame.camera));
-    entry["transform_matrix"] = TransformMatrix(frame.world_from_camera);
+    Eigen::Matrix4d world_from_opengl = frame.world_from_camera.Matrix();
+    world_from_opengl.block<3, 2>(0, 1) *= -1.0;
+    for (int i = 0; i < 4; ++i) {
+      const Eigen::RowVector4d row = world_from_opengl.row(i);
+      entry["transform_matrix"].push_back({row[0], row[1], row[2], row[3]});
+    }
     document["frames"].push_back(entry);
   }
   return document.dump(1) + "\n";

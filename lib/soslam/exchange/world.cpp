@@ -31,34 +31,28 @@ std::vector<World> WorldsOfFrames(const Sequence& sequence,
   return worlds;
 }
 
-void AddObjects(const Sequence& sequence, const std::vector<ObjectEstimate>& estimates,
-                const std::vector<Plane>& planes_in_world, std::vector<World>* worlds) {
-  if (worlds->empty()) return;
+}  // namespace
+
+std::vector<World> WorldsOfMap(const Sequence& sequence, const MapEstimate& map) {
+  std::vector<World> worlds =
+      WorldsOfFrames(sequence, {map.world_from_camera.begin(), map.world_from_camera.end()});
+  if (worlds.empty()) return worlds;
   const std::vector<std::vector<int>> detections_by_object = DetectionsByObject(sequence);
   const std::vector<std::optional<int>> segments = SegmentsOfObjects(sequence);
   const auto score = [&](int detection) { return sequence.detections[detection].score; };
-  for (const ObjectEstimate& estimate : estimates) {
+  for (const ObjectEstimate& estimate : map.objects) {
     const auto index = static_cast<size_t>(estimate.object_index);
     const Object& object = sequence.objects[index];
     const std::optional<int>& segment = segments[index];
-    World& world =
-        segment ? *std::ranges::find(*worlds, *segment, &World::segment) : worlds->front();
+    World& world = segment ? *std::ranges::find(worlds, *segment, &World::segment) : worlds.front();
     world.objects.push_back(
-        {object.id, object.label, segment, planes_in_world[object.plane_index].normal,
+        {object.id, object.label, segment, map.planes_in_world[object.plane_index].normal,
          MeanOf(ValuesOf(detections_by_object[index], score)).value_or(1.0), estimate});
     if (!segment && estimate.landmark_in_world) {
       world.objects.back().estimate.landmark_in_world.reset();
       world.objects.back().estimate.failure = "unknown_segment";
     }
   }
-}
-
-}  // namespace
-
-std::vector<World> WorldsOfMap(const Sequence& sequence, const MapEstimate& map) {
-  std::vector<World> worlds =
-      WorldsOfFrames(sequence, {map.world_from_camera.begin(), map.world_from_camera.end()});
-  AddObjects(sequence, map.objects, map.planes_in_world, &worlds);
   return worlds;
 }
 
@@ -170,34 +164,16 @@ Covariance9 Moved(const Covariance9& covariance, const Alignment& alignment) {
   return jacobian * covariance * jacobian.transpose();
 }
 
-void Move(const Alignment& alignment, World* world) {
-  for (WorldFrame& frame : world->frames) {
-    frame.world_from_camera = alignment.Apply(frame.world_from_camera);
-  }
-  for (WorldObject& object : world->objects) {
-    object.support_normal = alignment.truth_from_scaled.rotation * object.support_normal;
-    ObjectEstimate& estimate = object.estimate;
-    if (estimate.landmark_in_world) {
-      estimate.landmark_in_world = alignment.Apply(*estimate.landmark_in_world);
-    }
-    if (estimate.covariance) estimate.covariance = Moved(*estimate.covariance, alignment);
-  }
-}
-
-LandmarkVerdict VerdictFromJson(const json& row) {
-  LandmarkVerdict verdict{row.at("fate").get<std::string>()};
-  if (!row.at("true_object").is_null()) verdict.true_object = row["true_object"].get<int>();
-  if (!row.at("errors").is_null()) verdict.iou = row["errors"].at("iou").get<double>();
-  if (!row.at("reason").is_null()) verdict.reason = row["reason"].get<std::string>();
-  return verdict;
-}
-
 }  // namespace
 
 void AddVerdicts(const json& quality, std::vector<World>* worlds) {
   std::map<int, LandmarkVerdict> of_object;
   for (const json& row : quality.at("landmarks")) {
-    of_object[row.at("object").get<int>()] = VerdictFromJson(row);
+    LandmarkVerdict verdict{row.at("fate").get<std::string>()};
+    if (!row.at("true_object").is_null()) verdict.true_object = row["true_object"].get<int>();
+    if (!row.at("errors").is_null()) verdict.iou = row["errors"].at("iou").get<double>();
+    if (!row.at("reason").is_null()) verdict.reason = row["reason"].get<std::string>();
+    of_object[row.at("object").get<int>()] = verdict;
   }
   for (World& world : *worlds) {
     for (WorldObject& object : world.objects) {
@@ -215,7 +191,20 @@ void AlignWorlds(const json& quality, std::vector<World>* worlds) {
     of_its_segment.truth_from_scaled =
         DescribedFromJson<Rigid3d>(alignment.at("truth_from_scaled"));
   }
-  for (World& world : *worlds) Move(of_segment.at(world.segment), &world);
+  for (World& world : *worlds) {
+    const Alignment& alignment = of_segment.at(world.segment);
+    for (WorldFrame& frame : world.frames) {
+      frame.world_from_camera = alignment.Apply(frame.world_from_camera);
+    }
+    for (WorldObject& object : world.objects) {
+      object.support_normal = alignment.truth_from_scaled.rotation * object.support_normal;
+      ObjectEstimate& estimate = object.estimate;
+      if (estimate.landmark_in_world) {
+        estimate.landmark_in_world = alignment.Apply(*estimate.landmark_in_world);
+      }
+      if (estimate.covariance) estimate.covariance = Moved(*estimate.covariance, alignment);
+    }
+  }
 }
 
 }  // namespace soslam
