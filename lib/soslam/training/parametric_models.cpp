@@ -242,11 +242,13 @@ void Sofa(Assembly* a) {
   }
 }
 
-// A panel that faces forward, with its frame.
-void AddPanel(Assembly* a, float width, float height, float bottom, float thickness, float lean) {
+void Monitor(Assembly* a) {
+  const float width = a->Chance(0.5) ? a->Uniform(0.4, 0.65) : a->Uniform(0.7, 1.3);
+  const float height = width * a->Uniform(0.54, 0.7), lift = a->Uniform(0.06, 0.16);
+  const float thickness = a->Uniform(0.015, 0.06), lean = a->Uniform(0.0, 0.12);
   const int frame = a->AddMaterial(0.02, 0.5);
   const int screen = a->Chance(0.7) ? a->AddMaterial(0.01, 0.08) : a->AddMaterial(0.2, 0.9);
-  const Eigen::Vector3f middle(0, 0, bottom + 0.5f * height);
+  const Eigen::Vector3f middle(0, 0, lift + 0.5f * height);
   const float border = a->Uniform(0.01, 0.03);
   a->AddBox(frame, middle, {thickness, width, height}, Leaning(lean));
   a->AddBox(screen, middle + Leaning(lean) * Eigen::Vector3f(0.5f * thickness, 0, 0),
@@ -255,13 +257,6 @@ void AddPanel(Assembly* a, float width, float height, float bottom, float thickn
     a->AddBox(frame, middle - Eigen::Vector3f(0.5f * thickness + 0.015f, 0, 0.1f * height),
               {0.04f, 0.6f * width, 0.5f * height}, Leaning(lean));
   }
-}
-
-void Monitor(Assembly* a) {
-  const float width = a->Chance(0.5) ? a->Uniform(0.4, 0.65) : a->Uniform(0.7, 1.3);
-  const float height = width * a->Uniform(0.54, 0.7), lift = a->Uniform(0.06, 0.16);
-  const float thickness = a->Uniform(0.015, 0.06);
-  AddPanel(a, width, height, lift, thickness, a->Uniform(0.0, 0.12));
   const int stand = a->AddMaterial(0.02, 0.6);
   a->AddBox(stand, {-thickness, 0, 0.5f * (lift + 0.1f)},
             {0.03f, 0.08f * width + 0.03f, lift + 0.1f});

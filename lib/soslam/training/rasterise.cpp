@@ -6,20 +6,6 @@
 #include <opencv2/core.hpp>
 
 namespace soslam {
-namespace {
-
-// The texture's colour, 0 .. 1, at coordinates that repeat beyond 0 .. 1.
-Eigen::Vector3f TextureColour(const cv::Mat& texture, const Eigen::Vector2f& at) {
-  const auto pixel = [](float x, int size) {
-    return std::clamp(static_cast<int>((x - std::floor(x)) * static_cast<float>(size)), 0,
-                      size - 1);
-  };
-  const cv::Vec3b& colour =
-      texture.at<cv::Vec3b>(pixel(-at.y(), texture.rows), pixel(at.x(), texture.cols));
-  return Eigen::Vector3f(colour[0], colour[1], colour[2]) / 255.0f;
-}
-
-}  // namespace
 
 Rasteriser::Rasteriser(const Camera& camera, const Rigid3d& camera_from_world)
     : colour(camera.height, camera.width, CV_32FC3, cv::Scalar::all(0)),
@@ -112,7 +98,14 @@ void Rasteriser::Draw(const PlacedModel& placed, const Lighting& lighting,
       }
       Eigen::Vector3f own = material.colour;
       if (!material.texture.empty()) {
-        own = own.cwiseProduct(TextureColour(material.texture, texture));
+        // Textures repeat beyond coordinates of 0 .. 1.
+        const auto pixel = [](float at, int size) {
+          const float share = at - std::floor(at);
+          return std::clamp(static_cast<int>(share * static_cast<float>(size)), 0, size - 1);
+        };
+        const cv::Vec3b& bgr = material.texture.at<cv::Vec3b>(
+            pixel(-texture.y(), material.texture.rows), pixel(texture.x(), material.texture.cols));
+        own = own.cwiseProduct(Eigen::Vector3f(bgr[0], bgr[1], bgr[2]) / 255.0f);
       }
       const Eigen::Vector3f seen =
           255.0f * (own.cwiseProduct(light) + Eigen::Vector3f::Constant(material.gloss * glint));
