@@ -2,10 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include "soslam/artefact/files.h"
@@ -37,20 +35,14 @@ struct Sheet {
   std::string evidence;  // what held it together, in words
   size_t boxes = 0, unused = 0;
   std::vector<SheetBox> shown = {};
-  std::optional<SheetBox> kept_out = {};  // of the track that came nearest to being of it
+  std::optional<SheetBox> kept_out = {};  // of the nearest track that was not taken in
 };
-
-// What names a box for other programs: {"image": "rgb/7.png", "box": [10, 20, 30, 40]}.
-std::string AnchorOf(const std::string& image, const Box& box) {
-  return fmt::format("{{\"image\": {}, \"box\": [{:.1f}, {:.1f}, {:.1f}, {:.1f}]}}",
-                     JsonText(image), box.x_min, box.y_min, box.x_max, box.y_max);
-}
 
 std::string PointsInWords(const Associations::Evidence& evidence) {
   return fmt::format("{} of {} points", evidence.points_in_both, evidence.points_in_any);
 }
 
-// The weakest pair of an object's boxes, and the track that came nearest to being of it.
+// The weakest pair of an object's boxes, and the nearest track that was kept out of it.
 std::string EvidenceInWords(const Associations& associations, int object) {
   std::string words;
   const auto is_of = [object](const auto& row) { return row.object == object; };
@@ -77,8 +69,8 @@ std::string EvidenceInWords(const Associations& associations, int object) {
                      Counted(static_cast<size_t>(nearest->frames_with_both), "frame"));
 }
 
-std::vector<Sheet> SheetsOf(const Associations& associations, const Sequence& sequence,
-                            const ImageSource& images) {
+std::vector<Sheet> MakeSheets(const Associations& associations, const Sequence& sequence,
+                              const ImageSource& images) {
   std::map<std::pair<int, int>, int> track_of;  // by the name of a detection
   for (const Associations::DetectionRow& row : associations.detections) {
     if (row.track) track_of[{row.name.frame, row.name.given_object}] = *row.track;
@@ -146,13 +138,17 @@ std::string SheetHtml(const Sheet& sheet, const Sequence& sequence) {
     const std::string name =
         has_name ? fmt::format("{}: {}", frame.id, fs::path(frame.image).filename().string())
                  : fmt::format("{}", frame.id);
+    // What names a box for other programs: {"image": "rgb/7.png", "box": [10, 20, 30, 40]}.
+    const std::string anchor =
+        fmt::format("{{\"image\": {}, \"box\": [{:.1f}, {:.1f}, {:.1f}, {:.1f}]}}",
+                    JsonText(frame.image), box.x_min, box.y_min, box.x_max, box.y_max);
     return fmt::format(
         "<figure{}>{}<figcaption><details><summary>{}{}</summary><code>{}</code></details>"
         "</figcaption></figure>\n",
         mark.empty() ? "" : " class=\"unused\"",
         PictureSvg(picture, sheet.name + " in frame " + name, ""),
         mark.empty() ? "" : fmt::format("<strong>{}</strong> ", mark), HtmlText(name),
-        has_name ? HtmlText(AnchorOf(frame.image, box)) : "It has no image.");
+        has_name ? HtmlText(anchor) : "It has no image.");
   };
   for (const SheetBox& box : sheet.shown) html += figure(box);
   if (sheet.kept_out) html += figure(*sheet.kept_out);
@@ -165,7 +161,7 @@ std::string BoxesSection(const fs::path& folder, const Sequence& sequence,
                          const ImageSource& images, size_t max_bytes, int threads) {
   if (!Exists(folder / "associations.json")) return "";
   const Associations associations = ReadAssociations(folder / "associations.json").body;
-  std::vector<Sheet> sheets = SheetsOf(associations, sequence, images);
+  std::vector<Sheet> sheets = MakeSheets(associations, sequence, images);
   Thin(kMaxCrops, &sheets);
   std::vector<Picture*> pictures;
   for (Sheet& sheet : sheets) {

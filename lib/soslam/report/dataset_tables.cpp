@@ -13,7 +13,7 @@
 namespace soslam {
 namespace {
 
-std::vector<Cell> RowOf(const std::string& name, const Metrics& metrics) {
+std::vector<Cell> MakeRow(const std::string& name, const Metrics& metrics) {
   const MetricsSummary& all = metrics.summary;
   const MetricsSummary first = metrics.first_observation.value_or(MetricsSummary());
   const auto mean = [](const ObjectMetric& metric, const MetricsSummary& summary) {
@@ -60,14 +60,14 @@ Table DatasetTable(const DatasetResult& dataset) {
     fronts.push_back(variant ? variant->metrics->summary.fronts : std::nullopt);
     std::vector<Cell> without(table.header.size(), kNoValue);
     without.front() = name;
-    table.rows.push_back(variant ? RowOf(name, *variant->metrics) : without);
+    table.rows.push_back(variant ? MakeRow(name, *variant->metrics) : without);
   }
   std::set<std::string> odometry;
   for (const VariantResult& variant : dataset.variants) {
     if (!variant.metrics) continue;
     const bool has_row = std::ranges::find(kPaperVariants, variant.name) != kPaperVariants.end();
     if (!has_row) {
-      table.rows.push_back(RowOf(variant.name, *variant.metrics));
+      table.rows.push_back(MakeRow(variant.name, *variant.metrics));
       fronts.push_back(variant.metrics->summary.fronts);
     }
     const auto& trajectory = variant.metrics->trajectory;

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -28,8 +27,8 @@ constexpr size_t kMaxPlaced = 100, kMaxNotPlaced = 40;
 constexpr int kPicturePx = 160;  // at most, of width and height
 
 // The largest box that is whole, or else the largest, among the frames with an image.
-Picture PictureOf(const std::vector<SeenBox>& boxes, const ImageSource& images,
-                  const Sequence& sequence) {
+Picture ChoosePicture(const std::vector<SeenBox>& boxes, const ImageSource& images,
+                      const Sequence& sequence) {
   const auto rank = [](const SeenBox& seen) { return std::pair(seen.is_whole, seen.box.Area()); };
   const SeenBox* best = nullptr;
   for (const SeenBox& seen : boxes) {
@@ -50,17 +49,16 @@ struct Entry {
   std::string doubts = {};  // why it is uncertain; empty where it is not
 };
 
-std::string SvgOf(const Entry& entry, const Sequence& sequence) {
-  if (entry.picture.jpeg.empty()) return "";
-  const int frame_id = sequence.frames[entry.picture.frame_index].id;
-  return PictureSvg(entry.picture, fmt::format("{} in frame {}", entry.name, frame_id), entry.id);
-}
-
 std::string EntriesHtml(const std::vector<Entry>& entries, const Sequence& sequence) {
   std::string html = "<ul class=\"things\">\n";
   for (const Entry& entry : entries) {
-    html +=
-        fmt::format("<li>{}<div><strong>{}</strong>", SvgOf(entry, sequence), HtmlText(entry.name));
+    html += "<li>";
+    if (!entry.picture.jpeg.empty()) {
+      const int frame_id = sequence.frames[entry.picture.frame_index].id;
+      html +=
+          PictureSvg(entry.picture, fmt::format("{} in frame {}", entry.name, frame_id), entry.id);
+    }
+    html += fmt::format("<div><strong>{}</strong>", HtmlText(entry.name));
     if (!entry.doubts.empty()) {
       html += "<br><span class=\"doubt\">" + HtmlText("uncertain: " + entry.doubts) + "</span>";
     }
@@ -97,7 +95,19 @@ class MapOfVariant {
   // empty where that does not suffice.
   std::string Html(const std::string& title, size_t max_bytes, int threads) {
     std::vector<Entry> placed = PlacedEntries();
-    NotPlacedEntries not_placed = EntriesNotPlaced();
+    NotPlacedEntries not_placed;
+    for (const NotPlaced& thing : ThingsNotPlaced(folder_, map_, sequence_)) {
+      if (thing.boxes.size() < 2) {
+        ++not_placed.single;
+      } else if (not_placed.entries.size() == kMaxNotPlaced) {
+        ++not_placed.more;
+      } else {
+        not_placed.entries.push_back({fmt::format("seen-{}", not_placed.entries.size()),
+                                      thing.label,
+                                      {fmt::format("{} boxes", thing.boxes.size()), thing.reason},
+                                      ChoosePicture(thing.boxes, images_, sequence_)});
+      }
+    }
     std::vector<Picture*> pictures;
     for (std::vector<Entry>* entries : {&placed, &not_placed.entries}) {
       for (Entry& entry : *entries) pictures.push_back(&entry.picture);
@@ -122,6 +132,7 @@ class MapOfVariant {
 
   std::string Section(const std::string& title, const std::vector<Entry>& entries,
                       const NotPlacedEntries& not_placed, const std::string& note) const {
+    constexpr size_t kMaxNames = 100;
     std::string html = "<section id=\"overview\">\n";
     html +=
         fmt::format("<h2>{}</h2>\n<p>{} in {}.", HtmlText(title), Counted(placed_.size(), "object"),
@@ -140,7 +151,26 @@ class MapOfVariant {
               EntriesHtml(entries, sequence_);
       html += AndMore(placed_.size() - entries.size());
     }
-    return html + NotPlacedHtml(not_placed) + PhotosWithoutPose() + "</section>\n";
+    const auto& [seen, more, single] = not_placed;
+    if (!seen.empty() || single > 0) {
+      html += "<h3>Seen but not placed</h3>\n";
+      if (!seen.empty()) html += EntriesHtml(seen, sequence_);
+      html += AndMore(more);
+    }
+    if (single > 0) {
+      html += fmt::format(
+          "<p class=\"faint\">{} detected in one image only.</p>\n",
+          single == 1 ? "One more thing was" : fmt::format("{} more things were", single));
+    }
+    const std::vector<std::string>& names = sequence_.images_without_pose;
+    if (!names.empty()) {
+      html += fmt::format(
+          "<h3>Photos without a pose</h3>\n<p>The reconstruction could not tell where {} taken; "
+          "what they show is not used: {}.</p>\n",
+          names.size() == 1 ? "a photo was" : fmt::format("{} photos were", names.size()),
+          HtmlText(NamesInWords(names, kMaxNames)));
+    }
+    return html + "</section>\n";
   }
 
   std::vector<Entry> PlacedEntries() const {
@@ -155,7 +185,7 @@ class MapOfVariant {
                   {LabelsInWords(object), SizeInWords(*estimate, scale_),
                    fmt::format("{}; {}", SupportInWords(*estimate, sequence_, map_, scale_),
                                Counted(static_cast<size_t>(estimate->observations), "view"))},
-                  PictureOf(BoxesOf(sequence_, detections[index]), images_, sequence_),
+                  ChoosePicture(BoxesOf(sequence_, detections[index]), images_, sequence_),
                   doubts_[entries.size()]};
       // The outline of the body in place of the box, if the camera sees all of it.
       const int frame = entry.picture.frame_index;
@@ -245,48 +275,6 @@ class MapOfVariant {
       caption += fmt::format(" Part {} of {}.", place + 1, segments.size());
     }
     return caption;
-  }
-
-  NotPlacedEntries EntriesNotPlaced() const {
-    NotPlacedEntries result;
-    for (const NotPlaced& thing : ThingsNotPlaced(folder_, map_, sequence_)) {
-      if (thing.boxes.size() < 2) {
-        ++result.single;
-      } else if (result.entries.size() == kMaxNotPlaced) {
-        ++result.more;
-      } else {
-        result.entries.push_back({fmt::format("seen-{}", result.entries.size()),
-                                  thing.label,
-                                  {fmt::format("{} boxes", thing.boxes.size()), thing.reason},
-                                  PictureOf(thing.boxes, images_, sequence_)});
-      }
-    }
-    return result;
-  }
-
-  std::string NotPlacedHtml(const NotPlacedEntries& not_placed) const {
-    const auto& [entries, more, single] = not_placed;
-    if (entries.empty() && single == 0) return "";
-    std::string html = "<h3>Seen but not placed</h3>\n";
-    if (!entries.empty()) html += EntriesHtml(entries, sequence_);
-    html += AndMore(more);
-    if (single > 0) {
-      html += fmt::format(
-          "<p class=\"faint\">{} detected in one image only.</p>\n",
-          single == 1 ? "One more thing was" : fmt::format("{} more things were", single));
-    }
-    return html;
-  }
-
-  std::string PhotosWithoutPose() const {
-    constexpr size_t kMaxNames = 100;
-    const std::vector<std::string>& names = sequence_.images_without_pose;
-    if (names.empty()) return "";
-    return fmt::format(
-        "<h3>Photos without a pose</h3>\n<p>The reconstruction could not tell where {} taken; what "
-        "they show is not used: {}.</p>\n",
-        names.size() == 1 ? "a photo was" : fmt::format("{} photos were", names.size()),
-        HtmlText(NamesInWords(names, kMaxNames)));
   }
 
   const fs::path& folder_;

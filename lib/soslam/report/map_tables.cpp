@@ -18,8 +18,8 @@ struct EvaluatedMap {
 };
 
 // The maps of these variants, by dataset.
-std::vector<EvaluatedMap> MapsOf(const std::vector<DatasetResult>& datasets,
-                                 const std::vector<std::string>& variants) {
+std::vector<EvaluatedMap> FindMaps(const std::vector<DatasetResult>& datasets,
+                                   const std::vector<std::string>& variants) {
   std::vector<EvaluatedMap> maps;
   for (const DatasetResult& dataset : datasets) {
     for (const std::string& name : variants) {
@@ -38,7 +38,7 @@ std::vector<Cell> WithMap(const EvaluatedMap& map, const std::vector<Cell>& cell
 }
 
 // Who says it: the dataset, or a stage, which writes this file.
-std::string SourceOf(const VariantResult& variant, const char* stage, const char* file) {
+std::string NameSource(const VariantResult& variant, const char* stage, const char* file) {
   return ShowsStage(variant, stage, file) ? "estimated" : "given";
 }
 
@@ -84,15 +84,15 @@ void AddWhatIfCells(const MetricValues& iou, const std::optional<WhatIf>& what_i
 Table MapsTable(const std::vector<DatasetResult>& datasets,
                 const std::vector<std::string>& variants) {
   Table table = {"maps", "Maps compared with all true objects", {}, {}, 4, {}};
-  for (const EvaluatedMap& map : MapsOf(datasets, variants)) {
+  for (const EvaluatedMap& map : FindMaps(datasets, variants)) {
     const Table one = QualityTables({map.dataset, {map.variant}}).front();
     if (table.header.empty()) {
       table.header = {"dataset", "variant", "ids", "planes"};
       table.header.insert(table.header.end(), one.header.begin() + 1, one.header.end());
       table.notes = {one.notes.front()};
     }
-    std::vector<Cell> row = WithMap(map, {SourceOf(map.variant, "associate", "associations.json"),
-                                          SourceOf(map.variant, "planes", "planes.json")});
+    std::vector<Cell> row = WithMap(map, {NameSource(map.variant, "associate", "associations.json"),
+                                          NameSource(map.variant, "planes", "planes.json")});
     row.insert(row.end(), one.rows.front().begin() + 1, one.rows.front().end());
     table.rows.push_back(std::move(row));
   }
@@ -109,7 +109,7 @@ Table LostTable(const std::vector<DatasetResult>& datasets,
       5,
       {"At IoU 0.25, with their ids, those of false landmarks in the map. The landmark of a missed "
        "object is not listed again. soslam-inspect metrics.json says more of each."}};
-  for (const EvaluatedMap& map : MapsOf(datasets, variants)) {
+  for (const EvaluatedMap& map : FindMaps(datasets, variants)) {
     NamesByKey missed, false_ones;  // by reason
     std::set<std::optional<int>> missed_ids;
     for (const TrueObjectRow& row : map.quality.objects) {
@@ -145,7 +145,7 @@ Table LimitsTable(const std::vector<DatasetResult>& datasets,
                   "a quarter turn."}};
   AddWhatIfHeader(&table);
   for (const auto& metric : kBodyMetrics) table.header.push_back(metric.Header());
-  for (const EvaluatedMap& map : MapsOf(datasets, variants)) {
+  for (const EvaluatedMap& map : FindMaps(datasets, variants)) {
     for (const LandmarkRow& landmark : map.quality.landmarks) {
       if (landmark.fate != LandmarkFate::kFound || !landmark.errors) continue;
       std::vector<Cell> row = {ObjectName(landmark.label, landmark.true_index.value_or(0)),

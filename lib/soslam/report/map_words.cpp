@@ -94,28 +94,6 @@ namespace {
 // Height of things that stand on floors but hardly on tables.
 constexpr double kStandsOnFloorM = 0.65;
 
-// The level planes on which there are objects in a segment, as indices.
-std::set<int> LevelPlanesOf(const Sequence& sequence, const MapEstimate& map, int segment) {
-  const Eigen::Vector3d up = UpOfSegment(sequence, segment);
-  std::set<int> planes;
-  for (const Detection& detection : sequence.detections) {
-    const int plane = sequence.ObjectOf(detection).plane_index;
-    if (plane == kNoPlane || sequence.FrameOf(detection).segment != segment) continue;
-    if (map.planes_in_world[plane].normal.dot(up) > kLevel) {
-      planes.insert(plane);
-    }
-  }
-  return planes;
-}
-
-bool HasTallObject(const Sequence& sequence, const MapEstimate& map, int plane) {
-  return std::ranges::any_of(map.objects, [&](const ObjectEstimate& estimate) {
-    return estimate.landmark_in_world &&
-           sequence.objects[estimate.object_index].plane_index == plane &&
-           2.0 * estimate.landmark_in_world->half_axes.z() > kStandsOnFloorM;
-  });
-}
-
 // The plane of an object, and its height.
 std::string PlaneInWords(const ObjectEstimate& estimate, const Sequence& sequence,
                          const MapEstimate& map, const ScaleOfMap& scale) {
@@ -127,16 +105,25 @@ std::string PlaneInWords(const ObjectEstimate& estimate, const Sequence& sequenc
       sequence.planes.size() >= sequence.objects.size()) {
     return "on the ground";
   }
-  const auto segments = SegmentsOfObjects(sequence);
-  const std::set<int> level =
-      LevelPlanesOf(sequence, map, segments[estimate.object_index].value_or(0));
+  const int segment = SegmentsOfObjects(sequence)[estimate.object_index].value_or(0);
+  const Eigen::Vector3d up = UpOfSegment(sequence, segment);
+  std::set<int> level;  // planes that carry objects of the segment
+  for (const Detection& detection : sequence.detections) {
+    const int plane = sequence.ObjectOf(detection).plane_index;
+    if (plane == kNoPlane || sequence.FrameOf(detection).segment != segment) continue;
+    if (map.planes_in_world[plane].normal.dot(up) > kLevel) level.insert(plane);
+  }
   if (!level.contains(own)) return "on a wall or ceiling";
   const auto height_above = [&](int plane) {
     return map.planes_in_world[plane].SignedDistance(estimate.landmark_in_world->Centre());
   };
   const int lowest = *std::ranges::max_element(level, {}, height_above);
-  const bool is_floor =
-      scale.in_metres && !scale.up_is_in_doubt && HasTallObject(sequence, map, lowest);
+  const bool is_floor = scale.in_metres && !scale.up_is_in_doubt &&
+                        std::ranges::any_of(map.objects, [&](const ObjectEstimate& other) {
+                          return other.landmark_in_world &&
+                                 sequence.objects[other.object_index].plane_index == lowest &&
+                                 2.0 * other.landmark_in_world->half_axes.z() > kStandsOnFloorM;
+                        });
   const std::string name = is_floor           ? "the floor"
                            : level.size() > 1 ? "the lowest plane"
                                               : "the support plane";

@@ -25,12 +25,6 @@ std::string MostFrequent(const std::map<std::string, int>& counts) {
   return std::ranges::max_element(counts, {}, [](const auto& pair) { return pair.second; })->first;
 }
 
-// Why association left out a track.
-std::string FateInWords(const Associations::TrackRow& track) {
-  if (track.fate != TrackFate::kRarelyDetected) return ReasonOf(NameOf(track.fate)).words;
-  return RarelyDetectedInWords(track.detections, track.frames_in_sight.value_or(0));
-}
-
 // A box without a record of the edges that are cut off.
 SeenBox BoxInFrame(const Sequence& sequence, int frame_index, const Box& box) {
   const Camera& camera = sequence.CameraOf(sequence.frames[frame_index]);
@@ -74,7 +68,10 @@ std::vector<NotPlaced> TracksLeftOut(const Associations& associations, const Seq
   std::vector<NotPlaced> things;
   for (auto& [track, thing] : left_out) {
     thing.label = MostFrequent(labels[track]);
-    thing.reason = FateInWords(*track);
+    thing.reason =
+        track->fate == TrackFate::kRarelyDetected
+            ? RarelyDetectedInWords(track->detections, track->frames_in_sight.value_or(0))
+            : ReasonOf(NameOf(track->fate)).words;
     things.push_back(std::move(thing));
   }
   return things;
@@ -102,8 +99,10 @@ std::map<int, std::string> InitialFailures(const fs::path& folder, const Sequenc
   return failures;
 }
 
-std::vector<NotPlaced> ObjectsLeftOut(const fs::path& folder, const MapEstimate& map,
-                                      const Sequence& sequence) {
+}  // namespace
+
+std::vector<NotPlaced> ThingsNotPlaced(const fs::path& folder, const MapEstimate& map,
+                                       const Sequence& sequence) {
   constexpr const char* kNoStart = "no_start";  // the stages before know more
   std::map<int, std::string> failures = InitialFailures(folder, sequence);
   std::set<int> placed;
@@ -119,30 +118,15 @@ std::vector<NotPlaced> ObjectsLeftOut(const fs::path& folder, const MapEstimate&
     things.push_back(
         {sequence.objects[i].label, BoxesOf(sequence, detections[i]), ReasonOf(failure).words});
   }
-  return things;
-}
-
-// What soslam-planes left out, by label.
-std::vector<NotPlaced> LeftOutByPlanes(const Sequence& sequence) {
-  std::map<std::string, NotPlaced> left_out;
+  std::map<std::string, NotPlaced> left_out_by_planes;  // by label
   for (const RejectedDetection& rejected : sequence.rejected) {
     if (rejected.stage != RejectingStage::kPlanes) continue;
-    NotPlaced& thing = left_out[rejected.label];
+    NotPlaced& thing = left_out_by_planes[rejected.label];
     thing.label = rejected.label;
     thing.reason = ReasonOf(rejected.reason).words;
     thing.boxes.push_back(BoxInFrame(sequence, rejected.frame_index, rejected.box));
   }
-  std::vector<NotPlaced> things;
-  for (auto& [label, thing] : left_out) things.push_back(std::move(thing));
-  return things;
-}
-
-}  // namespace
-
-std::vector<NotPlaced> ThingsNotPlaced(const fs::path& folder, const MapEstimate& map,
-                                       const Sequence& sequence) {
-  std::vector<NotPlaced> things = ObjectsLeftOut(folder, map, sequence);
-  std::ranges::move(LeftOutByPlanes(sequence), std::back_inserter(things));
+  for (auto& [label, thing] : left_out_by_planes) things.push_back(std::move(thing));
   if (Exists(folder / "associations.json")) {
     const Associations associations = ReadAssociations(folder / "associations.json").body;
     std::ranges::move(TracksLeftOut(associations, sequence), std::back_inserter(things));

@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <deque>
 #include <map>
 #include <set>
 
@@ -216,7 +215,7 @@ class PageMaker {
 };
 
 // What the data of a dataset's page and those of the page of all datasets share.
-json HeadOf(const DatasetPage& page) {
+json MakeHead(const DatasetPage& page) {
   json head = {{"dataset", Utf8(page.name)},  {"url", UrlOf(page.name)},
                {"unfinished", json::array()}, {"findings", json::array()},
                {"notes", page.notes},         {"problems", page.problems},
@@ -244,7 +243,7 @@ DatasetPage MakePage(const DatasetResult& dataset, const ImageSourceOf& images, 
 }
 
 json DataOf(const DatasetPage& page) {
-  json data = HeadOf(page);
+  json data = MakeHead(page);
   data["images"] = page.images;
   data["symmetries"] = page.symmetries;
   data["has_true_poses"] = page.has_true_poses;
@@ -280,7 +279,7 @@ json DataOf(const DatasetPage& page) {
 json OverviewData(const std::vector<DatasetPage>& pages) {
   json datasets = json::array();
   for (const DatasetPage& page : pages) {
-    json dataset = HeadOf(page);
+    json dataset = MakeHead(page);
     dataset["counts"] = CountsOfDataset(page);
     for (json& variant : dataset["variants"]) {
       variant["metrics"].erase("objects");

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <utility>
 
 #include "soslam/artefact/json_file.h"
 #include "soslam/base/error.h"

@@ -33,7 +33,7 @@ std::string HeaderOnPage(const Metric& metric) {
 
 // "2 name, 1 other name"
 template <typename Count>
-std::string ListOf(const std::map<std::string, Count>& counts) {
+std::string ListCounts(const std::map<std::string, Count>& counts) {
   std::vector<std::string> texts;
   for (const auto& [name, count] : counts) {
     texts.push_back(fmt::format("{} {}", count, WithBlanks(name)));
@@ -287,10 +287,10 @@ std::string StagesSection(const DatasetPage& page) {
       if (!estimate.failure.empty()) ++failures[estimate.failure];
     }
     std::vector<Cell> row = {variant.name, std::to_string(landmarks),
-                             ListOf(ReasonsInWords(failures))};
+                             ListCounts(ReasonsInWords(failures))};
     if (const auto& solver = variant.solver) {
       row.insert(row.end(), {std::to_string(solver->iterations), solver->converged ? "yes" : "no",
-                             ListOf(solver->residuals), ListOf(solver->gated)});
+                             ListCounts(solver->residuals), ListCounts(solver->gated)});
     }
     row.resize(table.header.size(), "");
     table.rows.push_back(std::move(row));
@@ -318,17 +318,6 @@ std::string Remarks(const DatasetPage& page) {
   std::string remarks = table.rows.empty() ? "" : HtmlTable(table);
   for (const std::string& problem : page.problems) remarks += Faint(problem);
   return remarks + FindingsHtml(page.findings);
-}
-
-// Where findings are below a map that may need all of the screen, and may be of other variants.
-std::string LinkToFindings(const DatasetPage& page) {
-  if (page.findings.empty() || page.map_section.empty()) return "";
-  std::vector<std::string> places;
-  for (const PageFinding& finding : page.findings) {
-    if (std::ranges::find(places, finding.where) == places.end()) places.push_back(finding.where);
-  }
-  return fmt::format("<p><a href=\"#remarks\">{}</a> below, in {}</p>\n",
-                     Counted(page.findings.size(), "finding"), HtmlText(NamesInWords(places)));
 }
 
 // The variant of most interest.
@@ -379,10 +368,20 @@ std::string DatasetTables(const DatasetPage& page) {
   const size_t shown = main.selection.shown.size();
   if (shown < main.sequence.frames.size()) counts += fmt::format("; {} frames are shown", shown);
   const auto& rejected = main.sequence.rejected_detections;
-  if (!rejected.empty()) counts += "; not used: " + ListOf(ReasonsInWords(rejected));
+  if (!rejected.empty()) counts += "; not used: " + ListCounts(ReasonsInWords(rejected));
   std::string notes;
   for (const std::string& note : page.notes) notes += Faint(note);
-  return fmt::format("<h1>{}</h1>\n", HtmlText(page.name)) + Faint(counts) + LinkToFindings(page) +
+  // Where findings are below a map that may need all of the screen, and may be of other variants.
+  std::string link;
+  if (!page.findings.empty() && !page.map_section.empty()) {
+    std::vector<std::string> places;
+    for (const auto& [finding, where] : page.findings) {
+      if (std::ranges::find(places, where) == places.end()) places.push_back(where);
+    }
+    link = fmt::format("<p><a href=\"#remarks\">{}</a> below, in {}</p>\n",
+                       Counted(page.findings.size(), "finding"), HtmlText(NamesInWords(places)));
+  }
+  return fmt::format("<h1>{}</h1>\n", HtmlText(page.name)) + Faint(counts) + link +
          page.map_section + "<div id=\"remarks\">\n" + Remarks(page) + "</div>\n" +
          "<noscript><p class=\"faint\">The map in three dimensions, frames, charts and figures "
          "need JavaScript; all else is here.</p></noscript>\n" +

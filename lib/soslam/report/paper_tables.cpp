@@ -64,14 +64,13 @@ const std::vector<Layout> kLayouts = {
 // One mean per column.
 using Means = std::vector<std::optional<ObjectMean>>;
 
-auto CountOf(const Means& means) {
+auto CountMeans(const Means& means) {
   return std::ranges::count_if(means, [](const auto& mean) { return mean.has_value(); });
 }
 
-// The means of variants that have the metric; the first observation exists for single-frame
-// variants only. The number of objects is that of objects with an angle in any observation, as
-// metrics.json does not have it for first observations.
-Means MeansOf(const DatasetResult& dataset, const Layout& layout, const RowKind& kind) {
+// None for variants without the metric. Only single-frame variants have first observations; their
+// number of objects is that over all observations, as metrics.json has no other.
+Means CollectMeans(const DatasetResult& dataset, const Layout& layout, const RowKind& kind) {
   Means means(layout.variants.size());
   for (size_t i = 0; i < means.size(); ++i) {
     const VariantResult* const variant = dataset.Evaluated(layout.variants[i]);
@@ -86,22 +85,6 @@ Means MeansOf(const DatasetResult& dataset, const Layout& layout, const RowKind&
   return means;
 }
 
-// The most observations of a variant.
-std::string ObservationsText(const Means& means, const std::vector<std::string>& variants) {
-  std::set<int> counts;
-  std::string variant_with_most;
-  for (size_t i = 0; i < means.size(); ++i) {
-    if (!means[i]) continue;
-    if (counts.empty() || means[i]->observations > *counts.rbegin()) {
-      variant_with_most = variants[i];
-    }
-    counts.insert(means[i]->observations);
-  }
-  if (counts.empty() || *counts.rbegin() == 0) return kNoValue;
-  return std::to_string(*counts.rbegin()) +
-         (counts.size() > 1 ? fmt::format(" ({})", variant_with_most) : "");
-}
-
 std::vector<Cell> MeasuredRow(const std::string& dataset, const std::string& kind,
                               const Means& means, const Layout& layout,
                               const DatasetFacts& facts = {}) {
@@ -112,8 +95,21 @@ std::vector<Cell> MeasuredRow(const std::string& dataset, const std::string& kin
     objects = std::max(objects, mean->objects);
     if (!best || layout.metric.IsBetter(mean->mean, *best)) best = mean->mean;
   }
-  std::vector<Cell> row = {dataset, kind, MarksOf(facts, objects), std::to_string(objects),
-                           ObservationsText(means, layout.variants)};
+  std::set<int> observations;
+  std::string variant_with_most;
+  for (size_t i = 0; i < means.size(); ++i) {
+    if (!means[i]) continue;
+    if (observations.empty() || means[i]->observations > *observations.rbegin()) {
+      variant_with_most = layout.variants[i];
+    }
+    observations.insert(means[i]->observations);
+  }
+  std::string most = kNoValue;
+  if (!observations.empty() && *observations.rbegin() != 0) {
+    most = std::to_string(*observations.rbegin());
+    if (observations.size() > 1) most += fmt::format(" ({})", variant_with_most);
+  }
+  std::vector<Cell> row = {dataset, kind, MarksOf(facts, objects), std::to_string(objects), most};
   for (const auto& mean : means) {
     const std::string text = mean ? layout.metric.Text(mean->mean) : kNoValue;
     if (mean && mean->objects < objects) {
@@ -126,7 +122,7 @@ std::vector<Cell> MeasuredRow(const std::string& dataset, const std::string& kin
   return row;
 }
 
-std::vector<Cell> PublishedRowOf(const PublishedRow& published, const Layout& layout) {
+std::vector<Cell> MakePublishedRow(const PublishedRow& published, const Layout& layout) {
   std::vector<Cell> row = {published.dataset, "published", kNoValue,
                            std::to_string(published.objects), kNoValue};
   for (const std::string& variant : layout.variants) {
@@ -138,7 +134,7 @@ std::vector<Cell> PublishedRowOf(const PublishedRow& published, const Layout& la
 }
 
 // The published dataset that this one stands above.
-std::string PublishedNameOf(const DatasetResult& dataset) {
+std::string FindPublishedName(const DatasetResult& dataset) {
   return dataset.facts.published.empty() ? dataset.name : dataset.facts.published;
 }
 
@@ -149,8 +145,8 @@ void AddDatasetRows(const std::vector<DatasetResult>& datasets, const PublishedT
   const auto add_measured = [&](const DatasetResult& dataset) {
     const size_t rows = table->rows.size();
     for (const RowKind& kind : layout.row_kinds) {
-      const Means means = MeansOf(dataset, layout, kind);
-      if (CountOf(means) == 0) continue;
+      const Means means = CollectMeans(dataset, layout, kind);
+      if (CountMeans(means) == 0) continue;
       table->rows.push_back(MeasuredRow(dataset.name, kind.title, means, layout, dataset.facts));
     }
     return table->rows.size() > rows;
@@ -160,15 +156,15 @@ void AddDatasetRows(const std::vector<DatasetResult>& datasets, const PublishedT
   if (published) published_rows = published->rows;
   for (const PublishedRow& row : published_rows) {
     for (const DatasetResult& dataset : datasets) {
-      if (PublishedNameOf(dataset) != row.dataset || !add_measured(dataset)) continue;
+      if (FindPublishedName(dataset) != row.dataset || !add_measured(dataset)) continue;
       const std::string words = DifferencesInWords(dataset.facts);
       if (!words.empty()) differences.push_back(fmt::format("{} ({})", dataset.name, words));
     }
-    table->rows.push_back(PublishedRowOf(row, layout));
+    table->rows.push_back(MakePublishedRow(row, layout));
   }
   for (const DatasetResult& dataset : datasets) {
     const auto row =
-        std::ranges::find(published_rows, PublishedNameOf(dataset), &PublishedRow::dataset);
+        std::ranges::find(published_rows, FindPublishedName(dataset), &PublishedRow::dataset);
     if (row == published_rows.end()) add_measured(dataset);
   }
   if (!differences.empty()) {
@@ -224,7 +220,7 @@ void AddAverage(const std::vector<DatasetResult>& datasets, const Layout& layout
   std::vector<Means> all;
   Means any(layout.variants.size());
   for (const DatasetResult& dataset : datasets) {
-    all.push_back(MeansOf(dataset, layout, kind));
+    all.push_back(CollectMeans(dataset, layout, kind));
     for (size_t i = 0; i < any.size(); ++i) {
       if (all.back()[i]) any[i] = all.back()[i];
     }
@@ -232,7 +228,7 @@ void AddAverage(const std::vector<DatasetResult>& datasets, const Layout& layout
   std::vector<std::string> names;
   std::vector<std::vector<ObjectMean>> columns(any.size());
   for (size_t k = 0; k < datasets.size(); ++k) {
-    if (CountOf(all[k]) == 0 || CountOf(all[k]) < CountOf(any)) continue;
+    if (CountMeans(all[k]) == 0 || CountMeans(all[k]) < CountMeans(any)) continue;
     names.push_back(datasets[k].name);
     for (size_t i = 0; i < any.size(); ++i) {
       if (any[i]) columns[i].push_back(*all[k][i]);
@@ -266,7 +262,7 @@ std::vector<Table> PaperTables(const std::vector<DatasetResult>& datasets,
   std::vector<Table> tables;
   for (const Layout& layout : kLayouts) {
     const bool is_measured = std::ranges::any_of(datasets, [&](const DatasetResult& dataset) {
-      return CountOf(MeansOf(dataset, layout, layout.row_kinds.front())) > 0;
+      return CountMeans(CollectMeans(dataset, layout, layout.row_kinds.front())) > 0;
     });
     if (!is_measured) continue;
     Table table = {layout.name,
@@ -281,7 +277,7 @@ std::vector<Table> PaperTables(const std::vector<DatasetResult>& datasets,
     for (const RowKind& kind : layout.row_kinds) AddAverage(datasets, layout, kind, &table);
     AddDetectorRow(datasets, layout, &table);
     if (paper) {
-      table.rows.push_back(PublishedRowOf(paper->average, layout));
+      table.rows.push_back(MakePublishedRow(paper->average, layout));
       table.notes.push_back(fmt::format("Published: {}{}{}.", paper->source,
                                         published.protocol.empty() ? "" : ": ",
                                         published.protocol));

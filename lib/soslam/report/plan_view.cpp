@@ -18,7 +18,7 @@ namespace {
 using Points = std::vector<Eigen::Vector2d>;
 using Rectangle = cv::Rect2d;  // px
 
-Eigen::AlignedBox2d BoundsOf(const Points& points) {
+Eigen::AlignedBox2d FindBounds(const Points& points) {
   Eigen::AlignedBox2d bounds;
   for (const Eigen::Vector2d& point : points) bounds.extend(point);
   return bounds;
@@ -107,12 +107,12 @@ struct Screen {
   }
 };
 
-Screen ScreenOf(const PlanView& plan, const PlanFormat& format) {
+Screen FitScreen(const PlanView& plan, const PlanFormat& format) {
   Points all = plan.cameras;
   for (const PlanObject& object : plan.objects) {
     all.insert(all.end(), object.footprint.begin(), object.footprint.end());
   }
-  const Eigen::AlignedBox2d bounds = BoundsOf(all);
+  const Eigen::AlignedBox2d bounds = FindBounds(all);
   const Eigen::Vector2d size = bounds.sizes().cwiseMax(1e-9);
   const Eigen::Vector2d room =
       Eigen::Vector2d(format.width, format.max_height).array() - 2.0 * format.margin;
@@ -198,7 +198,7 @@ struct Leader {
   }
 };
 
-Leader LeaderOf(const Rectangle& footprint, const Rectangle& card) {
+Leader MakeLeader(const Rectangle& footprint, const Rectangle& card) {
   const cv::Point2d from = 0.5 * (footprint.tl() + footprint.br());
   return {from, {std::clamp(from.x, card.x, card.br().x), std::clamp(from.y, card.y, card.br().y)}};
 }
@@ -224,7 +224,7 @@ Rectangle FreePlace(const Rectangle& footprint, const cv::Size2d& size, const Sc
                            std::max(whole.x, whole.br().x - size.width));
       place.y = std::clamp(place.y + distance * std::sin(angle), whole.y,
                            std::max(whole.y, whole.br().y - size.height));
-      const Leader own = LeaderOf(footprint, place);
+      const Leader own = MakeLeader(footprint, place);
       const bool is_crossed =
           std::ranges::any_of(cards, [&](const auto& card) { return own.Crosses(card); }) ||
           std::ranges::any_of(leaders, [&](const auto& leader) { return leader.Crosses(place); });
@@ -243,7 +243,7 @@ Rectangle FreePlace(const Rectangle& footprint, const cv::Size2d& size, const Sc
 }
 
 // Width by height of the picture on a card.
-double AspectOf(const PlanObject& object) { return std::clamp(object.picture_aspect, 0.5, 1.6); }
+double ClampAspect(const PlanObject& object) { return std::clamp(object.picture_aspect, 0.5, 1.6); }
 
 // Cards of all objects, names with pictures of this height above them; the area of the cards, and
 // that which two of them share.
@@ -265,7 +265,7 @@ CardLayout LayOut(const PlanView& plan, const Screen& screen, const PlanFormat& 
   std::vector<Rectangle> footprints, taken = {{0.0, screen.height - 3.0 * format.font,
                                                bar + 2.0 * format.font, 3.0 * format.font}};
   for (const PlanObject& object : plan.objects) {
-    footprints.push_back(AsRectangle(BoundsOf(screen.Place(object.footprint))));
+    footprints.push_back(AsRectangle(FindBounds(screen.Place(object.footprint))));
   }
   CardLayout layout{picture_height};
   std::vector<Leader> leaders;
@@ -274,14 +274,14 @@ CardLayout LayOut(const PlanView& plan, const Screen& screen, const PlanFormat& 
     const double height = layout.HeightOn(object);
     const double text =
         kWidthOfLetter * format.font * static_cast<double>(Shortened(object.name).size());
-    const cv::Size2d size(std::max(text, height * AspectOf(object)) + kGap,
+    const cv::Size2d size(std::max(text, height * ClampAspect(object)) + kGap,
                           height + 1.3 * format.font + kGap);
     const Rectangle card = FreePlace(footprints[i], size, screen, taken, leaders, footprints);
     layout.area += card.area();
     layout.overlap += SharedArea(card, taken);
     layout.cards.push_back(card);
     taken.push_back(card);
-    leaders.push_back(LeaderOf(footprints[i], card));
+    leaders.push_back(MakeLeader(footprints[i], card));
   }
   return layout;
 }
@@ -289,7 +289,7 @@ CardLayout LayOut(const PlanView& plan, const Screen& screen, const PlanFormat& 
 }  // namespace
 
 std::string PlanSvg(const PlanView& plan, const PlanFormat& format) {
-  const Screen screen = ScreenOf(plan, format);
+  const Screen screen = FitScreen(plan, format);
   constexpr double kMaxShareOfCards = 0.3;  // of the plan, which is to be seen as well
   CardLayout layout;
   for (const double height : format.picture_heights) {
@@ -308,7 +308,7 @@ std::string PlanSvg(const PlanView& plan, const PlanFormat& format) {
                             PointsText(screen.Place(object.front)));
     }
     const Rectangle& card = layout.cards[i];
-    const auto& [from, to] = LeaderOf(AsRectangle(BoundsOf(footprint)), card);
+    const auto& [from, to] = MakeLeader(AsRectangle(FindBounds(footprint)), card);
     if (cv::norm(to - from) >= 1.0) {
       leaders += fmt::format(
           "<path class=\"leader\" d=\"M{0:.1f} {1:.1f}L{2:.1f} {3:.1f}\"/>\n"
@@ -317,7 +317,7 @@ std::string PlanSvg(const PlanView& plan, const PlanFormat& format) {
     }
     const double middle = card.x + 0.5 * card.width, height = layout.HeightOn(object);
     if (height > 0.0) {
-      const double width = height * AspectOf(object);
+      const double width = height * ClampAspect(object);
       pictures += fmt::format(
           "<use href=\"#{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>\n",
           object.picture, middle - 0.5 * width, card.y, width, height);

@@ -17,25 +17,6 @@ constexpr std::string_view kBegin = "<!-- table: ";
 constexpr std::string_view kEnd = "<!-- end";
 constexpr std::string_view kClose = " -->";
 
-std::string NameIn(const std::string& line) {
-  const size_t close = line.find(kClose, kBegin.size());
-  return line.substr(kBegin.size(), close == line.npos ? line.npos : close - kBegin.size());
-}
-
-// The lines of the table with this name: its content and what ends it.
-std::string LinesOf(const std::string& name, const std::vector<Table>& tables,
-                    const std::string& page_name) {
-  const auto table = std::ranges::find(tables, name, &Table::name);
-  if (table == tables.end()) {
-    std::vector<std::string> names;
-    for (const Table& known : tables) names.push_back(known.name);
-    throw InputError(fmt::format("{}: no table '{}' in these results; there are {}", page_name,
-                                 name, fmt::join(names, ", ")));
-  }
-  const std::string content = "\n#" + ToMarkdown(*table) + "\n";  // a third-level heading
-  return fmt::format("{}{}: {}{}\n", content, kEnd, Sha256OfText(content), kClose);
-}
-
 }  // namespace
 
 std::string FillPage(const std::string& page, const std::vector<Table>& tables,
@@ -52,17 +33,27 @@ std::string FillPage(const std::string& page, const std::vector<Table>& tables,
     }
     text += line + "\n";
     if (!line.starts_with(kBegin)) continue;
-    const std::string table = NameIn(line);
+    const size_t close = line.find(kClose, kBegin.size());
+    const std::string wanted =
+        line.substr(kBegin.size(), close == line.npos ? line.npos : close - kBegin.size());
     const int first = number;
     while (!line.starts_with(kEnd)) {
       if (!std::getline(lines, line) || line.starts_with(kBegin)) {
         throw InputError(
             fmt::format("{}:{}: table '{}' has no end; expected a line '{}{}' after it", name,
-                        first, table, kEnd, kClose));
+                        first, wanted, kEnd, kClose));
       }
       ++number;
     }
-    text += LinesOf(table, tables, name);
+    const auto table = std::ranges::find(tables, wanted, &Table::name);
+    if (table == tables.end()) {
+      std::vector<std::string> names;
+      for (const Table& known : tables) names.push_back(known.name);
+      throw InputError(fmt::format("{}: no table '{}' in these results; there are {}", name, wanted,
+                                   fmt::join(names, ", ")));
+    }
+    const std::string content = "\n#" + ToMarkdown(*table) + "\n";  // a third-level heading
+    text += fmt::format("{}{}: {}{}\n", content, kEnd, Sha256OfText(content), kClose);
   }
   return text;
 }

@@ -40,7 +40,7 @@ std::string StageOf(const std::string& run) { return run.substr(0, run.rfind('-'
 
 namespace {
 
-std::string FirstLineOf(const fs::path& file) {
+std::string ReadFirstLine(const fs::path& file) {
   std::ifstream stream(file);
   std::string line;
   std::getline(stream, line);
@@ -73,7 +73,7 @@ VariantResult ReadVariant(const fs::path& dataset, const fs::path& folder, Damag
 
 }  // namespace
 
-std::string FailureIn(const fs::path& run_folder) { return FirstLineOf(run_folder / "failed"); }
+std::string FailureIn(const fs::path& run_folder) { return ReadFirstLine(run_folder / "failed"); }
 
 const VariantResult* DatasetResult::Evaluated(const std::string& variant) const {
   const auto found = std::ranges::find_if(variants, [&](const VariantResult& candidate) {
@@ -93,7 +93,7 @@ std::vector<std::string> SubfoldersOf(const fs::path& folder) {
 }
 
 fs::path DatasetFolderOf(const fs::path& results_of_dataset) {
-  return FirstLineOf(results_of_dataset / "shared" / "dataset.txt");
+  return ReadFirstLine(results_of_dataset / "shared" / "dataset.txt");
 }
 
 std::vector<DatasetResult> ReadResults(const fs::path& results, DamagedFiles damaged) {

@@ -16,23 +16,6 @@ namespace {
 constexpr std::array kLandmarkStages = {"edges", "track", "appearance", "initialise", "refine"};
 constexpr const char* kMapStage = "optimise";
 
-std::string MachineNote(const std::vector<DatasetResult>& datasets) {
-  std::set<std::string> machines;
-  for (const DatasetResult& dataset : datasets) {
-    for (const VariantResult& variant : dataset.variants) {
-      for (const StageRun& run : variant.stages) {
-        if (!run.timing) continue;
-        const auto& machine = run.timing->machine;
-        machines.insert(machine ? fmt::format("{}, {} cores, {} threads", machine->cpu,
-                                              machine->cores, run.timing->threads)
-                                : "not recorded");
-      }
-    }
-  }
-  return fmt::format("Measured on: {}. Stages that ran side by side have longer wall times.",
-                     fmt::join(machines, "; "));
-}
-
 // Variants share sequences, which can be large: each is read once.
 void AddMeasuredTimes(const DatasetResult& dataset, Table* table) {
   std::map<std::filesystem::path, SequenceCounts> counts;
@@ -56,22 +39,6 @@ void AddMeasuredTimes(const DatasetResult& dataset, Table* table) {
     is_measured |= time.has_value();
   }
   if (is_measured) table->rows.insert(table->rows.end(), {wall, cpu, observations});
-}
-
-void AddPublishedTimes(const PublishedTimes& published, Table* table) {
-  if (published.values.empty()) return;
-  std::vector<Cell> times = {published.dataset, "published ms"};
-  std::vector<Cell> observations = {published.dataset, "published observations"};
-  for (const char* name : kKnownVariants) {
-    const auto time = std::ranges::find(published.values, name, &PublishedTime::variant);
-    const bool is_published = time != published.values.end();
-    times.emplace_back(is_published ? fmt::format("{:.1f} ± {:.1f}", time->ms_mean, time->ms_sigma)
-                                    : kNoValue);
-    observations.emplace_back(is_published ? fmt::format("{:.1f}", time->observations) : kNoValue);
-  }
-  table->rows.push_back(std::move(times));
-  table->rows.push_back(std::move(observations));
-  table->notes.push_back(fmt::format("Published: {}, on {}.", published.source, published.machine));
 }
 
 }  // namespace
@@ -112,10 +79,37 @@ Table TimeTable(const std::vector<DatasetResult>& datasets, const Published& pub
   for (const char* name : kKnownVariants) table.header.emplace_back(name);
   for (const DatasetResult& dataset : datasets) AddMeasuredTimes(dataset, &table);
   if (table.rows.empty()) return table;
-  table.notes = {MachineNote(datasets),
-                 "Edges, tracks, initialisation and refinement per landmark, of which single-frame "
-                 "variants have one per observation; of maps the back end alone, per object."};
-  AddPublishedTimes(published.times, &table);
+  std::set<std::string> machines;
+  for (const DatasetResult& dataset : datasets) {
+    for (const VariantResult& variant : dataset.variants) {
+      for (const StageRun& run : variant.stages) {
+        if (!run.timing) continue;
+        const auto& machine = run.timing->machine;
+        machines.insert(machine ? fmt::format("{}, {} cores, {} threads", machine->cpu,
+                                              machine->cores, run.timing->threads)
+                                : "not recorded");
+      }
+    }
+  }
+  table.notes = {
+      fmt::format("Measured on: {}. Stages that ran side by side have longer wall times.",
+                  fmt::join(machines, "; ")),
+      "Edges, tracks, initialisation and refinement per landmark, of which single-frame "
+      "variants have one per observation; of maps the back end alone, per object."};
+  const PublishedTimes& times = published.times;
+  if (times.values.empty()) return table;
+  std::vector<Cell> ms = {times.dataset, "published ms"};
+  std::vector<Cell> observations = {times.dataset, "published observations"};
+  for (const char* name : kKnownVariants) {
+    const auto time = std::ranges::find(times.values, name, &PublishedTime::variant);
+    const bool is_published = time != times.values.end();
+    ms.emplace_back(is_published ? fmt::format("{:.1f} ± {:.1f}", time->ms_mean, time->ms_sigma)
+                                 : kNoValue);
+    observations.emplace_back(is_published ? fmt::format("{:.1f}", time->observations) : kNoValue);
+  }
+  table.rows.push_back(std::move(ms));
+  table.rows.push_back(std::move(observations));
+  table.notes.push_back(fmt::format("Published: {}, on {}.", times.source, times.machine));
   return table;
 }
 
