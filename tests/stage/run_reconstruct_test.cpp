@@ -347,6 +347,7 @@ TEST_F(RunReconstructTest, FindingsAreReported) {
     EXPECT_THAT(printed_.errors, HasSubstr(words));
   }
   EXPECT_THAT(printed_.output, HasSubstr("; 2 images in a second component"));
+  EXPECT_EQ(ReadReconstruction(Output("reconstruction.json")).body.components[1].folder, "1");
   EXPECT_THAT(printed_.output, HasSubstr("without a pose, and not used: rgb/more.png\n"));
   EXPECT_THAT(ReadReconstruction(Output("reconstruction.json")).body.images_without_pose,
               testing::ElementsAre("rgb/more.png"));

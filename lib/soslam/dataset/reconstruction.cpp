@@ -108,7 +108,9 @@ std::vector<Finding> CheckReconstruction(const ReconstructionSummary& summary,
                      summary.components.size(), summary.components.front().images, second.images,
                      second.points),
          "one part", "too little overlap between the parts, or images of several places",
-         "take images that connect the parts, or make a dataset of each"});
+         fmt::format("take images that connect the parts, or map the second one by itself: --model "
+                     "takes its folder, \"{}\" beside that of the largest",
+                     second.folder)});
   }
   const auto& angle = summary.median_triangulation_angle_deg;
   if (summary.poses == DataSource::kEstimated && angle && *angle < kAngleDeg) {

@@ -20,6 +20,7 @@ struct ReconstructionSummary {
   struct Component {
     int images = 0;
     int points = 0;
+    std::string folder;  // its name, beside those of the others; empty for a model without others
   };
   int images = 0;      // in the dataset's list
   int registered = 0;  // images with a pose
@@ -38,6 +39,8 @@ template <typename Visitor>
 void Describe(Visitor& visit, ReconstructionSummary::Component& component) {
   visit.Field("images", &component.images, "with a pose", kNotNegative);
   visit.Field("points", &component.points, "number", kNotNegative);
+  visit.OrAbsent("folder", &component.folder,
+                 "name of the model's folder, beside those of the others; absent without others");
 }
 
 template <typename Visitor>

@@ -192,7 +192,8 @@ ColmapModel LargestModel(const std::vector<fs::path>& folders,
   for (const fs::path& folder : folders) {
     ColmapModel model = ReadColmapModel(folder);
     const Component component{static_cast<int>(model.images.size()),
-                              static_cast<int>(model.points.size())};
+                              static_cast<int>(model.points.size()),
+                              folders.size() > 1 ? folder.filename().string() : ""};
     const bool is_largest = components->empty() || is_larger(component, components->front());
     components->insert(is_largest ? components->begin() : components->end(), component);
     if (is_largest) largest = std::move(model);
