@@ -23,9 +23,21 @@ namespace {
 
 constexpr std::int16_t kNone = -1;
 
-// The row of the nearest edge pixel in the same column, the upper one of two, CV_16SC1; kNone in
-// columns without edges.
-cv::Mat NearestEdgeRowInColumn(const cv::Mat& edges) {
+// An edge pixel whose column is the nearest one from pixel `first` of a row on.
+struct Interval {
+  int column = 0;
+  int squared_height = 0;  // squared distance of the edge pixel from the row
+  int first = 0;
+
+  int SquaredDistanceAt(int x) const { return (x - column) * (x - column) + squared_height; }
+};
+
+}  // namespace
+
+cv::Mat NearestEdgeMap(const cv::Mat& edges) {
+  CV_Assert(edges.type() == CV_8UC1 && edges.cols <= 32767 && edges.rows <= 32767);
+  // The row of the nearest edge pixel in the same column, the upper one of two; kNone in columns
+  // without edges.
   cv::Mat nearest_row(edges.size(), CV_16SC1, cv::Scalar(kNone));
   std::vector<int> last(static_cast<size_t>(edges.cols), kNone);  // edge row seen last, by column
   for (int y = 0; y < edges.rows; ++y) {
@@ -42,56 +54,33 @@ cv::Mat NearestEdgeRowInColumn(const cv::Mat& edges) {
       if (below > y && (above == kNone || below - y < y - above)) above = below;
     }
   }
-  return nearest_row;
-}
-
-// An edge pixel whose column is the nearest one from pixel `first` of a row on.
-struct Interval {
-  int column = 0;
-  int squared_height = 0;  // squared distance of the edge pixel from the row
-  int first = 0;
-
-  int SquaredDistanceAt(int x) const { return (x - column) * (x - column) + squared_height; }
-};
-
-// The first pixel that is nearer to the right interval's edge pixel than to the left one's.
-int FirstNearerToRight(const Interval& left, const Interval& right) {
-  const int twice_apart = 2 * (right.column - left.column);
-  const int difference = right.SquaredDistanceAt(0) - left.SquaredDistanceAt(0);
-  const int quotient = difference / twice_apart;
-  const bool is_rounded_up = difference % twice_apart < 0;
-  return 1 + quotient - (is_rounded_up ? 1 : 0);
-}
-
-// The nearest edge pixels of row y, from those of its columns.
-void NearestEdgesOfRow(const cv::Mat& nearest_row, int y, cv::Mat* nearest_edge) {
-  std::vector<Interval> intervals;  // from left to right
-  for (int u = 0; u < nearest_row.cols; ++u) {
-    const int row = nearest_row.at<std::int16_t>(y, u);
-    if (row == kNone) continue;
-    Interval next{u, (row - y) * (row - y), 0};
-    while (!intervals.empty() && intervals.back().SquaredDistanceAt(intervals.back().first) >
-                                     next.SquaredDistanceAt(intervals.back().first)) {
-      intervals.pop_back();
-    }
-    if (!intervals.empty()) next.first = FirstNearerToRight(intervals.back(), next);
-    if (next.first < nearest_row.cols) intervals.push_back(next);
-  }
-  for (int x = nearest_row.cols - 1; x >= 0 && !intervals.empty(); --x) {
-    const int column = intervals.back().column;
-    nearest_edge->at<cv::Vec2s>(y, x) = {static_cast<std::int16_t>(column),
-                                         nearest_row.at<std::int16_t>(y, column)};
-    if (x == intervals.back().first) intervals.pop_back();
-  }
-}
-
-}  // namespace
-
-cv::Mat NearestEdgeMap(const cv::Mat& edges) {
-  CV_Assert(edges.type() == CV_8UC1 && edges.cols <= 32767 && edges.rows <= 32767);
   cv::Mat nearest_edge(edges.size(), CV_16SC2, cv::Scalar(kNone, kNone));
-  const cv::Mat nearest_row = NearestEdgeRowInColumn(edges);
-  for (int y = 0; y < edges.rows; ++y) NearestEdgesOfRow(nearest_row, y, &nearest_edge);
+  for (int y = 0; y < edges.rows; ++y) {
+    std::vector<Interval> intervals;  // from left to right
+    for (int u = 0; u < edges.cols; ++u) {
+      const int row = nearest_row.at<std::int16_t>(y, u);
+      if (row == kNone) continue;
+      Interval next{u, (row - y) * (row - y), 0};
+      while (!intervals.empty() && intervals.back().SquaredDistanceAt(intervals.back().first) >
+                                       next.SquaredDistanceAt(intervals.back().first)) {
+        intervals.pop_back();
+      }
+      if (!intervals.empty()) {
+        const Interval& left = intervals.back();
+        const int twice_apart = 2 * (next.column - left.column);
+        const int difference = next.SquaredDistanceAt(0) - left.SquaredDistanceAt(0);
+        const bool is_rounded_up = difference % twice_apart < 0;
+        next.first = 1 + difference / twice_apart - (is_rounded_up ? 1 : 0);
+      }
+      if (next.first < edges.cols) intervals.push_back(next);
+    }
+    for (int x = edges.cols - 1; x >= 0 && !intervals.empty(); --x) {
+      const int column = intervals.back().column;
+      nearest_edge.at<cv::Vec2s>(y, x) = {static_cast<std::int16_t>(column),
+                                          nearest_row.at<std::int16_t>(y, column)};
+      if (x == intervals.back().first) intervals.pop_back();
+    }
+  }
   return nearest_edge;
 }
 

@@ -21,7 +21,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr double kElsewherePx = 8.0;
 
 // Rounding errors of a translation, such as that of a camera that only turns.
-double RoundingOf(const Eigen::Vector3d& place) { return 1e-9 * (1.0 + place.norm()); }
+double BoundRounding(const Eigen::Vector3d& place) { return 1e-9 * (1.0 + place.norm()); }
 
 // One row per feature.
 using Coordinates = Eigen::Array<float, Eigen::Dynamic, 2>;
@@ -63,7 +63,7 @@ class TwoViewGeometry {
     const Eigen::Matrix3d second_ray_from_pixel = second.camera.Intrinsics().inverse();
     const Eigen::Matrix3d homography = second.camera.Intrinsics() * rotation * first_ray_from_pixel;
     translation_ = second_from_first.translation;
-    only_turns_ = translation_.norm() <= RoundingOf(first.world_from_camera.translation);
+    only_turns_ = translation_.norm() <= BoundRounding(first.world_from_camera.translation);
     at_infinity_ = Moved(homography, first.features.pixels);
     if (only_turns_) {
       back_at_infinity_ = Moved(homography.inverse(), second.features.pixels);
@@ -130,31 +130,6 @@ struct Candidate {
   int distance;
 };
 
-std::vector<Candidate> FindCandidates(const FeatureView& first, const FeatureView& second,
-                                      double max_epipolar_px) {
-  const TwoViewGeometry geometry(first, second);
-  const ImageFeatures::Descriptors& first_descriptors = first.features.descriptors;
-  const ImageFeatures::Descriptors& second_descriptors = second.features.descriptors;
-  const auto max_px = static_cast<float>(max_epipolar_px);
-  std::vector<Candidate> candidates;
-  Eigen::ArrayXf distances;
-  for (int i = 0; i < static_cast<int>(first_descriptors.cols()); ++i) {
-    geometry.Distances(i, &distances);
-    for (int j = 0; j < static_cast<int>(distances.size()); ++j) {
-      if (!(distances[j] <= max_px) || !geometry.MeetInFront(i, j, max_epipolar_px)) continue;
-      const std::uint8_t* const a = first_descriptors.col(i).data();
-      const std::uint8_t* const b = second_descriptors.col(j).data();
-      int sum = 0;
-      for (int k = 0; k < ImageFeatures::Descriptors::RowsAtCompileTime; ++k) {
-        const int difference = a[k] - b[k];
-        sum += difference * difference;
-      }
-      candidates.push_back({i, j, sum});
-    }
-  }
-  return candidates;
-}
-
 // For each feature of one view its best candidate, null where it has none, and how good the best
 // one elsewhere is, more than kElsewherePx away.
 struct BestCandidates {
@@ -194,7 +169,7 @@ bool HasOnePoint(const FeatureTrack& track, const std::vector<FeatureView>& view
   for (const FeatureTrack::Place& place : track.places) {
     spread = std::max(spread, (views[place.image].world_from_camera.translation - origin).norm());
   }
-  const bool only_turns = spread <= RoundingOf(origin);
+  const bool only_turns = spread <= BoundRounding(origin);
   const double unit = only_turns ? 1.0 : spread;
   Eigen::Matrix4d normal_matrix = Eigen::Matrix4d::Zero();
   if (only_turns) normal_matrix(3, 3) = 1.0;  // all points are at infinity
@@ -256,7 +231,26 @@ ImageFeatures FindFeatures(const cv::Mat& grey, const MatchOptions& options) {
 
 std::vector<FeatureMatch> MatchFeatures(const FeatureView& first, const FeatureView& second,
                                         const MatchOptions& options) {
-  const std::vector<Candidate> candidates = FindCandidates(first, second, options.max_epipolar_px);
+  const TwoViewGeometry geometry(first, second);
+  const auto max_px = static_cast<float>(options.max_epipolar_px);
+  std::vector<Candidate> candidates;
+  Eigen::ArrayXf distances;
+  for (int i = 0; i < static_cast<int>(first.features.descriptors.cols()); ++i) {
+    geometry.Distances(i, &distances);
+    for (int j = 0; j < static_cast<int>(distances.size()); ++j) {
+      if (!(distances[j] <= max_px) || !geometry.MeetInFront(i, j, options.max_epipolar_px)) {
+        continue;
+      }
+      const std::uint8_t* const a = first.features.descriptors.col(i).data();
+      const std::uint8_t* const b = second.features.descriptors.col(j).data();
+      int sum = 0;
+      for (int k = 0; k < ImageFeatures::Descriptors::RowsAtCompileTime; ++k) {
+        const int difference = a[k] - b[k];
+        sum += difference * difference;
+      }
+      candidates.push_back({i, j, sum});
+    }
+  }
   const Eigen::Matrix2Xd &first_pixels = first.features.pixels,
                          &second_pixels = second.features.pixels;
   const BestCandidates of_first = FindBest(candidates, &Candidate::first, first_pixels.cols(),

@@ -7,22 +7,6 @@
 #include <opencv2/video/tracking.hpp>
 
 namespace soslam {
-namespace {
-
-std::vector<cv::Point2f> Moved(const std::vector<cv::Point2f>& points,
-                               const Eigen::Matrix3d& homography) {
-  std::vector<cv::Point2f> moved;
-  for (const cv::Point2f& point : points) {
-    const Eigen::Vector3d target = homography * Eigen::Vector3d(point.x, point.y, 1.0);
-    const bool is_in_front = target.z() > 0.0;
-    moved.push_back(is_in_front ? cv::Point2f(static_cast<float>(target.x() / target.z()),
-                                              static_cast<float>(target.y() / target.z()))
-                                : point);
-  }
-  return moved;
-}
-
-}  // namespace
 
 void FeatureTracker::Add(const cv::Mat& grey, const Eigen::Matrix3d& pixel_from_last_pixel,
                          const cv::Mat& mask) {
@@ -44,7 +28,14 @@ void FeatureTracker::Follow(const std::vector<cv::Mat>& pyramid,
                             const Eigen::Matrix3d& pixel_from_last_pixel, const cv::Mat& mask) {
   const cv::TermCriteria settled(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 30, 0.01);
   const cv::Size window(options_.window_px, options_.window_px);
-  std::vector<cv::Point2f> forward = Moved(last_points_, pixel_from_last_pixel);
+  std::vector<cv::Point2f> forward;
+  for (const cv::Point2f& point : last_points_) {
+    const Eigen::Vector3d target = pixel_from_last_pixel * Eigen::Vector3d(point.x, point.y, 1.0);
+    const bool is_in_front = target.z() > 0.0;
+    forward.push_back(is_in_front ? cv::Point2f(static_cast<float>(target.x() / target.z()),
+                                                static_cast<float>(target.y() / target.z()))
+                                  : point);
+  }
   std::vector<cv::Point2f> back = last_points_;
   std::vector<uchar> is_forward, is_back;
   cv::calcOpticalFlowPyrLK(last_pyramid_, pyramid, last_points_, forward, is_forward, cv::noArray(),

@@ -40,15 +40,23 @@ constexpr Signature kSignatures[] = {
 constexpr const char* kJson = "JSON";
 constexpr const char* kXml = "XML";
 
-// Kinds with "ftyp" after the size of their first box (ISO/IEC 14496-12).
-std::string KindOfBoxes(std::string_view brand) {
-  for (const auto& image : {"heic"sv, "heix"sv, "mif1"sv, "msf1"sv, "avif"sv}) {
-    if (brand == image) return "an HEIF image (HEIC, AVIF)";
-  }
-  return "a video (MP4, MOV)";
-}
+}  // namespace
 
-std::string KindOfText(std::string_view first_bytes) {
+std::string FileKind(std::string_view first_bytes) {
+  first_bytes = first_bytes.substr(0, kFileKindSize);
+  for (const auto& [bytes, kind] : kSignatures) {
+    if (first_bytes.starts_with(bytes)) return kind;
+  }
+  if (first_bytes.size() >= 12 && first_bytes.substr(4, 4) == "ftyp") {
+    // The brand after the size and name of the first box (ISO/IEC 14496-12).
+    for (const auto& image : {"heic"sv, "heix"sv, "mif1"sv, "msf1"sv, "avif"sv}) {
+      if (first_bytes.substr(8, 4) == image) return "an HEIF image (HEIC, AVIF)";
+    }
+    return "a video (MP4, MOV)";
+  }
+  const ImageFormat* const image = FindImageFormat(first_bytes.substr(0, kSignatureSize));
+  const bool may_be_text = image == &kBmpFormat && first_bytes.find('\0') == first_bytes.npos;
+  if (image != nullptr && !may_be_text) return fmt::format("a {} image", image->name);
   if (first_bytes.starts_with("\xEF\xBB\xBF"sv)) first_bytes.remove_prefix(3);
   const size_t begin = first_bytes.find_first_not_of(" \t\r\n");
   if (begin == first_bytes.npos) return "";
@@ -59,22 +67,6 @@ std::string KindOfText(std::string_view first_bytes) {
   // Annotations of images often have no declaration.
   if (text.starts_with("<?xml") || text.starts_with("<annotation")) return kXml;
   return text.front() == '{' || text.front() == '[' ? kJson : "";
-}
-
-}  // namespace
-
-std::string FileKind(std::string_view first_bytes) {
-  first_bytes = first_bytes.substr(0, kFileKindSize);
-  for (const auto& [bytes, kind] : kSignatures) {
-    if (first_bytes.starts_with(bytes)) return kind;
-  }
-  if (first_bytes.size() >= 12 && first_bytes.substr(4, 4) == "ftyp") {
-    return KindOfBoxes(first_bytes.substr(8, 4));
-  }
-  const ImageFormat* const image = FindImageFormat(first_bytes.substr(0, kSignatureSize));
-  const bool may_be_text = image == &kBmpFormat && first_bytes.find('\0') == first_bytes.npos;
-  if (image != nullptr && !may_be_text) return fmt::format("a {} image", image->name);
-  return KindOfText(first_bytes);
 }
 
 std::string KindOfFile(const std::filesystem::path& path) {

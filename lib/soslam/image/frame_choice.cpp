@@ -25,14 +25,6 @@ cv::Mat ScaledDown(const cv::Mat& image, int longer_side) {
 
 namespace {
 
-double VarianceOfLaplacian(const cv::Mat& grey) {
-  cv::Mat laplacian;
-  cv::Laplacian(grey, laplacian, CV_16S);
-  cv::Scalar mean, deviation;
-  cv::meanStdDev(laplacian, mean, deviation);
-  return deviation[0] * deviation[0];
-}
-
 using Points = cv::Mat_<cv::Point2f>;
 
 // The points in the other image; `found` has a zero for those that are lost.
@@ -48,7 +40,11 @@ Points Track(const cv::Mat& from, const cv::Mat& to, const Points& points,
 FrameView ViewOf(const cv::Mat& grey) {
   constexpr int kSharpnessSide = 640, kTrackingSide = 240;
   const cv::Mat medium = ScaledDown(grey, kSharpnessSide);
-  return {VarianceOfLaplacian(medium), ScaledDown(medium, kTrackingSide).clone()};
+  cv::Mat laplacian;
+  cv::Laplacian(medium, laplacian, CV_16S);
+  cv::Scalar mean, deviation;
+  cv::meanStdDev(laplacian, mean, deviation);
+  return {deviation[0] * deviation[0], ScaledDown(medium, kTrackingSide).clone()};
 }
 
 MotionTracker::MotionTracker(const cv::Mat& small) : small_(small) {
@@ -85,26 +81,6 @@ void DistinctFrames::Add(FrameCandidate candidate) {
   }
 }
 
-namespace {
-
-// True for candidates that are clearly less sharp than those before and after.
-std::vector<bool> AreBlurred(const std::vector<FrameCandidate>& candidates, double min_sharpness) {
-  constexpr size_t kNeighbours = 5;  // on each side
-  std::vector<bool> are_blurred;
-  for (size_t i = 0; i < candidates.size(); ++i) {
-    std::vector<double> around;
-    const size_t end = std::min(candidates.size(), i + kNeighbours + 1);
-    for (size_t j = i < kNeighbours ? 0 : i - kNeighbours; j < end; ++j) {
-      around.push_back(candidates[j].view.sharpness);
-    }
-    are_blurred.push_back(candidates[i].view.sharpness <
-                          min_sharpness * UpperMedian(std::move(around)));
-  }
-  return are_blurred;
-}
-
-}  // namespace
-
 // Larger steps leave less of a camera that was held still by hand than equal parts would; equal
 // parts then give the exact number.
 std::vector<FrameCandidate> FrameSelector::Thinned(std::vector<FrameCandidate> candidates) const {
@@ -132,12 +108,18 @@ std::vector<FrameCandidate> FrameSelector::Thinned(std::vector<FrameCandidate> c
 std::vector<std::optional<FrameRejection>> FrameSelector::Choose() const {
   std::vector<std::optional<FrameRejection>> reasons(count_, FrameRejection::kNoMotion);
   const std::vector<FrameCandidate>& distinct = distinct_.sharpest();
-  const std::vector<bool> are_blurred = AreBlurred(distinct, options_.min_sharpness);
+  constexpr size_t kNeighbours = 5;  // on each side
   std::vector<FrameCandidate> sharp;
   for (size_t i = 0; i < distinct.size(); ++i) {
-    reasons[distinct[i].frame] =
-        are_blurred[i] ? FrameRejection::kBlurred : FrameRejection::kOverLimit;
-    if (!are_blurred[i]) sharp.push_back(distinct[i]);
+    std::vector<double> around;
+    const size_t end = std::min(distinct.size(), i + kNeighbours + 1);
+    for (size_t j = i < kNeighbours ? 0 : i - kNeighbours; j < end; ++j) {
+      around.push_back(distinct[j].view.sharpness);
+    }
+    const bool is_blurred =
+        distinct[i].view.sharpness < options_.min_sharpness * UpperMedian(std::move(around));
+    reasons[distinct[i].frame] = is_blurred ? FrameRejection::kBlurred : FrameRejection::kOverLimit;
+    if (!is_blurred) sharp.push_back(distinct[i]);
   }
   for (const FrameCandidate& chosen : Thinned(std::move(sharp))) {
     reasons[chosen.frame] = std::nullopt;

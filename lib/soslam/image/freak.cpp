@@ -62,17 +62,11 @@ double FieldCovariance(const Eigen::Vector2d& offset, double variance) {
 
 using FieldPair = std::pair<int, int>;
 
-std::vector<FieldPair> AllPairs() {
-  std::vector<FieldPair> pairs;
-  for (int i = 1; i < kFields; ++i) {
-    for (int j = 0; j < i; ++j) pairs.emplace_back(i, j);
-  }
-  return pairs;
-}
-
-// Correlations between the differences of all pairs in natural images. Rounded, so that pairs that
-// the symmetry of the retina makes equal are equal.
-Eigen::MatrixXd Correlations(const std::vector<FieldPair>& pairs) {
+// The authors learn the pairs from images: of the pairs whose bits have a mean near 1/2, one after
+// the other is taken that correlates least with those taken before. Here the images are natural
+// ones in the mean: all bits then have a mean of 1/2, and the correlations of their differences
+// are known. The first pair is the outermost, the first of equal ones is taken.
+std::vector<FieldPair> SelectPairs() {
   const Retina retina = MakeRetina();
   Eigen::MatrixXd fields(kFields, kFields);
   for (int i = 0; i < kFields; ++i) {
@@ -82,28 +76,24 @@ Eigen::MatrixXd Correlations(const std::vector<FieldPair>& pairs) {
       fields(i, j) = FieldCovariance(retina[i].offset - retina[j].offset, variance);
     }
   }
-  const auto count = static_cast<Eigen::Index>(pairs.size());
+  std::vector<FieldPair> all;
+  for (int i = 1; i < kFields; ++i) {
+    for (int j = 0; j < i; ++j) all.emplace_back(i, j);
+  }
+  const auto count = static_cast<Eigen::Index>(all.size());
   Eigen::MatrixXd difference = Eigen::MatrixXd::Zero(count, kFields);
   for (Eigen::Index k = 0; k < count; ++k) {
-    difference(k, pairs[k].first) = 1.0;
-    difference(k, pairs[k].second) = -1.0;
+    difference(k, all[k].first) = 1.0;
+    difference(k, all[k].second) = -1.0;
   }
   const Eigen::MatrixXd covariances = difference * fields * difference.transpose();
   const Eigen::VectorXd scale = covariances.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd correlations = scale.asDiagonal() * covariances * scale.asDiagonal();
+  Eigen::MatrixXd correlations = scale.asDiagonal() * covariances * scale.asDiagonal();
+  // Rounded, so that pairs that the symmetry of the retina makes equal are equal.
   constexpr double kRounding = 1e6;
-  return (correlations.array() * kRounding).round() / kRounding;
-}
-
-// The authors learn the pairs from images: of the pairs whose bits have a mean near 1/2, one after
-// the other is taken that correlates least with those taken before. Here the images are natural
-// ones in the mean: all bits then have a mean of 1/2, and the correlations of their differences
-// are known. The first pair is the outermost, the first of equal ones is taken.
-std::vector<FieldPair> SelectPairs() {
-  const std::vector<FieldPair> all = AllPairs();
-  const Eigen::MatrixXd correlations = Correlations(all);
+  correlations = (correlations.array() * kRounding).round() / kRounding;
   std::vector<FieldPair> selected;
-  Eigen::VectorXd largest = Eigen::VectorXd::Zero(correlations.rows());
+  Eigen::VectorXd largest = Eigen::VectorXd::Zero(count);
   while (selected.size() < FreakBits().size()) {
     Eigen::Index next = 0;
     largest.minCoeff(&next);

@@ -10,20 +10,6 @@
 #include "soslam/base/text.h"
 
 namespace soslam {
-namespace {
-
-using namespace std::string_view_literals;
-
-// Begin of RAW photos that are no TIFF files: RAF, ORF (three), RW2, CRW, X3F, MRW.
-bool HasSignatureOfRawPhoto(std::string_view first_bytes) {
-  constexpr std::string_view kSignatures[] = {"FUJIFILMCCD"sv, "IIRO"sv,  "IIRS"sv,
-                                              "MMOR"sv,        "IIU\0"sv, "II\x1a\0\0\0HEAP"sv,
-                                              "FOVb"sv,        "\0MRM"sv};
-  return std::ranges::any_of(
-      kSignatures, [&](std::string_view signature) { return first_bytes.starts_with(signature); });
-}
-
-}  // namespace
 
 bool HasNameOfRawPhoto(const std::filesystem::path& path) {
   static const std::set<std::string> kExtensions = {
@@ -39,9 +25,16 @@ bool IsRawPhoto(const std::filesystem::path& path) {
 
 std::optional<OtherContent> FindOtherContent(const std::filesystem::path& path,
                                              const ImageBytes& file) {
+  using namespace std::string_view_literals;
+  // Begin of RAW photos that are no TIFF files: RAF, ORF (three), RW2, CRW, X3F, MRW.
+  constexpr std::string_view kSignatures[] = {"FUJIFILMCCD"sv, "IIRO"sv,  "IIRS"sv,
+                                              "MMOR"sv,        "IIU\0"sv, "II\x1a\0\0\0HEAP"sv,
+                                              "FOVb"sv,        "\0MRM"sv};
   const std::string first_bytes = file.UpTo(0, kSignatureSize);
+  const bool has_signature = std::ranges::any_of(
+      kSignatures, [&](std::string_view signature) { return first_bytes.starts_with(signature); });
   const bool is_cr3 = first_bytes.ends_with("ftypcrx ");
-  if (HasNameOfRawPhoto(path) || HasSignatureOfRawPhoto(first_bytes) || is_cr3) {
+  if (HasNameOfRawPhoto(path) || has_signature || is_cr3) {
     return OtherContent::kRawPhoto;
   }
   const ImageFormat* format = FindImageFormat(first_bytes);

@@ -15,31 +15,12 @@ constexpr std::uint64_t kFill = 0xFF;
 constexpr ByteOrder kOrder = ByteOrder::kBigEndian;
 constexpr int kMaxSegments = 1 << 16;
 
-// True for segments that begin a frame, SOF0 to SOF15; DHT, JPG and DAC lie between them.
-bool BeginsFrame(std::uint64_t marker) {
-  return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
-}
-
 // True for markers that no length follows: stuffing, TEM, RST0 to RST7, SOI, EOI.
 bool StandsAlone(std::uint64_t marker) {
   return marker <= 0x01 || (marker >= 0xD0 && marker <= 0xD9);
 }
 
-// True for segments that may follow coded data: tables, the next scan, application data.
-bool MayFollowScan(std::uint64_t marker) {
-  return marker == 0xC4 || marker == 0xCC || (marker >= 0xDA && marker <= 0xDD) ||
-         (marker >= 0xE0 && marker <= 0xEF) || marker == 0xFE;
-}
-
 bool IsJpeg(std::string_view first_bytes) { return first_bytes.starts_with("\xff\xd8\xff"sv); }
-
-std::optional<std::string> ExifInSegment(const ImageBytes& file, std::uint64_t begin,
-                                         size_t length) {
-  constexpr std::string_view kName = "Exif\0\0"sv;
-  const std::string data = file.UpTo(begin + 4, length - 2);
-  if (!data.starts_with(kName)) return std::nullopt;
-  return data.substr(kName.size());
-}
 
 // Reads the segments before the first scan. No marker without a length belongs there, but decoders
 // skip such markers.
@@ -61,11 +42,16 @@ std::optional<ImageHeader> Header(const ImageBytes& file) {
     }
     const std::uint64_t length = number(2, 2);
     if (marker == kStartOfScan || StandsAlone(marker) || length < 2) break;
-    if (BeginsFrame(marker) && !size && head.size() == 9) {
+    // Frames begin with SOF0 to SOF15; DHT, JPG and DAC lie between them.
+    const bool begins_frame =
+        marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
+    if (begins_frame && !size && head.size() == 9) {
       size = {static_cast<std::int64_t>(number(7, 2)), static_cast<std::int64_t>(number(5, 2))};
     }
     if (marker == kApp1 && !orientation) {
-      if (auto data = ExifInSegment(file, begin, length)) exif = std::move(*data);
+      constexpr std::string_view kName = "Exif\0\0"sv;
+      const std::string data = file.UpTo(begin + 4, length - 2);
+      if (data.starts_with(kName)) exif = data.substr(kName.size());
       orientation = ExifOrientation(exif);
     }
     begin += 2 + length;
@@ -88,8 +74,12 @@ std::optional<size_t> Length(std::string_view file) {
     } else if (StandsAlone(marker)) {
       begin += 2;
     } else {
+      // Tables, the next scan and application data may follow coded data.
+      const bool may_follow_scan = marker == 0xC4 || marker == 0xCC ||
+                                   (marker >= 0xDA && marker <= 0xDD) ||
+                                   (marker >= 0xE0 && marker <= 0xEF) || marker == 0xFE;
       const bool is_there = begin + 4 <= file.size();
-      if (!is_there || (is_after_scan && !MayFollowScan(marker))) return std::nullopt;
+      if (!is_there || (is_after_scan && !may_follow_scan)) return std::nullopt;
       begin += 2 + NumberFromBytes(file.substr(begin + 2, 2), kOrder);
       is_after_scan = is_after_scan || marker == kStartOfScan;
     }

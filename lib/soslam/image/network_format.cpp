@@ -72,21 +72,18 @@ bool HasMasks(const OnnxHeader& header, std::int64_t columns) {
   });
 }
 
-// True for [1, N, 6] of a network that removes overlaps itself, which leaves some hundred boxes;
-// YOLOv5 with one class has three a cell.
-bool IsEndToEnd(const NetworkFile& file, const Shape& shape, int classes) {
-  if (shape[2] != 6) return false;
-  if (Metadata(file.header, "end2end") == "True") return true;
-  constexpr std::int64_t kMost = 1000;
-  return shape[1] <= kMost && (classes != 1 || shape[1] != 3 * YoloCells(file.InputSize()));
-}
-
 // The layout of an output of YOLO's.
 std::optional<LayoutOfShapes> FitYolo(const NetworkFile& file, const Shape& shape, int index,
                                       int classes, OutputLayout wanted) {
   if (shape[0] > 1) return std::nullopt;
   const bool any = wanted == OutputLayout::kAuto;
-  if (any ? IsEndToEnd(file, shape, classes) : wanted == OutputLayout::kEndToEnd && shape[2] == 6) {
+  // Networks that remove overlaps themselves leave some hundred boxes; YOLOv5 with one class has
+  // three a cell.
+  constexpr std::int64_t kMost = 1000;
+  const bool is_end_to_end =
+      Metadata(file.header, "end2end") == "True" ||
+      (shape[1] <= kMost && (classes != 1 || shape[1] != 3 * YoloCells(file.InputSize())));
+  if (shape[2] == 6 && (any ? is_end_to_end : wanted == OutputLayout::kEndToEnd)) {
     return LayoutOfShapes{OutputLayout::kEndToEnd, 0, {index}};
   }
   const bool may_be_v5 = any || wanted == OutputLayout::kV5 || wanted == OutputLayout::kYolox;
@@ -144,36 +141,32 @@ std::optional<LayoutOfShapes> FitPaddle(const std::vector<OnnxValue>& outputs, i
   return std::nullopt;
 }
 
-std::optional<LayoutOfShapes> Fit(const NetworkFile& file, const std::vector<OnnxValue>& outputs,
-                                  int classes, OutputLayout wanted) {
-  if (const auto named = FindNamed(outputs)) return FitNamed(outputs, *named, classes, wanted);
-  if (const auto paddle = FitPaddle(outputs, classes, wanted)) return paddle;
-  const auto only = OnlyWithSides(outputs, 3);
-  return only ? FitYolo(file, outputs[*only].shape, *only, classes, wanted) : std::nullopt;
-}
-
-// The number of classes that outputs seem to have; 0 where they show none.
-std::int64_t ClassesOf(const std::vector<OnnxValue>& outputs) {
-  constexpr std::int64_t kMost = 2000;
-  std::int64_t classes = 0;
-  if (const auto named = FindNamed(outputs); named && named->indices.size() == 2) {
-    const Shape& logits = outputs[named->indices[1]].shape;
-    if (logits.size() == 3) classes = logits[2];
-  } else if (const auto only = OnlyWithSides(outputs, 3)) {
-    classes = std::min(outputs[*only].shape[1] - 4, outputs[*only].shape[2] - 5);
-  }
-  return classes > kMost ? 0 : classes;
-}
-
-// Fit that throws InputError for shapes of another network, or of another number of classes.
+// The layout of outputs. Throws InputError for shapes of another network, or of another number of
+// classes.
 LayoutOfShapes CheckedFit(const NetworkFile& file, const std::vector<OnnxValue>& outputs,
                           int classes, OutputLayout wanted) {
-  if (const auto found = Fit(file, outputs, classes, wanted)) return *found;
+  const auto named = FindNamed(outputs);
+  const auto only = OnlyWithSides(outputs, 3);
+  std::optional<LayoutOfShapes> found;
+  if (named) {
+    found = FitNamed(outputs, *named, classes, wanted);
+  } else if (found = FitPaddle(outputs, classes, wanted); !found && only) {
+    found = FitYolo(file, outputs[*only].shape, *only, classes, wanted);
+  }
+  if (found) return *found;
+  // The number of classes that the outputs seem to have; 0 where they show none.
+  constexpr std::int64_t kMost = 2000;
+  std::int64_t fields = 0;
+  if (named && named->indices.size() == 2) {
+    const Shape& logits = outputs[named->indices[1]].shape;
+    if (logits.size() == 3) fields = logits[2];
+  } else if (only) {
+    fields = std::min(outputs[*only].shape[1] - 4, outputs[*only].shape[2] - 5);
+  }
   std::vector<std::string> texts;
   for (const OnnxValue& output : outputs) {
     texts.push_back(output.name + " " + ShapeText(output.shape));
   }
-  const std::int64_t fields = ClassesOf(outputs);
   throw InputError(fmt::format(
       "{}: has the outputs {}; expected, for {} classes, {}{}", file.name, fmt::join(texts, ", "),
       classes,
@@ -182,7 +175,7 @@ LayoutOfShapes CheckedFit(const NetworkFile& file, const std::vector<OnnxValue>&
                         "those of DETR or PaddleDetection",
                         5 + classes, 4 + classes)
           : fmt::format("the layout {}", kOutputLayoutNames[static_cast<int>(wanted)]),
-      fields > 0 && fields != classes
+      fields > 0 && fields <= kMost && fields != classes
           ? fmt::format(". If it has {} classes, --labels FILE names them", fields)
           : ""));
 }
@@ -250,25 +243,6 @@ Probe RunProbe(const NetworkFile& file, std::vector<cv::Size> sizes) {
   throw std::logic_error("there is no size of input to try");
 }
 
-// Throws InputError where the number of logits says that there is a logit of no object, or none,
-// and their values contradict.
-void CheckNoObject(const NetworkFile& file, const cv::Mat& logits, OutputLayout layout) {
-  const bool expected = layout == OutputLayout::kDetrSoftmax;
-  if (HasNoObjectClass(logits) == expected) return;
-  throw InputError(fmt::format(
-      "{}: has {} logits for {} labels, but the last one {} that of no object; expected labels of "
-      "all classes and no others (--labels FILE), or the output_layout, {} or {}",
-      file.name, logits.size[2], expected ? logits.size[2] - 1 : logits.size[2],
-      expected ? "is not" : "is", kOutputLayoutNames[static_cast<int>(OutputLayout::kDetr)],
-      kOutputLayoutNames[static_cast<int>(OutputLayout::kDetrSoftmax)]));
-}
-
-// True for YOLOv6, whose output has an objectness that is always 1.
-bool HasConstantObjectness(const cv::Mat& output) {
-  const cv::Mat rows(output.size[1], output.size[2], CV_32FC1, output.data);
-  return cv::countNonZero(rows.col(4) != 1.0F) == 0;
-}
-
 }  // namespace
 
 cv::Size ImageShapedInput(const cv::Size& image, const cv::Size& own) {
@@ -298,10 +272,26 @@ NetworkFormat FindFormat(const NetworkFile& file, int classes, const DetectorOpt
   NetworkFormat format{layout, options.pixel_values, input, classes, extra, indices};
   const cv::Mat& output = outputs[indices[0]];
   const bool is_auto = options.output_layout == OutputLayout::kAuto;
-  if (is_auto && named && indices.size() == 2) CheckNoObject(file, outputs[indices[1]], layout);
+  if (is_auto && named && indices.size() == 2) {
+    // The number of logits says whether the last one is that of no object; their values must agree.
+    const cv::Mat& logits = outputs[indices[1]];
+    const bool expected = layout == OutputLayout::kDetrSoftmax;
+    if (HasNoObjectClass(logits) != expected) {
+      throw InputError(fmt::format(
+          "{}: has {} logits for {} labels, but the last one {} that of no object; expected labels "
+          "of all classes and no others (--labels FILE), or the output_layout, {} or {}",
+          file.name, logits.size[2], expected ? logits.size[2] - 1 : logits.size[2],
+          expected ? "is not" : "is", kOutputLayoutNames[static_cast<int>(OutputLayout::kDetr)],
+          kOutputLayoutNames[static_cast<int>(OutputLayout::kDetrSoftmax)]));
+    }
+  }
   const bool has_rows = layout == OutputLayout::kV5 || layout == OutputLayout::kYolox;
-  const bool is_yolox = has_rows && output.size[1] == YoloCells(input) &&
-                        !file.header.metadata.contains("names") && !HasConstantObjectness(output);
+  bool is_yolox =
+      has_rows && output.size[1] == YoloCells(input) && !file.header.metadata.contains("names");
+  if (is_yolox) {  // unless it is YOLOv6, whose objectness is always 1
+    const cv::Mat rows(output.size[1], output.size[2], CV_32FC1, output.data);
+    is_yolox = cv::countNonZero(rows.col(4) != 1.0F) > 0;
+  }
   if (is_yolox && is_auto && HasBoxesInCells(output)) format.layout = OutputLayout::kYolox;
   if (options.pixel_values != PixelValues::kAuto) return format;
   if (named && named->are_of_rf_detr) {

@@ -39,7 +39,7 @@ cv::Mat AsMatrix(const cv::Mat& output, const std::vector<int>& expected,
 }
 
 // Scores of classes in place of logits: each by itself, or shares of all in a row.
-cv::Mat ScoresOf(const cv::Mat& logits, bool is_softmax, const std::string& network) {
+cv::Mat ComputeScores(const cv::Mat& logits, bool is_softmax, const std::string& network) {
   double least = 0.0, most = 0.0;
   cv::minMaxLoc(logits, &least, &most);
   if (least >= 0.0 && most <= 1.0 && most > 0.0) {
@@ -87,7 +87,7 @@ cv::Mat CandidateRows(const std::vector<cv::Mat>& outputs, const NetworkFormat& 
       const cv::Mat logits = matrix(1, {1, boxes.rows, is_softmax ? fields + 1 : fields});
       for (const int x : {0, 2}) boxes.col(x) *= format.input.width;
       for (const int y : {1, 3}) boxes.col(y) *= format.input.height;
-      cv::hconcat(boxes, ScoresOf(logits, is_softmax, network), rows);
+      cv::hconcat(boxes, ComputeScores(logits, is_softmax, network), rows);
       return rows;
     }
     case OutputLayout::kDetrBoxes: {
@@ -155,51 +155,6 @@ cv::Mat FromYoloxGrids(const cv::Mat& rows, const cv::Size& input, const std::st
   return decoded;
 }
 
-// Throws InputError for YOLOX's candidates in cells, which would pass for tiny boxes.
-void CheckInPixels(const cv::Mat& rows, const cv::Size& input, const std::string& network) {
-  if (rows.rows != YoloCells(input) || LargestSide(rows) >= kYoloStrides[0]) return;
-  throw InputError(fmt::format(
-      "{}: the largest side of a box in the output is {:.2f}; expected pixels (YOLOX as it is "
-      "published has logarithms: output_layout = yolox)",
-      network, LargestSide(rows)));
-}
-
-// One row of CandidateRows.
-NetworkDetection ReadCandidate(const float* row, const LayoutProperties& properties, int classes) {
-  if (properties.has_one_class) {
-    const bool is_class =
-        row[5] >= 0.0F && row[5] < static_cast<float>(classes) && row[5] == std::floor(row[5]);
-    return {is_class ? static_cast<int>(row[5]) : -1, row[4], {row[0], row[1], row[2], row[3]}};
-  }
-  const float* scores = row + (properties.has_objectness ? 5 : 4);
-  const float* best = std::max_element(scores, scores + classes);
-  const double cx = row[0], cy = row[1], half_w = 0.5 * row[2], half_h = 0.5 * row[3];
-  return {static_cast<int>(best - scores),
-          properties.has_objectness ? static_cast<double>(*best) * row[4] : *best,
-          {cx - half_w, cy - half_h, cx + half_w, cy + half_h}};
-}
-
-// Throws an error for a candidate that no network of this format returns.
-void CheckPossible(const NetworkDetection& found, int index, const NetworkFormat& format,
-                   const std::string& network) {
-  const Box& box = found.box;
-  if (!std::isfinite(found.score + box.x_min + box.y_min + box.x_max + box.y_max)) {
-    throw NumericalError(
-        fmt::format("{}: candidate {} of the output is not finite", network, index));
-  }
-  constexpr double kMostScore = 1.01;  // room for rounding
-  if (box.Width() >= 0.0 && box.Height() >= 0.0 && found.score <= kMostScore &&
-      found.class_index >= 0) {
-    return;
-  }
-  throw InputError(fmt::format(
-      "{}: candidate {} of the output is {:.4g} x {:.4g} pixels with score {:.4g}{}; expected no "
-      "negative size, a score of at most 1 and one of {} classes. Taken for {}: another layout is "
-      "likely",
-      network, index, box.Width(), box.Height(), found.score,
-      found.class_index < 0 ? " and no class" : "", format.classes, format.Text()));
-}
-
 }  // namespace
 
 LayoutProperties PropertiesOf(OutputLayout layout) {
@@ -252,15 +207,48 @@ std::vector<NetworkDetection> ReadNetworkOutput(const std::vector<cv::Mat>& outp
                                                 const std::string& network) {
   if (outputs.at(format.outputs.at(0)).empty()) return {};
   cv::Mat rows = CandidateRows(outputs, format, network);
-  if (format.layout == OutputLayout::kV5) CheckInPixels(rows, format.input, network);
+  // YOLOX's candidates in cells would pass for tiny boxes.
+  if (format.layout == OutputLayout::kV5 && rows.rows == YoloCells(format.input) &&
+      LargestSide(rows) < kYoloStrides[0]) {
+    throw InputError(fmt::format(
+        "{}: the largest side of a box in the output is {:.2f}; expected pixels (YOLOX as it is "
+        "published has logarithms: output_layout = yolox)",
+        network, LargestSide(rows)));
+  }
   if (format.layout == OutputLayout::kYolox) rows = FromYoloxGrids(rows, format.input, network);
   const LayoutProperties properties = PropertiesOf(format.layout);
   std::vector<NetworkDetection> found;
   for (int i = 0; i < rows.rows; ++i) {
-    const NetworkDetection candidate =
-        ReadCandidate(rows.ptr<float>(i), properties, format.classes);
+    const float* row = rows.ptr<float>(i);
+    NetworkDetection candidate = {};
+    if (properties.has_one_class) {
+      const bool is_class = row[5] >= 0.0F && row[5] < static_cast<float>(format.classes) &&
+                            row[5] == std::floor(row[5]);
+      candidate = {
+          is_class ? static_cast<int>(row[5]) : -1, row[4], {row[0], row[1], row[2], row[3]}};
+    } else {
+      const float* scores = row + (properties.has_objectness ? 5 : 4);
+      const float* best = std::max_element(scores, scores + format.classes);
+      const double cx = row[0], cy = row[1], half_w = 0.5 * row[2], half_h = 0.5 * row[3];
+      candidate = {static_cast<int>(best - scores),
+                   properties.has_objectness ? static_cast<double>(*best) * row[4] : *best,
+                   {cx - half_w, cy - half_h, cx + half_w, cy + half_h}};
+    }
     if (candidate.score < min_score) continue;
-    CheckPossible(candidate, i, format, network);
+    const Box& box = candidate.box;
+    if (!std::isfinite(candidate.score + box.x_min + box.y_min + box.x_max + box.y_max)) {
+      throw NumericalError(fmt::format("{}: candidate {} of the output is not finite", network, i));
+    }
+    constexpr double kMostScore = 1.01;  // room for rounding
+    if (box.Width() < 0.0 || box.Height() < 0.0 || candidate.score > kMostScore ||
+        candidate.class_index < 0) {
+      throw InputError(fmt::format(
+          "{}: candidate {} of the output is {:.4g} x {:.4g} pixels with score {:.4g}{}; expected "
+          "no negative size, a score of at most 1 and one of {} classes. Taken for {}: another "
+          "layout is likely",
+          network, i, box.Width(), box.Height(), candidate.score,
+          candidate.class_index < 0 ? " and no class" : "", format.classes, format.Text()));
+    }
     found.push_back(candidate);
   }
   return found;

@@ -44,8 +44,15 @@ constexpr DataType kDataTypes[] = {
   throw InputError(fmt::format("tensor '{}' {}", tensor.name(), what));
 }
 
-// Throws InputError unless a tensor has as many numbers as its shape needs.
-void CheckNumbers(const TensorProto& tensor) {
+// Throws InputError unless a tensor has external data, or as many numbers as its shape needs.
+void ReadTensor(const TensorProto& tensor, OnnxHeader* header) {
+  header->has_half_weights |= tensor.data_type() == TensorProto::FLOAT16;
+  if (tensor.data_location() == TensorProto::EXTERNAL) {
+    const auto& entries = tensor.external_data();
+    const auto file = std::ranges::find(entries, "location", &onnx::StringStringEntryProto::key);
+    header->files_of_weights.insert(file == entries.end() ? "" : file->value());
+    return;
+  }
   constexpr std::int64_t kMax = std::numeric_limits<std::int32_t>::max();
   std::int64_t expected = 1;
   for (const std::int64_t side : tensor.dims()) {
@@ -74,14 +81,6 @@ void CheckNumbers(const TensorProto& tensor) {
   }
 }
 
-void ReadTensor(const TensorProto& tensor, OnnxHeader* header) {
-  header->has_half_weights |= tensor.data_type() == TensorProto::FLOAT16;
-  if (tensor.data_location() != TensorProto::EXTERNAL) return CheckNumbers(tensor);
-  const auto& entries = tensor.external_data();
-  const auto file = std::ranges::find(entries, "location", &onnx::StringStringEntryProto::key);
-  header->files_of_weights.insert(file == entries.end() ? "" : file->value());
-}
-
 // Reads the weights of a graph, those in attributes of its nodes, and those of graphs within it.
 void ReadTensors(const onnx::GraphProto& graph, OnnxHeader* header) {
   for (const TensorProto& tensor : graph.initializer()) ReadTensor(tensor, header);
@@ -95,7 +94,7 @@ void ReadTensors(const onnx::GraphProto& graph, OnnxHeader* header) {
   }
 }
 
-OnnxValue ValueOf(const onnx::ValueInfoProto& info) {
+OnnxValue ReadValue(const onnx::ValueInfoProto& info) {
   constexpr int kMostSides = 32;
   constexpr std::int64_t kLargest = std::numeric_limits<std::int32_t>::max();
   const onnx::TypeProto::Tensor& tensor = info.type().tensor_type();
@@ -106,28 +105,6 @@ OnnxValue ValueOf(const onnx::ValueInfoProto& info) {
     value.shape.push_back(is_fixed ? side.dim_value() : 0);
   }
   return value;
-}
-
-OnnxHeader HeaderOf(const onnx::ModelProto& model) {
-  if (!model.has_graph()) throw InputError("has no graph");
-  const onnx::GraphProto& graph = model.graph();
-  OnnxHeader header;
-  ReadTensors(graph, &header);
-  std::set<std::string> weights;
-  for (const TensorProto& tensor : graph.initializer()) weights.insert(tensor.name());
-  for (const onnx::ValueInfoProto& input : graph.input()) {
-    if (!weights.contains(input.name())) header.inputs.push_back(ValueOf(input));
-  }
-  for (const onnx::ValueInfoProto& output : graph.output()) {
-    header.outputs.push_back(ValueOf(output));
-  }
-  for (const onnx::NodeProto& node : graph.node()) header.operators.insert(node.op_type());
-  for (const onnx::OperatorSetIdProto& opset : model.opset_import()) {
-    if (!opset.domain().empty()) continue;
-    header.opset = static_cast<int>(std::clamp<std::int64_t>(opset.version(), 0, 1000));
-  }
-  for (const auto& entry : model.metadata_props()) header.metadata[entry.key()] = entry.value();
-  return header;
 }
 
 }  // namespace
@@ -142,7 +119,25 @@ OnnxHeader ReadOnnxHeader(std::string_view bytes, const std::string& name) {
           "its {} bytes are cut short, malformed or nested too deep; expected a complete ONNX file",
           bytes.size()));
     }
-    return HeaderOf(model);
+    if (!model.has_graph()) throw InputError("has no graph");
+    const onnx::GraphProto& graph = model.graph();
+    OnnxHeader header;
+    ReadTensors(graph, &header);
+    std::set<std::string> weights;
+    for (const TensorProto& tensor : graph.initializer()) weights.insert(tensor.name());
+    for (const onnx::ValueInfoProto& input : graph.input()) {
+      if (!weights.contains(input.name())) header.inputs.push_back(ReadValue(input));
+    }
+    for (const onnx::ValueInfoProto& output : graph.output()) {
+      header.outputs.push_back(ReadValue(output));
+    }
+    for (const onnx::NodeProto& node : graph.node()) header.operators.insert(node.op_type());
+    for (const onnx::OperatorSetIdProto& opset : model.opset_import()) {
+      if (!opset.domain().empty()) continue;
+      header.opset = static_cast<int>(std::clamp<std::int64_t>(opset.version(), 0, 1000));
+    }
+    for (const auto& entry : model.metadata_props()) header.metadata[entry.key()] = entry.value();
+    return header;
   } catch (const InputError& error) {
     const std::string kind = FileKind(bytes);
     throw InputError(

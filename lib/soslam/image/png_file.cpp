@@ -17,7 +17,7 @@ constexpr int kMaxChunks = 1 << 16;
 bool IsPng(std::string_view first_bytes) { return first_bytes.starts_with(kSignature); }
 
 // The first data of a chunk with this name, at most `most` bytes; empty if there is none.
-std::string ChunkOf(const ImageBytes& file, std::string_view name, size_t most) {
+std::string ReadChunk(const ImageBytes& file, std::string_view name, size_t most) {
   std::uint64_t begin = kSignature.size();
   for (int i = 0; i < kMaxChunks; ++i) {
     const auto head = file.At(begin, kHead);
@@ -31,7 +31,7 @@ std::string ChunkOf(const ImageBytes& file, std::string_view name, size_t most) 
 
 // An animation (APNG) has the chunk acTL, which begins with the number of its images.
 std::optional<OtherContent> Other(const ImageBytes& file) {
-  const std::uint64_t images = NumberFromBytes(ChunkOf(file, "acTL"sv, 4), kOrder);
+  const std::uint64_t images = NumberFromBytes(ReadChunk(file, "acTL"sv, 4), kOrder);
   return images > 1 ? std::optional(OtherContent::kAnimation) : std::nullopt;
 }
 
@@ -45,7 +45,7 @@ std::optional<ImageHeader> Header(const ImageBytes& file) {
         NumberFromBytes(std::string_view(*ihdr).substr(kHead + at, 4), kOrder));
   };
   constexpr size_t kMaxExif = 1 << 16;
-  const std::string exif = ChunkOf(file, "eXIf"sv, kMaxExif);  // before or after the pixels
+  const std::string exif = ReadChunk(file, "eXIf"sv, kMaxExif);  // before or after the pixels
   return ImageHeader{
       {side(0), side(4)}, ExifOrientation(exif).value_or(1), std::nullopt, ExifTimeTaken(exif)};
 }

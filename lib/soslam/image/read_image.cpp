@@ -47,18 +47,11 @@ std::vector<char> ReadBytes(const std::filesystem::path& path) {
 
 constexpr const char* kFormats = "JPEG, PNG, WebP, BMP or TIFF";
 
-const char* InWords(OtherContent content) {
-  switch (content) {
-    case OtherContent::kRawPhoto:
-      return "is a RAW photo, which is not read; expected the JPEG that the camera wrote with it, "
-             "or one developed from it";
-    case OtherContent::kSeveralImages:
-      return "has several images; expected one: tiffsplit makes a file of each";
-    case OtherContent::kAnimation:
-      return "is an animation; expected one image";
-  }
-  return "";
-}
+constexpr const char* kOtherContent[] = {  // in the order of OtherContent
+    ("is a RAW photo, which is not read; expected the JPEG that the camera wrote with it, or one "
+     "developed from it"),
+    "has several images; expected one: tiffsplit makes a file of each",
+    "is an animation; expected one image"};
 
 // The format and header of an image that can be decoded. Checks a file before anything of its size
 // is allocated, and cuts `bytes` at the image's end.
@@ -66,7 +59,8 @@ std::pair<const ImageFormat*, ImageHeader> Check(const std::filesystem::path& pa
                                                  std::vector<char>* bytes) {
   const std::string_view file(bytes->data(), bytes->size());
   if (const auto other = FindOtherContent(path, ImageBytes(file))) {
-    throw InputError(fmt::format("{}: {}", path.string(), InWords(*other)));
+    throw InputError(
+        fmt::format("{}: {}", path.string(), kOtherContent[static_cast<size_t>(*other)]));
   }
   const ImageFormat* format = FindImageFormat(file.substr(0, kSignatureSize));
   if (format == nullptr) {

@@ -22,25 +22,9 @@ namespace fs = std::filesystem;
 // OpenCV before 4.7, as in Debian 12, which CertainlyFails is about.
 constexpr bool kIsOldOpenCv = CV_VERSION_MAJOR == 4 && CV_VERSION_MINOR < 7;
 
-// The error message of a backend, in one line.
-std::string Reason(const std::exception& error) {
-  const auto* of_opencv = dynamic_cast<const cv::Exception*>(&error);
-  std::string text = of_opencv != nullptr ? of_opencv->err : error.what();
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  const size_t begin = text.find_first_not_of("> ");
-  const size_t end = text.find_last_not_of("> ");
-  return begin == text.npos ? "no reason given" : text.substr(begin, end - begin + 1);
-}
-
 bool HasAny(const OnnxHeader& header, const std::vector<const char*>& operators) {
   return std::ranges::any_of(operators,
                              [&](const char* name) { return header.operators.contains(name); });
-}
-
-bool IsHalf(const OnnxHeader& header) {
-  return header.has_half_weights || std::ranges::any_of(header.inputs, [](const OnnxValue& input) {
-           return input.type == OnnxValue::kHalf;
-         });
 }
 
 // The command of Ultralytics that exports a network that OpenCV runs.
@@ -63,7 +47,8 @@ std::optional<std::string> CertainlyFails(const NetworkFile& file) {
   if (HasAny(file.header, {"DynamicQuantizeLinear", "ConvInteger", "MatMulInteger"})) {
     return "its weights are quantised (int8); export it with " + ExportCommand(file, " int8=False");
   }
-  if (IsHalf(file.header)) {
+  const auto is_half = [](const OnnxValue& input) { return input.type == OnnxValue::kHalf; };
+  if (file.header.has_half_weights || std::ranges::any_of(file.header.inputs, is_half)) {
     return "its numbers are 16-bit floating point; export it with " + ExportCommand(file);
   }
   if (HasAny(file.header, {"TopK", "NonMaxSuppression"})) {
@@ -124,33 +109,6 @@ std::string HowToJoin(const fs::path& network) {
       "export it with external_data=False, or join them with python3 -c \"import "
       "onnx; onnx.save(onnx.load('{}'), 'one_file.onnx')\"",
       network.string());
-}
-
-void RefuseOtherFormats(const NetworkFile& file) {
-  for (const std::string_view ending : {".data", "_data"}) {
-    fs::path network = fs::path(file.name).filename();
-    if (!file.name.ends_with(fmt::format(".onnx{}", ending))) continue;
-    network = network.string().substr(0, network.string().size() - ending.size());
-    throw InputError(fmt::format("{}: has the weights of {}; expected one file with both: {}",
-                                 file.name, network.string(), HowToJoin(network)));
-  }
-  const auto format = OtherFormat(file.bytes);
-  if (!format) return;
-  throw InputError(fmt::format(
-      "{}: is {}; expected an ONNX file: a network of Ultralytics is exported with {}, others as "
-      "docs/detections.md says",
-      file.name, *format, ExportCommand(file)));
-}
-
-// Networks are read from memory.
-void RefuseExternalWeights(const NetworkFile& file) {
-  if (file.header.files_of_weights.empty()) return;
-  const fs::path path = file.name;
-  const std::string& weights = *file.header.files_of_weights.begin();
-  throw InputError(fmt::format(
-      "{}: its weights are in {}{}; expected one file with all of them: {}", file.name, weights,
-      IsFile(path.parent_path() / weights) ? "" : ", which is not beside it (copy that, too)",
-      HowToJoin(path.filename())));
 }
 
 // What an input beside the image takes; empty for unknown ones. Networks are told that the image
@@ -216,23 +174,12 @@ void CheckIsDetector(const NetworkFile& file) {
       dynamic_cast<const std::bad_alloc*>(&error) != nullptr) {
     throw std::bad_alloc();
   }
-  throw InputError(
-      fmt::format("{}: {}{} ({})", file.name, what, LikelyReason(file), Reason(error)));
-}
-
-// The image as a network takes it, [1, 3, height, width].
-cv::Mat ImageBlob(const cv::Mat& image, PixelValues pixel_values) {
-  const bool is_unit = pixel_values != PixelValues::kBgrByte;
-  cv::Mat blob = cv::dnn::blobFromImage(image, is_unit ? 1.0 / 255.0 : 1.0, cv::Size(),
-                                        cv::Scalar(), is_unit /* swap blue and red */);
-  if (pixel_values != PixelValues::kRgbImageNet) return blob;
-  constexpr double kMean[] = {0.485, 0.456, 0.406}, kDeviation[] = {0.229, 0.224, 0.225};
-  for (int channel = 0; channel < 3; ++channel) {
-    cv::Mat plane(image.size(), CV_32FC1, blob.ptr<float>(0, channel));
-    plane.convertTo(plane, CV_32F, 1.0 / kDeviation[channel],
-                    -kMean[channel] / kDeviation[channel]);
-  }
-  return blob;
+  std::string reason = of_opencv != nullptr ? of_opencv->err : error.what();
+  std::replace(reason.begin(), reason.end(), '\n', ' ');
+  const size_t begin = reason.find_first_not_of("> ");
+  const size_t end = reason.find_last_not_of("> ");
+  reason = begin == reason.npos ? "no reason given" : reason.substr(begin, end - begin + 1);
+  throw InputError(fmt::format("{}: {}{} ({})", file.name, what, LikelyReason(file), reason));
 }
 
 }  // namespace
@@ -271,9 +218,27 @@ NetworkFile ReadNetworkFile(const fs::path& path, NetworkBackend backend) {
                    {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()},
                    {},
                    backend};
-  RefuseOtherFormats(file);
+  for (const std::string_view ending : {".data", "_data"}) {
+    if (!file.name.ends_with(fmt::format(".onnx{}", ending))) continue;
+    std::string network = path.filename().string();
+    network.resize(network.size() - ending.size());
+    throw InputError(fmt::format("{}: has the weights of {}; expected one file with both: {}",
+                                 file.name, network, HowToJoin(network)));
+  }
+  if (const auto format = OtherFormat(file.bytes)) {
+    throw InputError(fmt::format(
+        "{}: is {}; expected an ONNX file: a network of Ultralytics is exported with {}, others as "
+        "docs/detections.md says",
+        file.name, *format, ExportCommand(file)));
+  }
   file.header = ReadOnnxHeader(file.bytes, file.name);
-  RefuseExternalWeights(file);
+  if (!file.header.files_of_weights.empty()) {  // networks are read from memory
+    const std::string& weights = *file.header.files_of_weights.begin();
+    throw InputError(fmt::format(
+        "{}: its weights are in {}{}; expected one file with all of them: {}", file.name, weights,
+        IsFile(path.parent_path() / weights) ? "" : ", which is not beside it (copy that, too)",
+        HowToJoin(path.filename())));
+  }
   if (const auto reason = CertainlyFails(file);
       reason && kIsOldOpenCv && backend == NetworkBackend::kOpenCv) {
     throw InputError(
@@ -297,8 +262,20 @@ std::unique_ptr<Network> LoadNetwork(const NetworkFile& file) {
 std::vector<cv::Mat> Network::Forward(const cv::Mat& image, PixelValues pixel_values) {
   std::vector<cv::Mat> inputs;
   for (const OnnxValue& input : file_.header.inputs) {
-    inputs.push_back(IsImage(input) ? ImageBlob(image, pixel_values)
-                                    : FurtherInput(input, image.size()));
+    if (!IsImage(input)) {
+      inputs.push_back(FurtherInput(input, image.size()));
+      continue;
+    }
+    const bool is_unit = pixel_values != PixelValues::kBgrByte;
+    inputs.push_back(cv::dnn::blobFromImage(image, is_unit ? 1.0 / 255.0 : 1.0, cv::Size(),
+                                            cv::Scalar(), is_unit /* swap blue and red */));
+    if (pixel_values != PixelValues::kRgbImageNet) continue;
+    constexpr double kMean[] = {0.485, 0.456, 0.406}, kDeviation[] = {0.229, 0.224, 0.225};
+    for (int channel = 0; channel < 3; ++channel) {
+      cv::Mat plane(image.size(), CV_32FC1, inputs.back().ptr<float>(0, channel));
+      plane.convertTo(plane, CV_32F, 1.0 / kDeviation[channel],
+                      -kMean[channel] / kDeviation[channel]);
+    }
   }
   try {
     return Run(inputs);

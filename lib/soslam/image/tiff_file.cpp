@@ -12,7 +12,7 @@ using namespace std::string_view_literals;
 
 constexpr std::uint64_t kTiffOrientation = 274;
 
-std::optional<ByteOrder> OrderOf(std::string_view head) {
+std::optional<ByteOrder> ReadOrder(std::string_view head) {
   if (head == "II*\0"sv) return ByteOrder::kLittleEndian;
   if (head == "MM\0*"sv) return ByteOrder::kBigEndian;
   return std::nullopt;
@@ -28,31 +28,12 @@ struct TiffEntry {
   std::uint64_t begin;  // offset in the file
 };
 
-// Bytes per number of type BYTE, SHORT, LONG or IFD (the place of a directory); 0 for other types.
-size_t BytesEach(std::uint64_t type) {
-  constexpr size_t kBytes[] = {0, 1, 0, 2, 4, 0, 0, 0, 0, 0, 0, 0, 0, 4};
-  return type < std::size(kBytes) ? kBytes[type] : 0;
-}
-
-TiffEntry ParseEntry(std::string_view bytes, std::uint64_t begin, ByteOrder order) {
-  const auto number = [&](size_t at, size_t count) {
-    return NumberFromBytes(bytes.substr(at, count), order);
-  };
-  constexpr std::uint64_t kAscii = 2, kRational = 5;
-  const std::uint64_t type = number(2, 2);
-  TiffEntry entry{number(0, 2),   BytesEach(type), type == kRational,
-                  type == kAscii, number(4, 4),    begin + 8};
-  const std::uint64_t length = entry.is_text ? entry.count : entry.bytes_each * entry.count;
-  if (entry.is_ratio || length > 4) entry.begin = number(8, 4);
-  return entry;
-}
-
 // A directory of a TIFF file (TIFF 6.0, section 2). EXIF data are a TIFF file within another.
 class TiffDirectory {
  public:
   // The first directory. None if the file is no TIFF file, or ends before the directory does.
   static std::optional<TiffDirectory> Read(const ImageBytes& file) {
-    const auto order = OrderOf(file.UpTo(0, 4));
+    const auto order = ReadOrder(file.UpTo(0, 4));
     if (!order) return std::nullopt;
     const auto begin = file.NumberAt(4, 4, *order);
     return begin ? ReadAt(*begin, *order, file) : std::nullopt;
@@ -118,6 +99,9 @@ class TiffDirectory {
 
   static std::optional<TiffDirectory> ReadAt(std::uint64_t begin, ByteOrder order,
                                              const ImageBytes& file) {
+    constexpr std::uint64_t kAscii = 2, kRational = 5;
+    // Bytes of types that are unsigned integers: BYTE, SHORT, LONG, IFD (place of a directory).
+    constexpr size_t kBytesEach[] = {0, 1, 0, 2, 4, 0, 0, 0, 0, 0, 0, 0, 0, 4};
     constexpr size_t kEntrySize = 12;  // tag 2, type 2, count 4, value or its offset 4
     const auto count = file.NumberAt(begin, 2, order);
     const auto bytes = count ? file.At(begin + 2, *count * kEntrySize) : std::nullopt;
@@ -125,8 +109,16 @@ class TiffDirectory {
     TiffDirectory directory(file, order);
     directory.end_ = begin + 2 + bytes->size();
     for (size_t at = 0; at < bytes->size(); at += kEntrySize) {
-      directory.entries_.push_back(
-          ParseEntry(std::string_view(*bytes).substr(at, kEntrySize), begin + 2 + at, order));
+      const auto number = [&](size_t offset, size_t size) {
+        return NumberFromBytes(std::string_view(*bytes).substr(at + offset, size), order);
+      };
+      const std::uint64_t type = number(2, 2);
+      TiffEntry entry{number(0, 2),      type < std::size(kBytesEach) ? kBytesEach[type] : 0,
+                      type == kRational, type == kAscii,
+                      number(4, 4),      begin + 2 + at + 8};
+      const std::uint64_t length = entry.is_text ? entry.count : entry.bytes_each * entry.count;
+      if (entry.is_ratio || length > 4) entry.begin = number(8, 4);
+      directory.entries_.push_back(entry);
     }
     return directory;
   }
@@ -189,7 +181,9 @@ constexpr std::uint64_t kStripOffsets = 273, kStripByteCounts = 279;
 constexpr std::uint64_t kTileWidth = 322, kTileHeight = 323, kTileOffsets = 324;
 constexpr std::uint64_t kTileByteCounts = 325;
 
-bool IsTiff(std::string_view first_bytes) { return OrderOf(first_bytes.substr(0, 4)).has_value(); }
+bool IsTiff(std::string_view first_bytes) {
+  return ReadOrder(first_bytes.substr(0, 4)).has_value();
+}
 
 // Header of the first page. libtiff, too, takes the first of two entries with the same tag; it
 // allocates whole tiles. What is packed in an unknown way becomes black without an error.
@@ -238,9 +232,6 @@ bool IsSecondary(const TiffDirectory& image) {
          image.Count(kThumbnailJpeg) > 0;
 }
 
-// True for Canon's CR2, whose name follows the header.
-bool IsCr2(const ImageBytes& file) { return file.UpTo(8, 4) == "CR\2\0"sv; }
-
 // The photo of a RAW file is in a directory below that of a thumbnail, or beside it; pages follow
 // each other. Thumbnails, smaller copies and masks after the first image do not matter.
 std::optional<OtherContent> Other(const ImageBytes& file) {
@@ -248,7 +239,8 @@ std::optional<OtherContent> Other(const ImageBytes& file) {
   if (!first) return std::nullopt;
   const bool is_thumbnail = IsSecondary(*first);
   const bool has_photo_below = is_thumbnail && first->Count(kSubImages) > 0;
-  if (IsOfSensor(*first) || IsCr2(file) || has_photo_below) return OtherContent::kRawPhoto;
+  const bool is_cr2 = file.UpTo(8, 4) == "CR\2\0"sv;  // Canon's, whose name follows the header
+  if (IsOfSensor(*first) || is_cr2 || has_photo_below) return OtherContent::kRawPhoto;
   int unseen = 64;  // images at most: they may form a circle
   for (auto image = *first;;) {
     for (std::uint64_t i = 0; unseen > 0; ++i, --unseen) {
@@ -292,31 +284,10 @@ void ClearOrientation(std::span<char> file) {
 
 constexpr double kFilmDiagonalMm = 43.267;
 
-// Size of the image that the camera wrote.
-std::optional<ImageSize> SizeInExif(const TiffDirectory& exif) {
-  const auto width = exif.Number(kPixelXDimension).value_or(0);
-  const auto height = exif.Number(kPixelYDimension).value_or(0);
-  if (width == 0 || height == 0) return std::nullopt;
-  return ImageSize{static_cast<std::int64_t>(width), static_cast<std::int64_t>(height)};
-}
-
-double Diagonal(const ImageSize& size) {
-  return std::hypot(static_cast<double>(size.width), static_cast<double>(size.height));
-}
-
 // Longer side over shorter side, which scaling and turning leave as they are.
-double AspectOf(const ImageSize& size) {
+double ComputeAspect(const ImageSize& size) {
   const auto [shorter, longer] = std::minmax(size.width, size.height);
   return static_cast<double>(longer) / static_cast<double>(shorter);
-}
-
-std::optional<double> FromSensor(const TiffDirectory& exif, const ImageSize& written) {
-  constexpr std::uint64_t kInch = 2, kCentimetre = 3;
-  const auto focal_mm = exif.Ratio(kFocalLength);
-  const auto pixels_per_unit = exif.Ratio(kFocalPlaneXResolution);
-  const auto unit = exif.Number(kFocalPlaneResolutionUnit).value_or(kInch);
-  if (!focal_mm || !pixels_per_unit || (unit != kInch && unit != kCentimetre)) return std::nullopt;
-  return *focal_mm * *pixels_per_unit / (unit == kInch ? 25.4 : 10.0) / Diagonal(written);
 }
 
 }  // namespace
@@ -351,13 +322,28 @@ std::optional<double> ExifFocalOverDiagonal(std::string_view exif, const ImageSi
   const auto first = TiffDirectory::Read(ImageBytes(exif));
   const auto directory = first ? first->SubDirectory(kExifDirectory) : std::nullopt;
   if (!directory || stored.width <= 0 || stored.height <= 0) return std::nullopt;
-  const auto written = SizeInExif(*directory);
+  const auto width = directory->Number(kPixelXDimension).value_or(0);
+  const auto height = directory->Number(kPixelYDimension).value_or(0);
+  ImageSize written = stored;  // the size that the camera wrote
+  if (width > 0 && height > 0) {
+    written = {static_cast<std::int64_t>(width), static_cast<std::int64_t>(height)};
+  }
   const bool is_cropped =
-      written && std::abs(AspectOf(*written) / AspectOf(stored) - 1.0) > kMaxAspectChange;
+      std::abs(ComputeAspect(written) / ComputeAspect(stored) - 1.0) > kMaxAspectChange;
   if (is_cropped) return std::nullopt;
+  constexpr std::uint64_t kInch = 2, kCentimetre = 3;
   const auto film_mm = directory->Number(kFocalLengthIn35mmFilm).value_or(0);
-  const auto focal = film_mm > 0 ? std::optional(static_cast<double>(film_mm) / kFilmDiagonalMm)
-                                 : FromSensor(*directory, written.value_or(stored));
+  const auto focal_mm = directory->Ratio(kFocalLength);
+  const auto pixels_per_unit = directory->Ratio(kFocalPlaneXResolution);
+  const auto unit = directory->Number(kFocalPlaneResolutionUnit).value_or(kInch);
+  std::optional<double> focal;
+  if (film_mm > 0) {
+    focal = static_cast<double>(film_mm) / kFilmDiagonalMm;
+  } else if (focal_mm && pixels_per_unit && (unit == kInch || unit == kCentimetre)) {
+    const double diagonal =
+        std::hypot(static_cast<double>(written.width), static_cast<double>(written.height));
+    focal = *focal_mm * *pixels_per_unit / (unit == kInch ? 25.4 : 10.0) / diagonal;
+  }
   return focal && *focal >= kMin && *focal <= kMax ? focal : std::nullopt;
 }
 

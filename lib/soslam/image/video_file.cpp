@@ -51,20 +51,6 @@ bool IsOfFrames(const AVStream& stream) {
          (stream.disposition & AV_DISPOSITION_ATTACHED_PIC) == 0;
 }
 
-// The stream with the largest frames, the first among equals; null if there is no video.
-AVStream* LargestVideo(const AVFormatContext& format) {
-  AVStream* largest = nullptr;
-  const auto area = [](const AVStream& stream) {
-    return std::int64_t{stream.codecpar->width} * stream.codecpar->height;
-  };
-  for (unsigned i = 0; i < format.nb_streams; ++i) {
-    AVStream* stream = format.streams[i];
-    if (IsOfFrames(*stream) && (largest == nullptr || area(*stream) > area(*largest)))
-      largest = stream;
-  }
-  return largest;
-}
-
 // The duration that a file announces for a stream, or, as MKV, for all; in seconds, 0 if it does
 // not.
 double AnnouncedDuration(const AVFormatContext& format, const AVStream& stream) {
@@ -88,7 +74,7 @@ const std::uint8_t* DisplayMatrix(const AVStream& stream) {
 }
 
 // Throws InputError for rotations by other than quarters of a full turn, to a degree.
-ImageTurn TurnOf(const std::uint8_t* display_matrix, const std::string& place) {
+ImageTurn ReadTurn(const std::uint8_t* display_matrix, const std::string& place) {
   constexpr double kTan1Deg = 0.017;
   const auto* matrix = reinterpret_cast<const std::int32_t*>(display_matrix);
   const auto at = [&](int index) { return static_cast<double>(matrix[index]); };
@@ -151,7 +137,14 @@ VideoReader::VideoReader(const std::filesystem::path& path)
       avformat_open_input(&format, ("file:" + path.string()).c_str(), nullptr, &limits);
   av_dict_free(&limits);
   const bool has_streams = error >= 0 && avformat_find_stream_info(format, nullptr) >= 0;
-  AVStream* stream = has_streams ? LargestVideo(*format) : nullptr;
+  const auto area = [](const AVStream& video) {
+    return std::int64_t{video.codecpar->width} * video.codecpar->height;
+  };
+  AVStream* stream = nullptr;  // with the largest frames, the first among equals
+  for (unsigned i = 0; has_streams && i < format->nb_streams; ++i) {
+    AVStream* other = format->streams[i];
+    if (IsOfFrames(*other) && (stream == nullptr || area(*other) > area(*stream))) stream = other;
+  }
   const AVCodec* codec =
       stream == nullptr ? nullptr : avcodec_find_decoder(stream->codecpar->codec_id);
   if (stream != nullptr && codec == nullptr) {
@@ -174,7 +167,7 @@ VideoReader::VideoReader(const std::filesystem::path& path)
         path.string(), kFormats, kByFfmpeg));
   }
   if (const std::uint8_t* matrix = DisplayMatrix(*stream)) {
-    decoder_->turn = TurnOf(matrix, path.string());
+    decoder_->turn = ReadTurn(matrix, path.string());
   }
   const double rate = av_q2d(av_guess_frame_rate(format, stream, nullptr));
   frame_duration_s_ = std::isfinite(rate) && rate > 0.0 ? 1.0 / rate : 1.0 / 30.0;
@@ -234,7 +227,7 @@ bool VideoReader::Next() {
                 (is_predicted && is_after_error);
   // A matrix of the codec holds until the next one.
   if (const auto* own = av_frame_get_side_data(&frame, AV_FRAME_DATA_DISPLAYMATRIX)) {
-    decoder_->turn = TurnOf(own->data, path_.string());
+    decoder_->turn = ReadTurn(own->data, path_.string());
   }
   const std::int64_t stamp = frame.best_effort_timestamp;
   if (frames_ == 1) first_stamp_ = stamp == AV_NOPTS_VALUE ? 0 : stamp;

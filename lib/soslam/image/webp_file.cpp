@@ -18,44 +18,6 @@ bool IsWebp(std::string_view first_bytes) {
          first_bytes.size() == kSignatureSize;
 }
 
-// The canvas of a file of several chunks (VP8X), or the size of its only picture, compressed with
-// loss (VP8) or without (VP8L).
-std::optional<ImageSize> Size(const ImageBytes& file) {
-  const auto chunk = file.At(kFirstChunk, kHead + 10);
-  if (!chunk) return std::nullopt;
-  const std::string_view data = std::string_view(*chunk).substr(kHead);
-  const auto number = [&](size_t at, size_t count) {
-    return static_cast<std::int64_t>(NumberFromBytes(data.substr(at, count), kOrder));
-  };
-  constexpr std::int64_t kFourteenBits = 0x3fff;
-  if (chunk->starts_with("VP8X"sv)) return ImageSize{number(4, 3) + 1, number(7, 3) + 1};
-  if (chunk->starts_with("VP8 "sv) && data.substr(3, 3) == "\x9d\x01\x2a"sv) {
-    return ImageSize{number(6, 2) & kFourteenBits, number(8, 2) & kFourteenBits};
-  }
-  if (chunk->starts_with("VP8L"sv) && data[0] == '\x2f') {
-    return ImageSize{(number(1, 4) & kFourteenBits) + 1, (number(1, 4) >> 14 & kFourteenBits) + 1};
-  }
-  return std::nullopt;
-}
-
-std::string Exif(const ImageBytes& file) {
-  constexpr size_t kMaxExif = 1 << 16;
-  std::uint64_t begin = kFirstChunk;
-  for (int i = 0; i < kMaxChunks; ++i) {
-    const auto head = file.At(begin, kHead);
-    if (!head) break;
-    const std::uint64_t length = NumberFromBytes(std::string_view(*head).substr(4), kOrder);
-    if (head->starts_with("EXIF"sv)) {
-      const std::string data = file.UpTo(begin + kHead, std::min<size_t>(length, kMaxExif));
-      const bool has_name =
-          data.starts_with("Exif\0\0"sv);  // prefix as in JPEG, which some writers keep
-      return data.substr(has_name ? 6 : 0);
-    }
-    begin += kHead + length + length % 2;
-  }
-  return "";
-}
-
 // The flag of an animation in the chunk VP8X.
 std::optional<OtherContent> Other(const ImageBytes& file) {
   constexpr std::uint64_t kIsAnimation = 2;
@@ -67,10 +29,40 @@ std::optional<OtherContent> Other(const ImageBytes& file) {
 }
 
 std::optional<ImageHeader> Header(const ImageBytes& file) {
-  const auto size = Size(file);
-  if (!size) return std::nullopt;
-  const std::string exif = Exif(file);
-  return ImageHeader{*size, ExifOrientation(exif).value_or(1), std::nullopt, ExifTimeTaken(exif)};
+  const auto chunk = file.At(kFirstChunk, kHead + 10);
+  if (!chunk) return std::nullopt;
+  const std::string_view data = std::string_view(*chunk).substr(kHead);
+  const auto number = [&](size_t at, size_t count) {
+    return static_cast<std::int64_t>(NumberFromBytes(data.substr(at, count), kOrder));
+  };
+  // The canvas of a file of several chunks (VP8X), or the size of its only picture, compressed with
+  // loss (VP8) or without (VP8L).
+  constexpr std::int64_t kFourteenBits = 0x3fff;
+  ImageSize size;
+  if (chunk->starts_with("VP8X"sv)) {
+    size = {number(4, 3) + 1, number(7, 3) + 1};
+  } else if (chunk->starts_with("VP8 "sv) && data.substr(3, 3) == "\x9d\x01\x2a"sv) {
+    size = {number(6, 2) & kFourteenBits, number(8, 2) & kFourteenBits};
+  } else if (chunk->starts_with("VP8L"sv) && data[0] == '\x2f') {
+    size = {(number(1, 4) & kFourteenBits) + 1, (number(1, 4) >> 14 & kFourteenBits) + 1};
+  } else {
+    return std::nullopt;
+  }
+  constexpr size_t kMaxExif = 1 << 16;
+  std::string exif;
+  std::uint64_t begin = kFirstChunk;
+  for (int i = 0; i < kMaxChunks; ++i) {
+    const auto head = file.At(begin, kHead);
+    if (!head) break;
+    const std::uint64_t length = NumberFromBytes(std::string_view(*head).substr(4), kOrder);
+    if (head->starts_with("EXIF"sv)) {
+      exif = file.UpTo(begin + kHead, std::min<size_t>(length, kMaxExif));
+      if (exif.starts_with("Exif\0\0"sv)) exif.erase(0, 6);  // JPEG's, which some writers keep
+      break;
+    }
+    begin += kHead + length + length % 2;
+  }
+  return ImageHeader{size, ExifOrientation(exif).value_or(1), std::nullopt, ExifTimeTaken(exif)};
 }
 
 }  // namespace
