@@ -1,10 +1,27 @@
-# What find_package(soslam) reads: soslam::core, which needs Eigen and Ceres, and soslam::soslam with the rest, unless
-# core is the only component that is asked for.
+# What find_package(soslam) reads. Components: core, for soslam::core, which needs Eigen and Ceres; soslam, for
+# soslam::soslam with the rest. Both without any.
 include(CMakeFindDependencyMacro)
+if(NOT soslam_FIND_COMPONENTS)
+  set(soslam_FIND_COMPONENTS core soslam)
+endif()
+foreach(component ${soslam_FIND_COMPONENTS})
+  if(NOT component MATCHES "^(core|soslam)$")
+    set(soslam_FOUND FALSE)
+    set(soslam_NOT_FOUND_MESSAGE "soslam has the components core and soslam, and no ${component}")
+    return()
+  endif()
+endforeach()
 find_dependency(Eigen3)
 find_dependency(Ceres 2.1)
 include(${CMAKE_CURRENT_LIST_DIR}/soslam-core-targets.cmake)
-if(NOT soslam_FIND_COMPONENTS STREQUAL "core")
+if(soslam IN_LIST soslam_FIND_COMPONENTS)
   include(${CMAKE_CURRENT_LIST_DIR}/soslam-dependencies.cmake)
+  if(soslam_MISSING)
+    set(soslam_FOUND FALSE)
+    set(soslam_NOT_FOUND_MESSAGE "soslam::soslam needs${soslam_MISSING}")
+  endif()
+  if(DEFINED soslam_FOUND AND NOT soslam_FOUND)  # a package is missing, which a message says
+    return()
+  endif()
   include(${CMAKE_CURRENT_LIST_DIR}/soslam-targets.cmake)
 endif()

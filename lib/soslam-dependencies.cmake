@@ -12,13 +12,12 @@ if(NOT TARGET yaml-cpp::yaml-cpp)  # before 0.8
 endif()
 # HDF5, FFmpeg's, those of ONNX files, and a second backend of detector networks, where its package is there
 # (libonnxruntime-dev of Debian 13).
-find_library(SOSLAM_hdf5 NAMES hdf5_serial hdf5)
 foreach(library hdf5 avformat avcodec swscale avutil onnx_proto protobuf onnxruntime)
-  find_library(SOSLAM_${library} ${library})
-  if(SOSLAM_${library} AND NOT TARGET soslam_needs::${library})
-    add_library(soslam_needs::${library} UNKNOWN IMPORTED)
-    set_target_properties(soslam_needs::${library} PROPERTIES IMPORTED_LOCATION ${SOSLAM_${library}})
+  find_library(SOSLAM_${library} NAMES ${library}_serial ${library})  # Debian's HDF5 is hdf5_serial
+  if(SOSLAM_${library} AND NOT TARGET soslam_external::${library})
+    add_library(soslam_external::${library} UNKNOWN IMPORTED)
+    set_target_properties(soslam_external::${library} PROPERTIES IMPORTED_LOCATION ${SOSLAM_${library}})
   elseif(NOT SOSLAM_${library} AND NOT library STREQUAL onnxruntime)
-    message(FATAL_ERROR "soslam needs the library ${library}; its development package is not installed")
+    string(APPEND soslam_MISSING " the library ${library}")
   endif()
 endforeach()

@@ -57,7 +57,7 @@ struct Case {
   OptimiseOptions actual = ModelOptions();
   OptimiseOptions assumed = ModelOptions();
   // What is seen of the body's edges; nothing where it is empty.
-  std::function<EvidenceOfImages(const Truth&, const EdgeOptions&)> edge_images;
+  std::function<EvidenceOfImages(const Truth&, const EdgeOptions&)> images;
   // Sparse points; none where it is empty.
   std::function<PointsOfObject(const Truth&)> points;
   double ratio_log_sigma = 0.1;
@@ -123,7 +123,7 @@ Nees MeanNees(const Case& c) {
     Landmark start = truth.landmark_in_world;
     start.shape_exponents = c.assumed_exponent;
     BackEndInput input{sequence, {start}, {truth.prior}};
-    if (c.edge_images) input.images = c.edge_images(truth, c.assumed.edges);
+    if (c.images) input.images = c.images(truth, c.assumed.edges);
     if (c.points) input.points = {c.points(truth)};
     const MapEstimate map = OptimiseMap(input, c.assumed);
     const Landmark& found = *map.objects[0].landmark_in_world;
@@ -311,7 +311,7 @@ double PerimeterPerPiece() {
 TEST(SlowEdgeCalibration, CovariancesAreHonestWherePiecesOfEdgesErrIndependently) {
   Case c;
   c.scenes = 100;
-  c.edge_images = DisplacedEdgesOfAllViews;
+  c.images = DisplacedEdgesOfAllViews;
   EdgeOptions& edges = c.assumed.edges;
   edges.edge_sigma_px = kSigmaPx;
   edges.edge_spacing_px = kPiecePx;

@@ -5,11 +5,11 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "soslam/artefact/files.h"
-#include "soslam/artefact/undistorted_points.h"
 #include "soslam/base/error.h"
 #include "soslam/geometry/distortion.h"
 #include "soslam/image/box_colours.h"
 #include "soslam/image/feature_matches.h"
+#include "soslam/image/undistorted_points.h"
 #include "soslam/stage/read_evidence.h"
 #include "soslam/stage/stages.h"
 #include "support/expect_error.h"

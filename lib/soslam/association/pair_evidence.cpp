@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "soslam/artefact/undistorted_points.h"
+#include "soslam/image/undistorted_points.h"
 #include "soslam/model/occlusion.h"
 
 namespace soslam {

@@ -4,6 +4,7 @@
 #include <ceres/cost_function.h>
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "soslam/constraints/landmark_cost.h"
@@ -11,34 +12,37 @@
 
 namespace soslam {
 
-// Residuals of one image for one landmark. Blocks: world_from_camera, landmark in the world.
+// Residuals of one image for one landmark, of which each compares something, as a pair of pixels.
+// Blocks: world_from_camera, landmark in the world. Bodies of any shape have no loss on top of
+// these: their cost should be bounded.
 struct ImageResiduals {
-  std::vector<std::unique_ptr<ceres::CostFunction>> functions;
-  int count = 0;               // of what they compare, as the pairs of a texture
+  std::string name;      // in SolverSummary::residuals, with `count`; no other evidence has it
+  std::string why_none;  // in SolverSummary::gated, where there are no functions
+  std::vector<std::unique_ptr<ceres::CostFunction>> functions = {};
+  int count = 0;
   double constant_cost = 0.0;  // on top of theirs
 };
 
-// What an image says about the landmark of one detection. Landmarks are in its camera.
+// What an image says about the landmark of one detection. Landmarks are in its camera. The initial
+// landmark has the least sum of the costs below, the map that of the residuals.
 class ImageEvidence {
  public:
   virtual ~ImageEvidence() = default;
 
-  // Name of its residuals in SolverSummary::residuals.
-  virtual const char* Kind() const = 0;
-  // Name in SolverSummary::gated of an image without residuals.
-  virtual const char* WhyNoResiduals() const = 0;
-
-  // The residuals, multiplied by a weight. What is compared, as the edges that are visible, is
-  // chosen at `start`. It may weigh less where it fits another landmark badly: `start` if null.
+  // The residuals. `weight`, below 1 where other detections see the object from the same side
+  // (view_correlation_deg), is a factor of the cost of what errs as their boxes do; what errs
+  // independently need not have it. What is compared, as the edges that are
+  // visible, is chosen at `start`. How reliable the image is may be measured at another landmark,
+  // `weighed_at`; null: at `start`.
   virtual ImageResiduals ResidualsAt(const Landmark& start, const Landmark* weighed_at,
                                      double weight) const = 0;
 
-  // The cost near a start, with derivatives; null if landmarks can only be compared.
+  // The cost near a start, with derivatives; null: it has no part in fits.
   virtual std::unique_ptr<const LandmarkCost> CostNear(const Landmark& /*start*/) const {
     return nullptr;
   }
-  virtual bool IsOnlyCompared() const = 0;
-  // The cost by which landmarks are compared, none below zero.
+
+  // A cost, none below zero, by which fitted landmarks are compared, beside that of CostNear.
   virtual double ComparedCost(const Landmark& /*landmark*/) const { return 0.0; }
 };
 

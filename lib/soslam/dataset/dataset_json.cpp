@@ -179,7 +179,7 @@ LensCamera ReadCamera(const std::filesystem::path& path, CameraYAxis y_axis) {
   const json fields = ParseJsonFile(path);
   const Entry entry(fields, path.string());
   entry.RefuseUnknownKeys(kCameraKeys);
-  LensCamera read{ParseCamera(entry)};
+  LensCamera read{ParseCamera(entry), {}};
   std::vector<double> coefficients;
   if (entry.Has("distortion")) coefficients = entry.Reals("distortion");
   for (const char* name : {"model", "camera_model", "distortion_model"}) {

@@ -6,10 +6,10 @@
 #include <map>
 
 #include "soslam/artefact/json_file.h"
-#include "soslam/artefact/undistorted_points.h"
 #include "soslam/evaluation/alignment.h"
 #include "soslam/evaluation/statistics.h"
 #include "soslam/geometry/triangulation.h"
+#include "soslam/image/undistorted_points.h"
 #include "soslam/model/segments.h"
 
 namespace soslam {

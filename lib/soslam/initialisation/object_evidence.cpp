@@ -54,8 +54,10 @@ LandmarkCosts FurtherCosts(const ObjectEvidence& evidence, const Landmark& linea
   for (const FurtherEvidence& further : evidence.further) {
     const Landmark in_camera = Transform(further.camera_from_reference, linearisation);
     if (!IsInFront(in_camera)) continue;
-    costs.push_back(std::make_unique<ViewCost>(further.cost_at(in_camera),
-                                               further.camera_from_reference, further.weight));
+    if (auto cost = further.cost_at(in_camera)) {
+      costs.push_back(std::make_unique<ViewCost>(std::move(cost), further.camera_from_reference,
+                                                 further.weight));
+    }
   }
   return costs;
 }

@@ -28,7 +28,8 @@ struct BoxView {
   double weight = 1.0;  // factor of its cost
 };
 
-// A cost of images or points in one camera that is made anew for each linearisation point.
+// A cost of images or points in one camera that is made anew for each linearisation point; null
+// where there is none.
 struct FurtherEvidence {
   std::function<std::unique_ptr<const LandmarkCost>(const Landmark& in_camera)> cost_at;
   Rigid3d camera_from_reference;

@@ -5,6 +5,7 @@
 
 #include "soslam/base/error.h"
 #include "soslam/mapping/back_end_problem.h"
+#include "soslam/mapping/check_input.h"
 #include "soslam/mapping/covariance.h"
 #include "soslam/mapping/input_alternatives.h"
 
@@ -77,6 +78,7 @@ void AddCovariances(const Sequence& sequence, const MarginalCovariances& covaria
 }  // namespace
 
 MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& options, int threads) {
+  CheckBackEndInput(input, options);
   BackEndProblem problem(input, options, threads);
   MapEstimate map;
   problem.Solve();

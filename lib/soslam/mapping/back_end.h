@@ -24,7 +24,8 @@ struct BackEndInput {
   // Initial landmarks, one per object of the sequence, in the world frame of
   // Frame::world_from_camera. Objects without one are left out.
   std::vector<std::optional<Landmark>> initial_landmarks;
-  // Prior of each object's ratio as it stands; without one, it has no ratio constraint.
+  // Prior of each object's ratio as it stands. Without one it has no ratio constraint, and is a
+  // cuboid where bodies have any shape.
   std::vector<std::optional<ShapePrior>> priors;
   EvidenceOfImages images = {};
   // Points of each object (FindObjectPoints); empty: none are used.
@@ -41,7 +42,8 @@ struct BackEndInput {
 // each segment is constant, as it defines the segment's world; with hold_poses all are, and
 // odometry has no cost. Objects fail with no_start without an initial landmark, with moving if they
 // move, and with collapsed if their landmark ends without HasExtent. The result does not depend on
-// the number of threads. Throws NumericalError when the solver has no usable solution.
+// the number of threads. Throws InputError as CheckBackEndInput (check_input.h), NumericalError
+// when the solver has no usable solution.
 MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& options, int threads = 1);
 
 // One object at the minimum of the back end's cost near a start, with all else constant.

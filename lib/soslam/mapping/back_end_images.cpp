@@ -13,8 +13,6 @@
 namespace soslam {
 namespace {
 
-// The kind of residuals, and the reason for leaving an object out.
-constexpr const char* kPoints = "points";
 constexpr const char* kNoPoints = "objects_without_points";
 
 }  // namespace
@@ -25,11 +23,8 @@ void BackEndProblem::RenewImageResiduals() {
     blocks->clear();
   }
   summary_.constant_cost = 0.0;
-  for (const auto& [index, image] : input_.images) {
-    summary_.residuals.erase(image->Kind());
-    summary_.gated.erase(image->WhyNoResiduals());
-  }
-  summary_.residuals.erase(kPoints);
+  for (const std::string& name : image_residuals_) summary_.residuals.erase(name);
+  for (const std::string& reason : images_without_residuals_) summary_.gated.erase(reason);
   summary_.gated.erase(kNoPoints);
   const auto is_used = [&](int detection_index) {
     const auto& detection = input_.sequence.detections[detection_index];
@@ -58,17 +53,20 @@ void BackEndProblem::RenewImageResiduals() {
 }
 
 void BackEndProblem::AddImageBlocks(size_t index, ImageBlocks blocks) {
-  summary_.constant_cost += blocks.residuals.constant_cost;
-  if (blocks.residuals.functions.empty()) {
-    ++summary_.gated[blocks.reason_for_none];
+  auto& [residuals, of_points] = blocks;
+  summary_.constant_cost += residuals.constant_cost;
+  if (residuals.functions.empty()) {
+    ++summary_.gated[residuals.why_none];
+    images_without_residuals_.insert(residuals.why_none);
     return;
   }
-  summary_.residuals[blocks.kind] += blocks.residuals.count;
+  summary_.residuals[residuals.name] += residuals.count;
+  image_residuals_.insert(residuals.name);
   const Detection& detection = input_.sequence.detections[index];
-  auto& added = blocks.kind == kPoints ? point_blocks_ : image_blocks_;
+  auto& added = of_points ? point_blocks_ : image_blocks_;
   // Costs of bodies of any shape are bounded.
   ceres::LossFunction* loss = IsTangency() ? nullptr : &loss_;
-  for (auto& function : blocks.residuals.functions) {
+  for (auto& function : residuals.functions) {
     added.push_back(problem_.AddResidualBlock(function.release(), loss, Pose(detection),
                                               LandmarkOf(detection)));
   }
@@ -77,14 +75,15 @@ void BackEndProblem::AddImageBlocks(size_t index, ImageBlocks blocks) {
 BackEndProblem::ImageBlocks BackEndProblem::BlocksOfImage(size_t index,
                                                           const ImageEvidence& image) const {
   const Detection& detection = input_.sequence.detections[index];
-  const Landmark in_camera = LandmarkInCamera(detection);
   std::optional<Landmark> weighed_at;
   if (!input_.images_weighed_at.empty()) {
-    weighed_at = Transform(variables_.PoseValue(detection.frame_index).Inverse(),
-                           *input_.images_weighed_at[detection.object_index]);
+    weighed_at = input_.images_weighed_at[detection.object_index];
   }
-  return {image.Kind(), image.WhyNoResiduals(),
-          image.ResidualsAt(in_camera, weighed_at ? &*weighed_at : nullptr, view_weights_[index])};
+  if (weighed_at) {
+    weighed_at = Transform(variables_.PoseValue(detection.frame_index).Inverse(), *weighed_at);
+  }
+  return {image.ResidualsAt(LandmarkInCamera(detection), weighed_at ? &*weighed_at : nullptr,
+                            view_weights_[index])};
 }
 
 PointCost BackEndProblem::PointCostOf(size_t object_index, const PointsInView& view,
@@ -123,7 +122,7 @@ BackEndProblem::ImageBlocks BackEndProblem::PointBlocks(size_t object_index,
   const Detection& detection = input_.sequence.detections[view.detection_index];
   const Landmark in_camera = LandmarkInCamera(detection);
   auto points = std::make_unique<PointCost>(PointCostOf(object_index, view, in_camera));
-  ImageBlocks blocks{kPoints, nullptr, {{}, static_cast<int>(view.points.size())}};
+  ImageBlocks blocks{{"points", "", {}, static_cast<int>(view.points.size())}, true};
   blocks.residuals.functions.push_back(
       std::make_unique<ImageResidual>(std::move(points), in_camera.shape_exponents));
   return blocks;

@@ -6,6 +6,8 @@
 #include <deque>
 #include <limits>
 #include <memory>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "soslam/initialisation/points_in_frames.h"
@@ -63,9 +65,8 @@ class BackEndProblem {
  private:
   // Residuals of images or points for one landmark.
   struct ImageBlocks {
-    const char* kind;
-    const char* reason_for_none;
     ImageResiduals residuals;
+    bool of_points = false;
   };
 
   bool IsTangency() const { return options_.detection_model == DetectionModel::kTangency; }
@@ -101,6 +102,7 @@ class BackEndProblem {
   std::vector<ceres::ResidualBlockId> box_blocks_;
   std::vector<ceres::ResidualBlockId> image_blocks_;  // of texture and edges
   std::vector<ceres::ResidualBlockId> point_blocks_;
+  std::set<std::string> image_residuals_, images_without_residuals_;  // their names in the summary
   PointCost::SecondDerivatives second_derivatives_of_points_ =
       PointCost::SecondDerivatives::kMaximisation;
   SolverSummary summary_;

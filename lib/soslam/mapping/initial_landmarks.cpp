@@ -15,6 +15,7 @@
 #include "soslam/geometry/angles.h"
 #include "soslam/initialisation/fit_object.h"
 #include "soslam/initialisation/points_in_frames.h"
+#include "soslam/mapping/check_input.h"
 
 namespace soslam {
 namespace {
@@ -46,13 +47,10 @@ ObjectEvidence EvidenceOfViews(const BackEndInput& input, size_t object_index,
     const auto at = std::ranges::find(views, index);
     if (at == views.end()) continue;
     const BoxView& view = evidence.views[at - views.begin()];
-    if (image->IsOnlyCompared()) {
-      compared.emplace_back(view, image);
-    } else {
-      evidence.further.push_back(
-          {[&image = *image](const Landmark& in_camera) { return image.CostNear(in_camera); },
-           view.camera_from_reference, view.weight});
-    }
+    compared.emplace_back(view, image);
+    evidence.further.push_back(
+        {[&image = *image](const Landmark& in_camera) { return image.CostNear(in_camera); },
+         view.camera_from_reference, view.weight});
   }
   if (!compared.empty()) {
     evidence.compared_cost = [compared](const Landmark& landmark, double limit) {
@@ -188,6 +186,9 @@ std::vector<std::optional<Landmark>> ChooseInitialUprightLandmarks(
     const BackEndInput& input, const LandmarkEstimates& estimates, const OptimiseOptions& options,
     int threads) {
   const Sequence& sequence = input.sequence;
+  BackEndInput checked = input;
+  checked.initial_landmarks.resize(sequence.objects.size());
+  CheckBackEndInput(checked, options);
   std::vector<std::vector<Landmark>> hypotheses = HypothesesByObject(sequence, estimates);
   for (const ObjectEstimate& object : estimates.objects) {
     if (!object.landmark_in_world) continue;

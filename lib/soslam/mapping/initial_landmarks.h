@@ -28,7 +28,7 @@ std::vector<std::optional<Landmark>> ChooseInitialLandmarks(const Sequence& sequ
 // views, and the minima of ProfileOverYaw, the best of every few degrees of yaw is fitted to the
 // boxes, edges and ratio prior of views spread over the whole sequence, with constant poses; the
 // one of lowest cost is taken, which with symmetry images includes the texture of these views.
-// `input.initial_landmarks` is not used.
+// `input.initial_landmarks` may be empty and is not used. Throws InputError as CheckBackEndInput.
 std::vector<std::optional<Landmark>> ChooseInitialUprightLandmarks(
     const BackEndInput& input, const LandmarkEstimates& estimates, const OptimiseOptions& options,
     int threads);

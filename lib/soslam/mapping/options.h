@@ -19,6 +19,9 @@ enum class DetectionModel {
 };
 inline constexpr std::array kDetectionModelNames = {"quadric", "tangency"};
 
+// Whether and how images and points are evidence (symmetry, edge_alignment and what belongs to
+// them, pictures, points.point_evidence) is for those who make BackEndInput, as the stage
+// "optimise".
 struct OptimiseOptions {
   DetectionModel detection_model = DetectionModel::kQuadric;
   bool hold_poses = false;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <fmt/format.h>
-
 #include <array>
 #include <iterator>
 #include <map>
@@ -278,17 +276,18 @@ void Describe(Visitor& visit, Associations& associations) {
     const auto tracks = std::ssize(associations.tracks);
     std::vector<std::pair<std::string, int>> named;
     for (const Associations::ObjectRow& row : associations.objects) {
-      named.emplace_back(fmt::format("object {} is of", row.object), row.track);
+      named.emplace_back("object " + std::to_string(row.object) + " is of", row.track);
     }
     for (const Associations::DetectionRow& row : associations.detections) {
       if (row.track) named.emplace_back("a detection is of", *row.track);
     }
     for (const Associations::KeptOutRow& row : associations.kept_out) {
-      named.emplace_back(fmt::format("object {} is without", row.object), row.track);
+      named.emplace_back("object " + std::to_string(row.object) + " is without", row.track);
     }
     for (const auto& [what, track] : named) {
       if (track < tracks) continue;
-      return fmt::format("{} track {} of {}; expected one in the list", what, track, tracks);
+      return what + " track " + std::to_string(track) + " of " + std::to_string(tracks) +
+             "; expected one in the list";
     }
     return std::string();
   });

@@ -38,6 +38,8 @@ struct ObservationEstimate {
 inline constexpr const char* kMovingObject = "moving";
 inline constexpr const char* kFewerThanThreeMeasuredEdges = "fewer_than_three_measured_edges";
 
+// Over the degrees of freedom of a landmark, in the order of kLandmarkDof: rotation, centre, log
+// half axes.
 using Covariance9 = Eigen::Matrix<double, 9, 9>;
 
 // Sparse point that may be of an object, and what the object's landmark says of it.

@@ -14,7 +14,8 @@ namespace soslam {
 struct PointObservation {
   int frame_id = 0;  // Frame::id: the 0-based row in the dataset's image list
   // (0, 0) is the centre of the top-left pixel. In the image as it is stored, lens distortion
-  // included; estimates take points without it (WithoutDistortion).
+  // included; estimates take points without it
+  // (WithoutDistortion in image/undistorted_points.h).
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
 };
 

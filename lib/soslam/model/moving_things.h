@@ -15,7 +15,7 @@ inline constexpr double kLeastMovingScore = 0.25;
 std::vector<std::vector<Box>> BoxesOfMovingThings(const Sequence& sequence);
 
 // The points of which less than half of the image points in frames of the sequence lie in boxes of
-// things that move.
+// things that move. Pixels are without lens distortion.
 std::vector<MapPoint> WithoutMovingThings(const Sequence& sequence, std::vector<MapPoint> points);
 
 // The number of these boxes by label, and of the images that they cover for the most part.

@@ -20,7 +20,8 @@ struct ReconstructionSummary {
   struct Component {
     int images = 0;
     int points = 0;
-    std::string folder;  // its name, beside those of the others; empty for a model without others
+    std::string folder =
+        {};  // its name, beside those of the others; empty for a model without others
   };
   int images = 0;      // in the dataset's list
   int registered = 0;  // images with a pose

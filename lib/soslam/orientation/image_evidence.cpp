@@ -15,20 +15,20 @@ class TextureEvidence : public ImageEvidence {
                   const SymmetryOptions& symmetry_options)
       : image_(std::move(image)), camera_(camera), symmetry_options_(symmetry_options) {}
 
-  const char* Kind() const override { return "symmetry"; }
-  const char* WhyNoResiduals() const override { return "symmetry_with_too_few_visible_pairs"; }
-  bool IsOnlyCompared() const override { return true; }
-
  protected:
+  static ImageResiduals Pairs(int count) {
+    return {"symmetry", "symmetry_with_too_few_visible_pairs", {}, count};
+  }
+
   std::shared_ptr<const SymmetryImage> image_;
   Camera camera_;
   SymmetryOptions symmetry_options_;
 };
 
-class PairEvidenceOfTexture final : public TextureEvidence {
+class PaperEvidence final : public TextureEvidence {
  public:
-  PairEvidenceOfTexture(std::shared_ptr<const SymmetryImage> image, const Camera& camera,
-                        const SymmetryOptions& options, double sigma)
+  PaperEvidence(std::shared_ptr<const SymmetryImage> image, const Camera& camera,
+                const SymmetryOptions& options, double sigma)
       : TextureEvidence(std::move(image), camera, options), sigma_(sigma) {}
 
   ImageResiduals ResidualsAt(const Landmark& start, const Landmark* /*weighed_at*/,
@@ -41,7 +41,7 @@ class PairEvidenceOfTexture final : public TextureEvidence {
         visible.push_back(pixel);
       }
     }
-    ImageResiduals residuals{{}, static_cast<int>(visible.size())};
+    ImageResiduals residuals = Pairs(static_cast<int>(visible.size()));
     if (residuals.count < symmetry_options_.MinPairs(samples.size())) return residuals;
     for (const Eigen::Vector2d& pixel : visible) {
       residuals.functions.push_back(std::make_unique<SymmetryResidual>(
@@ -66,7 +66,7 @@ class AsymmetryEvidence final : public TextureEvidence {
                              double weight) const override {
     auto cost = std::make_unique<AsymmetryCost>(image_, camera_, start, options_, symmetry_options_,
                                                 weight);
-    ImageResiduals residuals{{}, cost->NumPairs()};
+    ImageResiduals residuals = Pairs(cost->NumPairs());
     if (residuals.count == 0) {
       residuals.constant_cost = weight * options_.asymmetry_cost;
     } else {
@@ -89,10 +89,6 @@ class EdgeEvidence final : public ImageEvidence {
                const EdgeOptions& options)
       : image_(std::move(image)), camera_(camera), options_(options) {}
 
-  const char* Kind() const override { return "edges"; }
-  const char* WhyNoResiduals() const override { return "no_edge_point_counts"; }
-  bool IsOnlyCompared() const override { return false; }
-
   ImageResiduals ResidualsAt(const Landmark& start, const Landmark* weighed_at,
                              double weight) const override {
     auto cost = std::make_unique<EdgeCost>(image_, camera_, start, options_);
@@ -100,7 +96,7 @@ class EdgeEvidence final : public ImageEvidence {
         weighed_at ? EdgeCost(image_, camera_, *weighed_at, options_).Support(*weighed_at)
                    : cost->Support(start);
     cost->Weigh(weight * support * support);
-    ImageResiduals residuals{{}, 1, cost->ConstantCost()};
+    ImageResiduals residuals{"edges", "no_edge_point_counts", {}, 1, cost->ConstantCost()};
     if (cost->NumPoints() > 0) {
       residuals.functions.push_back(
           std::make_unique<ImageResidual>(std::move(cost), start.shape_exponents));
@@ -123,7 +119,7 @@ class EdgeEvidence final : public ImageEvidence {
 std::shared_ptr<const ImageEvidence> PairsOfTexture(std::shared_ptr<const SymmetryImage> image,
                                                     const Camera& camera,
                                                     const SymmetryOptions& options, double sigma) {
-  return std::make_shared<PairEvidenceOfTexture>(std::move(image), camera, options, sigma);
+  return std::make_shared<PaperEvidence>(std::move(image), camera, options, sigma);
 }
 
 std::shared_ptr<const ImageEvidence> AsymmetryOfTexture(std::shared_ptr<const SymmetryImage> image,

@@ -12,7 +12,8 @@
 namespace soslam {
 
 // The symmetry constraint of the paper, eq. (16), of all visible pairs of pixels. `sigma`: standard
-// deviation of a pair's difference, in the descriptor's unit. Does not compare landmarks.
+// deviation of a pair's difference, in the descriptor's unit; as in the paper, neither the weight
+// of the view nor the initial landmark has to do with it.
 std::shared_ptr<const ImageEvidence> PairsOfTexture(std::shared_ptr<const SymmetryImage> image,
                                                     const Camera& camera,
                                                     const SymmetryOptions& options, double sigma);

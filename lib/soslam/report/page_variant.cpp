@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "soslam/artefact/files.h"
-#include "soslam/artefact/undistorted_points.h"
 #include "soslam/base/error.h"
+#include "soslam/image/undistorted_points.h"
 #include "soslam/model/map_points.h"
 #include "soslam/model/reasons.h"
 #include "soslam/model/segments.h"

@@ -10,7 +10,6 @@
 
 #include "soslam/artefact/files.h"
 #include "soslam/artefact/options_json.h"
-#include "soslam/artefact/undistorted_points.h"
 #include "soslam/association/agreement.h"
 #include "soslam/association/association.h"
 #include "soslam/association/edits.h"
@@ -24,6 +23,7 @@
 #include "soslam/ground/estimate_ground.h"
 #include "soslam/ground/ground_checks.h"
 #include "soslam/ground/options.h"
+#include "soslam/image/undistorted_points.h"
 #include "soslam/mapping/back_end.h"
 #include "soslam/mapping/initial_landmarks.h"
 #include "soslam/mapping/options.h"

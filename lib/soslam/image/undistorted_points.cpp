@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "soslam/artefact/undistorted_points.h"
+#include "soslam/image/undistorted_points.h"
 
 #include "soslam/image/distort_pixels.h"
 
