@@ -42,25 +42,26 @@ bool IsColoured() {
   return isatty(STDOUT_FILENO) != 0 && (no_color == nullptr || *no_color == '\0');
 }
 
-// Returns the option --headline, which takes no option of pictures or tables.
-CLI::Option* AddFiles(CLI::App* app, soslam::InspectRequest* request) {
+void AddArguments(CLI::App* app, Arguments* arguments) {
+  soslam::InspectRequest* request = &arguments->request;
   app->add_option("FILE", request->file, "an artefact of any kind, JSON or HDF5")
       ->option_text("PATH")
       ->group("Files");
-  const auto add = [&](const char* name, auto* path, const char* doc) {
+  const auto add_file = [&](const char* name, auto* path, const char* doc) {
     return app->add_option(name, *path, doc)->option_text("PATH")->group("Files");
   };
-  add("--sequence", &request->sequence,
+  add_file(
+      "--sequence", &request->sequence,
       "sequence.json that the artefact was made from:\nfor labels of objects, and for pictures");
   CLI::Option* dataset =
-      add("--dataset", &request->dataset, "dataset folder with the images, for pictures");
+      add_file("--dataset", &request->dataset, "dataset folder with the images, for pictures");
   CLI::Option* table =
       app->add_option("--table", request->table,
                       "this table alone, with all rows and what its columns are\n[default all "
                       "tables, shortened; with --csv the first one]");
   table->option_text("string")->group("Files");
-  CLI::Option* csv = add("--csv", &request->csv,
-                         "table to write as CSV, in full precision; - for standard output");
+  CLI::Option* csv = add_file("--csv", &request->csv,
+                              "table to write as CSV, in full precision; - for standard output");
   CLI::Option* headline = app->add_flag(
       "--headline", request->headline,
       "one line instead, of map.json, for scripts: how many objects\nit has, how "
@@ -68,24 +69,21 @@ CLI::Option* AddFiles(CLI::App* app, soslam::InspectRequest* request) {
       "should not be trusted; reads\nsequence.json, "
       "associations.json and world.json beside it");
   headline->option_text(" ")->group("Files");
-  CLI::Option* image =
-      add("--image", &request->image,
-          "picture to write (.png): of sequence, landmarks and map\nthe boxes, landmarks and "
-          "ground truth of a frame; of edges\nits maps; of symmetry the pairs of an observation");
+  CLI::Option* image = add_file(
+      "--image", &request->image,
+      "picture to write (.png): of sequence, landmarks and map\nthe boxes, landmarks and "
+      "ground truth of a frame; of edges\nits maps; of symmetry the pairs of an observation");
   for (CLI::Option* option : {dataset, table, csv, image}) headline->excludes(option);
-  return headline;
-}
-
-void AddOptions(CLI::App* app, Arguments* arguments, CLI::Option* headline) {
-  const auto add = [&](const char* name, auto* value, const char* type, const char* doc) {
+  const auto add_option = [&](const char* name, auto* value, const char* type, const char* doc) {
     CLI::Option* option = app->add_option(name, *value, doc);
     option->option_text(type)->excludes(headline)->group("Options");
     return option;
   };
-  add("--frame", &arguments->request.frame_id, "integer", "id of the frame of the picture");
-  add("--object", &arguments->request.object_id, "integer",
-      "id of an object: its rows alone; of a picture of symmetry its object");
-  add("--layer", &arguments->layer, "string",
+  add_option("--frame", &request->frame_id, "integer", "id of the frame of the picture");
+  add_option("--object", &request->object_id, "integer",
+             "id of an object: its rows alone; of a picture of symmetry its object");
+  add_option(
+      "--layer", &arguments->layer, "string",
       "what of edges is in the picture\n[default all; one of all, grey, edges, distance, nearest]")
       ->check(CLI::IsMember(std::vector<std::string>(soslam::kEdgeLayerNames.begin(),
                                                      soslam::kEdgeLayerNames.end())));
@@ -108,22 +106,6 @@ CLI::App* AddDiff(CLI::App* app, Arguments* arguments) {
   return diff;
 }
 
-int Run(Arguments* arguments, bool is_diff) {
-  if (is_diff) {
-    const soslam::Differences differences =
-        soslam::CompareArtefacts(arguments->one, arguments->two, arguments->tolerance);
-    fmt::print("{}", FormatDifferences(differences, arguments->tolerance, IsColoured()));
-    return differences.content.empty() ? static_cast<int>(soslam::ExitCode::kDone)
-                                       : soslam::kFindings;
-  }
-  if (arguments->request.file.empty()) throw CLI::RequiredError("FILE");
-  const auto layer = std::ranges::find(soslam::kEdgeLayerNames, arguments->layer);
-  arguments->request.layer =
-      static_cast<soslam::EdgeLayer>(layer - soslam::kEdgeLayerNames.begin());
-  fmt::print("{}", RunInspect(arguments->request, IsColoured()));
-  return static_cast<int>(soslam::ExitCode::kDone);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -134,11 +116,22 @@ int main(int argc, char** argv) {
     app.get_formatter()->column_width(34);
     soslam::internal::AddOutsidePaths(&app);
     soslam::internal::AddHelpAndVersion(&app);
-    CLI::Option* headline = AddFiles(&app, &arguments.request);
-    AddOptions(&app, &arguments, headline);
+    AddArguments(&app, &arguments);
     const CLI::App* diff = AddDiff(&app, &arguments);
     app.footer(HelpFooter(kExamples));
     app.parse(argc, argv);
-    return Run(&arguments, diff->parsed());
+    if (diff->parsed()) {
+      const soslam::Differences differences =
+          soslam::CompareArtefacts(arguments.one, arguments.two, arguments.tolerance);
+      fmt::print("{}", FormatDifferences(differences, arguments.tolerance, IsColoured()));
+      return differences.content.empty() ? static_cast<int>(soslam::ExitCode::kDone)
+                                         : soslam::kFindings;
+    }
+    if (arguments.request.file.empty()) throw CLI::RequiredError("FILE");
+    const auto layer = std::ranges::find(soslam::kEdgeLayerNames, arguments.layer);
+    arguments.request.layer =
+        static_cast<soslam::EdgeLayer>(layer - soslam::kEdgeLayerNames.begin());
+    fmt::print("{}", RunInspect(arguments.request, IsColoured()));
+    return static_cast<int>(soslam::ExitCode::kDone);
   });
 }

@@ -72,16 +72,6 @@ std::string ReplaceAll(std::string text, const std::string& from, const std::str
   return text;
 }
 
-// Possible values of an option; empty when all of its type.
-std::string Domain(const OptionRow& row) {
-  if (row.range) {
-    return fmt::format("{} to {}{}{}", row.range->min, row.range->max, row.unit.empty() ? "" : " ",
-                       row.unit);
-  }
-  if (row.type == "boolean") return "true | false";
-  return fmt::format("{}", fmt::join(row.choices, " | "));
-}
-
 // Layout of --help: names in one column, wrapped texts in another.
 class HelpFormatter : public CLI::Formatter {
  public:
@@ -100,19 +90,6 @@ class HelpFormatter : public CLI::Formatter {
     return Wrapped(option->get_description(), kWidth - kTextColumn);
   }
 };
-
-// Help text of an option: its doc, default, range or choices with units, and what it is used for.
-std::string OptionHelp(const OptionRow& row) {
-  const std::string domain = Domain(row);
-  const std::string value =
-      row.choices.empty() ? row.default_value.dump() : row.default_value.get<std::string>();
-  std::string only_where;
-  for (const OptionVisitor::Conditions& conditions : row.only_where) {
-    only_where += (only_where.empty() ? "; only where " : ", ") + InWords(conditions);
-  }
-  return fmt::format("{}\n[default {}{}{}{}]", row.doc, value, domain.empty() ? "" : "; ", domain,
-                     only_where);
-}
 
 constexpr const char* kFailureRecord = "--failure_record";
 
@@ -168,12 +145,28 @@ void AddFiles(const std::vector<FileArgument>& files, const std::string& group, 
 
 void AddOptions(const std::vector<OptionRow>& options, CLI::App* app, ParsedArguments* parsed) {
   for (const OptionRow& row : options) {
+    std::string domain;  // possible values; empty when all of the type
+    if (row.range) {
+      domain = fmt::format("{} to {}{}{}", row.range->min, row.range->max,
+                           row.unit.empty() ? "" : " ", row.unit);
+    } else if (row.type == "boolean") {
+      domain = "true | false";
+    } else {
+      domain = fmt::format("{}", fmt::join(row.choices, " | "));
+    }
+    const std::string value =
+        row.choices.empty() ? row.default_value.dump() : row.default_value.get<std::string>();
+    std::string only_where;
+    for (const OptionVisitor::Conditions& conditions : row.only_where) {
+      only_where += (only_where.empty() ? "; only where " : ", ") + InWords(conditions);
+    }
     CLI::Option* option = app->add_option_function<std::string>(
         "--" + row.name,
         [parsed, &row](const std::string& text) {
           parsed->options[row.name] = ValueFromText(text, row.type);
         },
-        OptionHelp(row));
+        fmt::format("{}\n[default {}{}{}{}]", row.doc, value, domain.empty() ? "" : "; ", domain,
+                    only_where));
     option->group(row.group.empty() ? "Options" : row.group)->option_text(row.type);
     if (row.type == "boolean") option->expected(0, 1);
   }
@@ -220,61 +213,29 @@ Error CurrentError() {
   }
 }
 
-int Fail(const CLI::App& app, const Error& error) {
-  const int exit_code = static_cast<int>(error.exit_code());
-  std::cerr << app.get_name() << ": error: " << error.what() << std::endl;
-  const CLI::Option* record = app.get_option_no_throw(kFailureRecord);
-  if (record != nullptr && record->count() > 0) {
-    // If the record cannot be written, stderr must suffice.
-    std::ofstream(record->as<std::string>())
-        << fmt::format("exit code {}: {}\n", exit_code, error.what());
-  }
-  return exit_code;
-}
-
 // Throws SettingsError for the first option that the program does not have, with the name that was
-// probably meant.
-void RefuseUnknownOption(const CLI::App& app) {
-  for (const std::string& word : app.remaining()) {
-    if (!word.starts_with('-')) continue;
-    const std::string option = word.substr(0, word.find('='));
-    std::string name = option.substr(std::min(option.find_first_not_of('-'), option.size()));
-    std::ranges::replace(name, '-', '_');
-    std::vector<std::string> names;
-    for (const CLI::Option* known : app.get_options()) names.push_back(known->get_single_name());
-    const auto meant = LikelyMeant(name, names);
-    throw SettingsError(fmt::format("unknown option {}{} (see --help)", option,
-                                    meant ? "; did you mean --" + *meant + "?" : ""));
-  }
-}
-
-// A misspelt option is named before what is missing or wrong because of it.
+// probably meant, before what is missing or wrong because of it.
 void Parse(int argc, const char* const* argv, CLI::App* app) {
   try {
     app->parse(argc, argv);
   } catch (const CLI::Success&) {  // --help and its like
     throw;
   } catch (const CLI::ParseError&) {
-    RefuseUnknownOption(*app);
+    for (const std::string& word : app->remaining()) {
+      if (!word.starts_with('-')) continue;
+      const std::string option = word.substr(0, word.find('='));
+      std::string name = option.substr(std::min(option.find_first_not_of('-'), option.size()));
+      std::ranges::replace(name, '-', '_');
+      std::vector<std::string> names;
+      for (const CLI::Option* known : app->get_options()) {
+        names.push_back(known->get_single_name());
+      }
+      const auto meant = LikelyMeant(name, names);
+      throw SettingsError(fmt::format("unknown option {}{} (see --help)", option,
+                                      meant ? "; did you mean --" + *meant + "?" : ""));
+    }
     throw;
   }
-}
-
-// Warns of settings that have no effect. A file that sets all options, as those that the pipeline
-// writes, chooses none.
-void WarnOfSettingsWithoutEffect(const std::vector<SettingsLayer>& layers,
-                                 const std::vector<OptionRow>& options,
-                                 const nlohmann::json& resolved, const StageInfo& info) {
-  std::vector<Finding> findings;
-  for (const SettingsLayer& layer : layers) {
-    if (layer.values.size() == options.size()) continue;
-    for (const auto& [name, value] : layer.values.items()) {
-      const auto unmet = UnmetConditions(options, resolved, name);
-      if (unmet.empty()) continue;
-      findings.push_back(SettingWithoutEffect(layer.where, name, value, unmet));
-    }
-  }
-  ReportFindings(info.name.substr(std::string("soslam-").size()), findings);
 }
 
 int RunRecorded(const ParsedArguments& parsed, const StageInfo& info,
@@ -290,7 +251,17 @@ int RunRecorded(const ParsedArguments& parsed, const StageInfo& info,
     layers.push_back({"command line", "command line", parsed.options});
     const nlohmann::json resolved = body.resolve(layers);
     recorder.SetSettings(resolved, layers);
-    WarnOfSettingsWithoutEffect(layers, options, resolved, info);
+    std::vector<Finding> findings;
+    for (const SettingsLayer& layer : layers) {
+      // A file that sets all options, as those that the pipeline writes, chooses none.
+      if (layer.values.size() == options.size()) continue;
+      for (const auto& [name, value] : layer.values.items()) {
+        const auto unmet = UnmetConditions(options, resolved, name);
+        if (unmet.empty()) continue;
+        findings.push_back(SettingWithoutEffect(layer.where, name, value, unmet));
+      }
+    }
+    ReportFindings(info.name.substr(std::string("soslam-").size()), findings);
     const int exit_code = body.run(parsed.files, threads);
     recorder.RecordSuccess();
     return exit_code;
@@ -298,23 +269,6 @@ int RunRecorded(const ParsedArguments& parsed, const StageInfo& info,
     recorder.RecordFailure(CurrentError());
     throw;
   }
-}
-
-int ParseAndRun(int argc, const char* const* argv, const StageInfo& info, CLI::App* app,
-                const std::vector<OptionRow>& options, const StageBody& body) {
-  ParsedArguments parsed;
-  app->formatter(std::make_shared<HelpFormatter>());
-  // Wrapped such that a shell reads it as one command.
-  const std::string example = ReplaceAll(Wrapped(info.example, kWidth - 8), "\n", " \\\n      ");
-  app->footer(fmt::format("Example:\n  {}\n\n{}", example, ExitCodesHelp(info.findings)));
-  AddFiles(info.inputs, "Inputs", app, &parsed);
-  AddFiles(info.outputs, "Outputs", app, &parsed);
-  AddOptions(options, app, &parsed);
-  AddCommon(options, app, &parsed);
-  Parse(argc, argv, app);
-  std::optional<ProgressOnStderr> progress;
-  if (!parsed.quiet) progress.emplace(info.name);
-  return RunRecorded(parsed, info, options, body);
 }
 
 }  // namespace
@@ -346,7 +300,16 @@ int ExitCodeOf(CLI::App* app, const std::function<int()>& run) {
   } catch (const CLI::Success& answered) {  // --help and its like
     return app->exit(answered);
   } catch (...) {
-    return Fail(*app, CurrentError());
+    const Error error = CurrentError();
+    const int exit_code = static_cast<int>(error.exit_code());
+    std::cerr << app->get_name() << ": error: " << error.what() << std::endl;
+    const CLI::Option* record = app->get_option_no_throw(kFailureRecord);
+    if (record != nullptr && record->count() > 0) {
+      // If the record cannot be written, stderr must suffice.
+      std::ofstream(record->as<std::string>())
+          << fmt::format("exit code {}: {}\n", exit_code, error.what());
+    }
+    return exit_code;
   }
 }
 
@@ -357,7 +320,21 @@ int RunStageMain(int argc, const char* const* argv, const StageInfo& info,
   FLAGS_minloglevel = google::GLOG_FATAL;
   cv::setNumThreads(1);  // stages have threads of their own, on top of which OpenCV's would come
   CLI::App app(info.purpose, info.name);
-  return ExitCodeOf(&app, [&] { return ParseAndRun(argc, argv, info, &app, options, body); });
+  return ExitCodeOf(&app, [&] {
+    ParsedArguments parsed;
+    app.formatter(std::make_shared<HelpFormatter>());
+    // Wrapped such that a shell reads it as one command.
+    const std::string example = ReplaceAll(Wrapped(info.example, kWidth - 8), "\n", " \\\n      ");
+    app.footer(fmt::format("Example:\n  {}\n\n{}", example, ExitCodesHelp(info.findings)));
+    AddFiles(info.inputs, "Inputs", &app, &parsed);
+    AddFiles(info.outputs, "Outputs", &app, &parsed);
+    AddOptions(options, &app, &parsed);
+    AddCommon(options, &app, &parsed);
+    Parse(argc, argv, &app);
+    std::optional<ProgressOnStderr> progress;
+    if (!parsed.quiet) progress.emplace(info.name);
+    return RunRecorded(parsed, info, options, body);
+  });
 }
 
 }  // namespace soslam::internal

@@ -34,10 +34,21 @@ std::optional<fs::path> RecordFolder(const StageInfo& info, const StageFiles& fi
 constexpr std::pair<const char*, const char*> kRecordFiles[] = {{"run.json", "called_in"},
                                                                 {"timing.json", "wall_s"}};
 
-// Throws SettingsError for files of others that the record would replace.
-void RefuseFilesOfOthers(const fs::path& folder) {
+// Argument name of a file: "sequence" also for the second file of --sequence, see RepeatedName.
+std::string ArgumentOf(const std::string& name) { return name.substr(0, name.find('#')); }
+
+double Seconds(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
+}  // namespace
+
+RunRecorder::RunRecorder(const StageInfo& info, const StageFiles& files,
+                         const fs::path& settings_file, int threads)
+    : folder_(RecordFolder(info, files)), files_(files), threads_(threads) {
+  if (!folder_) return;
   for (const auto& [name, field] : kRecordFiles) {
-    const fs::path file = folder / name;
+    const fs::path file = *folder_ / name;
     if (!IsFile(file) || fs::is_empty(file)) continue;
     try {
       if (ParseJsonFile(file).contains(field)) continue;
@@ -48,33 +59,6 @@ void RefuseFilesOfOthers(const fs::path& folder) {
         "another folder, or that file under another name; a damaged record is to be removed",
         file.string()));
   }
-}
-
-// Argument name of a file: "sequence" also for the second file of --sequence, see RepeatedName.
-std::string ArgumentOf(const std::string& name) { return name.substr(0, name.find('#')); }
-
-double Seconds(const timeval& time) {
-  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-}
-
-json Timing(double wall_s, int threads) {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const Machine machine = ThisMachine();
-  return {{"wall_s", wall_s},
-          {"cpu_s", Seconds(usage.ru_utime) + Seconds(usage.ru_stime)},
-          {"peak_memory_mb", static_cast<double>(usage.ru_maxrss) / 1024.0},  // ru_maxrss is in KiB
-          {"threads", threads},
-          {"machine", {{"cpu", machine.cpu}, {"cores", machine.cores}}}};
-}
-
-}  // namespace
-
-RunRecorder::RunRecorder(const StageInfo& info, const StageFiles& files,
-                         const fs::path& settings_file, int threads)
-    : folder_(RecordFolder(info, files)), files_(files), threads_(threads) {
-  if (!folder_) return;
-  RefuseFilesOfOthers(*folder_);
   if (!settings_file.empty()) files_["settings"] = settings_file;
   record_.stage = info.name;
   record_.software = ThisSoftware();
@@ -134,7 +118,15 @@ void RunRecorder::Finish() {
     record_.seed = log_->Seed();
     log_.reset();  // the record is no result
   }
-  record_.timing = Timing(wall.count(), threads_);
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const Machine machine = ThisMachine();
+  record_.timing = {
+      {"wall_s", wall.count()},
+      {"cpu_s", Seconds(usage.ru_utime) + Seconds(usage.ru_stime)},
+      {"peak_memory_mb", static_cast<double>(usage.ru_maxrss) / 1024.0},  // ru_maxrss is in KiB
+      {"threads", threads_},
+      {"machine", {{"cpu", machine.cpu}, {"cores", machine.cores}}}};
 }
 
 RunFile RunRecorder::Place(const FileDigest& file) const {
