@@ -89,23 +89,6 @@ void AddArguments(CLI::App* app, Arguments* arguments) {
                                                      soslam::kEdgeLayerNames.end())));
 }
 
-CLI::App* AddDiff(CLI::App* app, Arguments* arguments) {
-  CLI::App* diff = app->add_subcommand("diff", "Lists where two artefacts of one kind differ.");
-  const auto add_file = [&](const char* name, std::string* path, const char* doc) {
-    diff->add_option(name, *path, doc)->option_text("PATH (required)")->required()->group("Files");
-  };
-  add_file("ONE", &arguments->one, "an artefact");
-  add_file("TWO", &arguments->two, "another one of its kind");
-  diff->add_option("--tolerance", arguments->tolerance,
-                   "numbers are equal that differ by no more,\ntimes the larger of the two and 1\n"
-                   "[default 1e-9; 0 or more]")
-      ->check(CLI::NonNegativeNumber)
-      ->option_text("number")
-      ->group("Options");
-  diff->footer(HelpFooter("Example:\n  soslam-inspect diff one/map.json two/map.json"));
-  return diff;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -117,7 +100,22 @@ int main(int argc, char** argv) {
     soslam::internal::AddOutsidePaths(&app);
     soslam::internal::AddHelpAndVersion(&app);
     AddArguments(&app, &arguments);
-    const CLI::App* diff = AddDiff(&app, &arguments);
+    CLI::App* diff = app.add_subcommand("diff", "Lists where two artefacts of one kind differ.");
+    const auto add_file = [&](const char* name, std::string* path, const char* doc) {
+      diff->add_option(name, *path, doc)
+          ->option_text("PATH (required)")
+          ->required()
+          ->group("Files");
+    };
+    add_file("ONE", &arguments.one, "an artefact");
+    add_file("TWO", &arguments.two, "another one of its kind");
+    diff->add_option("--tolerance", arguments.tolerance,
+                     "numbers are equal that differ by no more,\ntimes the larger of the two and "
+                     "1\n[default 1e-9; 0 or more]")
+        ->check(CLI::NonNegativeNumber)
+        ->option_text("number")
+        ->group("Options");
+    diff->footer(HelpFooter("Example:\n  soslam-inspect diff one/map.json two/map.json"));
     app.footer(HelpFooter(kExamples));
     app.parse(argc, argv);
     if (diff->parsed()) {

@@ -143,6 +143,7 @@ void AddFiles(const std::vector<FileArgument>& files, const std::string& group, 
   }
 }
 
+// Adds the options of a stage and those that all stages have.
 void AddOptions(const std::vector<OptionRow>& options, CLI::App* app, ParsedArguments* parsed) {
   for (const OptionRow& row : options) {
     std::string domain;  // possible values; empty when all of the type
@@ -170,9 +171,6 @@ void AddOptions(const std::vector<OptionRow>& options, CLI::App* app, ParsedArgu
     option->group(row.group.empty() ? "Options" : row.group)->option_text(row.type);
     if (row.type == "boolean") option->expected(0, 1);
   }
-}
-
-void AddCommon(const std::vector<OptionRow>& options, CLI::App* app, ParsedArguments* parsed) {
   app->add_option("--settings", parsed->settings_file,
                   "JSON object of options; those on the command line win")
       ->group("Common")
@@ -329,7 +327,6 @@ int RunStageMain(int argc, const char* const* argv, const StageInfo& info,
     AddFiles(info.inputs, "Inputs", &app, &parsed);
     AddFiles(info.outputs, "Outputs", &app, &parsed);
     AddOptions(options, &app, &parsed);
-    AddCommon(options, &app, &parsed);
     Parse(argc, argv, &app);
     std::optional<ProgressOnStderr> progress;
     if (!parsed.quiet) progress.emplace(info.name);

@@ -36,26 +36,21 @@ void Reject(const std::vector<std::optional<FrameRejection>>& reasons,
   }
 }
 
-// The stem with letters, digits and ._- only, which every program can read.
-std::string PlainStem(const std::string& name) {
-  std::string stem = fs::path(name).stem().string();
-  for (char& character : stem) {
-    const bool is_plain = std::isalnum(static_cast<unsigned char>(character)) != 0 ||
-                          character == '.' || character == '-';
-    if (!is_plain) character = '_';
-  }
-  if (stem.front() == '-') stem.front() = '_';
-  return stem;
-}
-
 // Gives each chosen frame a name of its own, that of its photo where it is plain.
 void NameImages(const std::vector<std::string>& extensions, std::vector<SourceFrame>* frames) {
   std::set<std::string> stems;
   for (size_t i = 0; i < frames->size(); ++i) {
     SourceFrame& frame = (*frames)[i];
     if (IsLeftOut(frame)) continue;
-    const std::string plain =
-        frame.frame_number ? fmt::format("{:06}", *frame.frame_number) : PlainStem(frame.source);
+    std::string plain = frame.frame_number ? fmt::format("{:06}", *frame.frame_number)
+                                           : fs::path(frame.source).stem().string();
+    // Every program can read letters, digits and ._- in a name.
+    for (char& character : plain) {
+      const bool is_plain = std::isalnum(static_cast<unsigned char>(character)) != 0 ||
+                            character == '.' || character == '-';
+      if (!is_plain) character = '_';
+    }
+    if (plain.front() == '-') plain.front() = '_';
     std::string stem = plain;
     for (int count = 2; !stems.insert(stem).second; ++count) {
       stem = fmt::format("{}_{}", plain, count);
@@ -80,27 +75,6 @@ void SetSize(const ImageSize& source, int max_image_px, ChosenFrames* chosen) {
   const cv::Size size = SizeWithin(chosen->source_size, max_image_px);
   chosen->record.width = size.width;
   chosen->record.height = size.height;
-}
-
-void MeasurePhoto(const Photo& photo, SourceFrame* frame, FrameView* view) {
-  try {
-    *view = ViewOf(ReadImage(photo.path, cv::IMREAD_GRAYSCALE));
-    frame->sharpness = view->sharpness;
-  } catch (const InputError& error) {
-    const std::string message = error.what(), place = photo.path.string() + ": ";
-    frame->rejection = FrameRejection::kUnreadable;
-    frame->detail = OneLine(message.starts_with(place) ? message.substr(place.size()) : message);
-  }
-}
-
-std::optional<FocalHint> HintOf(const CommonCamera& camera, const FramesRecord& record,
-                                const std::vector<Photo>& photos) {
-  int count = 0;
-  for (size_t i = 0; i < photos.size(); ++i) {
-    count += !IsLeftOut(record.frames[i]) && photos[i].header.focal_over_diagonal ? 1 : 0;
-  }
-  if (count == 0) return std::nullopt;
-  return FocalHint{*camera.focal_over_diagonal * std::hypot(record.width, record.height), count};
 }
 
 // Finds a video that was cut short or is damaged, after its last frame, and one that may lie on its
@@ -163,7 +137,16 @@ ChosenFrames ChoosePhotos(const FrameOptions& options, const fs::path& folder, i
   std::vector<FrameView> views(photos->size());
   ParallelFor("photos", photos->size(), threads, [&](size_t i) {
     if (IsLeftOut(frames[i])) return;
-    MeasurePhoto((*photos)[i], &frames[i], &views[i]);
+    const fs::path& path = (*photos)[i].path;
+    try {
+      views[i] = ViewOf(ReadImage(path, cv::IMREAD_GRAYSCALE));
+      frames[i].sharpness = views[i].sharpness;
+    } catch (const InputError& error) {
+      const std::string message = error.what(), place = path.string() + ": ";
+      frames[i].rejection = FrameRejection::kUnreadable;
+      frames[i].detail =
+          OneLine(message.starts_with(place) ? message.substr(place.size()) : message);
+    }
   });
   FrameSelector selector(options);
   for (size_t i = 0; i < views.size(); ++i) {
@@ -173,11 +156,17 @@ ChosenFrames ChoosePhotos(const FrameOptions& options, const fs::path& folder, i
   }
   Reject(selector.Choose(), &frames);
   SetSize(camera.size, options.max_image_px, &chosen);
-  chosen.record.focal_hint = HintOf(camera, chosen.record, *photos);
+  int with_focal_length = 0;
   std::vector<std::string> extensions;
-  for (const Photo& photo : *photos) {
+  for (size_t i = 0; i < frames.size(); ++i) {
+    const Photo& photo = (*photos)[i];
+    with_focal_length += !IsLeftOut(frames[i]) && photo.header.focal_over_diagonal ? 1 : 0;
     extensions.push_back(IsCopied(photo, options) ? LowerCase(photo.path.extension().string())
                                                   : ".jpg");
+  }
+  if (with_focal_length > 0) {
+    const double diagonal_px = std::hypot(chosen.record.width, chosen.record.height);
+    chosen.record.focal_hint = {*camera.focal_over_diagonal * diagonal_px, with_focal_length};
   }
   NameImages(extensions, &frames);
   return chosen;

@@ -55,14 +55,8 @@ int LastNumber(const std::string& line) {
 
 bool Contains(const std::string& line, const char* text) { return line.find(text) != line.npos; }
 
-std::string FileText(const fs::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
-}
-
 // Text that differs for each job that COLMAP may treat differently.
-std::string StampOf(const ColmapJob& job, const std::string& version) {
+std::string MakeStamp(const ColmapJob& job, const std::string& version) {
   std::string text = fmt::format("COLMAP {}\nexhaustive {}\nfixed camera {}\n", version,
                                  job.exhaustive, job.camera_is_fixed);
   if (!job.camera_is_fixed) text += fmt::format("at most {} px\n", kMaxReprojectionErrorPx);
@@ -83,19 +77,6 @@ std::string StampOf(const ColmapJob& job, const std::string& version) {
                         fmt::join(job.poses[i]->rotation.coeffs(), " "));
   }
   return text;
-}
-
-// Number of images in a model that may still be moved: its files are not inputs yet.
-int CountOfImagesIn(const fs::path& model) {
-  std::uint64_t count = 0;
-  if (std::ifstream binary(model / "images.bin", std::ios::binary); binary) {
-    binary.read(reinterpret_cast<char*>(&count), sizeof(count));
-  } else {
-    std::ifstream text(model / "images.txt");
-    for (std::string line; std::getline(text, line);) count += line.starts_with('#') ? 0 : 1;
-    count /= 2;  // lines of an image
-  }
-  return static_cast<int>(count);
 }
 
 // Progress up to a count that lines state.
@@ -131,20 +112,6 @@ void WriteGivenModel(const ColmapJob& job, const fs::path& folder) {
                             job.camera->camera.height, parameters));
   WriteTextFile(folder / "images.txt", images);
   WriteTextFile(folder / "points3D.txt", "");
-}
-
-// Masks as COLMAP reads them, <name of the image>.png, of the images with masked boxes.
-void WriteMasks(const ColmapJob& job, const fs::path& folder) {
-  for (size_t i = 0; i < job.masked.size(); ++i) {
-    if (job.masked[i].empty()) continue;
-    const ImageSize size = ReadImageHeader(job.dataset / job.images[i]).value().stored;
-    const fs::path mask = folder / (job.images[i] + ".png");
-    fs::create_directories(mask.parent_path());
-    const cv::Size pixels(static_cast<int>(size.width), static_cast<int>(size.height));
-    if (!cv::imwrite(mask.string(), OutsideOf(job.masked[i], pixels))) {
-      throw SettingsError(fmt::format("{}: cannot be written", mask.string()));
-    }
-  }
 }
 
 // The installed version.
@@ -225,7 +192,16 @@ class Programs {
     Map(models);
     int placed = 0;
     for (const fs::path& model : ColmapModelsIn(models)) {
-      placed = std::max(placed, CountOfImagesIn(model));
+      // The model may still be moved: its files are not inputs yet.
+      std::uint64_t count = 0;
+      if (std::ifstream binary(model / "images.bin", std::ios::binary); binary) {
+        binary.read(reinterpret_cast<char*>(&count), sizeof(count));
+      } else {
+        std::ifstream text(model / "images.txt");
+        for (std::string line; std::getline(text, line);) count += line.starts_with('#') ? 0 : 1;
+        count /= 2;  // lines of an image
+      }
+      placed = std::max(placed, static_cast<int>(count));
     }
     return placed;
   }
@@ -282,7 +258,17 @@ class Programs {
       options.emplace_back("--SiftExtraction.peak_threshold", kFaintPeak);
     }
     if (!job_.masked.empty()) {
-      WriteMasks(job_, workspace_ / kMasks);
+      // COLMAP reads masks as <name of the image>.png.
+      for (size_t i = 0; i < job_.masked.size(); ++i) {
+        if (job_.masked[i].empty()) continue;
+        const ImageSize size = ReadImageHeader(job_.dataset / job_.images[i]).value().stored;
+        const fs::path mask = workspace_ / kMasks / (job_.images[i] + ".png");
+        fs::create_directories(mask.parent_path());
+        const cv::Size pixels(static_cast<int>(size.width), static_cast<int>(size.height));
+        if (!cv::imwrite(mask.string(), OutsideOf(job_.masked[i], pixels))) {
+          throw SettingsError(fmt::format("{}: cannot be written", mask.string()));
+        }
+      }
       options.emplace_back("--ImageReader.mask_path", (workspace_ / kMasks).string());
     }
     Follower follower("images: features", CountOfImages());
@@ -394,8 +380,10 @@ std::vector<fs::path> RunColmap(const ColmapJob& job, const fs::path& workspace,
   const Installation colmap = FindColmap();
   *version = colmap.version;
   const fs::path stamp = workspace / "job.txt";
-  const std::string wanted = StampOf(job, colmap.version);
-  const std::string found = FileText(stamp);
+  const std::string wanted = MakeStamp(job, colmap.version);
+  std::ostringstream text;
+  text << std::ifstream(stamp, std::ios::binary).rdbuf();
+  const std::string found = text.str();
   if (found != wanted) {
     if (IsFolder(workspace) && !fs::is_empty(workspace) && !found.starts_with("COLMAP ")) {
       throw SettingsError(workspace.string() +

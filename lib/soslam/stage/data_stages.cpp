@@ -23,31 +23,22 @@
 #include "soslam/system/run_log.h"
 
 namespace soslam {
-namespace {
-
-// Adds what soslam-reconstruct found when it made the poses of the dataset, and the images to which
-// it gave none. Other programs have files of that name as well.
-void AddReconstruction(const std::filesystem::path& folder, const ImportOptions& options,
-                       Sequence* sequence, std::vector<std::filesystem::path>* inputs) {
-  const std::filesystem::path path = folder / "reconstruction.json";
-  if (!Exists(path) || options.folder.trajectory_format != TrajectoryFormat::kTum) return;
-  const nlohmann::json document = ParseJsonFile(path);
-  if (!document.contains("artefact")) return;
-  Artefact<ReconstructionSummary> reconstruction = ReadReconstruction(path);
-  std::ranges::move(reconstruction.findings, std::back_inserter(sequence->findings));
-  sequence->images_without_pose = std::move(reconstruction.body.images_without_pose);
-  sequence->findings = WorstFirst(std::move(sequence->findings));
-  inputs->push_back(path);
-}
-
-}  // namespace
-
 void RunImport(const ImportOptions& options, const StageFiles& files, int threads) {
   const auto& folder = files.at("dataset");
   std::vector<std::filesystem::path> inputs;
   Sequence sequence = ImportDataset(folder, options, &inputs);
   if (options.scene_axes) AddSceneAxes(folder, threads, &sequence, &inputs);
-  AddReconstruction(folder, options, &sequence, &inputs);
+  // What soslam-reconstruct found when it made the poses of the dataset, and the images to which it
+  // gave none. Other programs have files of that name as well.
+  const std::filesystem::path reconstructed = folder / "reconstruction.json";
+  if (Exists(reconstructed) && options.folder.trajectory_format == TrajectoryFormat::kTum &&
+      ParseJsonFile(reconstructed).contains("artefact")) {
+    Artefact<ReconstructionSummary> reconstruction = ReadReconstruction(reconstructed);
+    std::ranges::move(reconstruction.findings, std::back_inserter(sequence.findings));
+    sequence.images_without_pose = std::move(reconstruction.body.images_without_pose);
+    sequence.findings = WorstFirst(std::move(sequence.findings));
+    inputs.push_back(reconstructed);
+  }
   ReportFindings("import", sequence.findings);
   WriteSequence(files.at("output"), sequence, {OptionsToJson(options), inputs, {}, "import"});
   fmt::print("{}: {} frames, {} objects, {} detections used, {}\n", sequence.name,
@@ -74,29 +65,6 @@ std::vector<Sequence> ReadSequences(const std::vector<std::filesystem::path>& pa
   std::vector<Sequence> sequences;
   for (const std::filesystem::path& path : paths) sequences.push_back(ReadSequence(path));
   return sequences;
-}
-
-void RefuseLearningFromHeldOut(const std::vector<Sequence>& learned,
-                               const std::vector<Sequence>& held_out) {
-  for (const Sequence& sequence : held_out) {
-    if (std::ranges::find(learned, sequence.name, &Sequence::name) == learned.end()) continue;
-    throw SettingsError(
-        fmt::format("sequence '{}' is given as --sequence and as --held_out; expected one of them",
-                    sequence.name));
-  }
-}
-
-PriorSource ReadCatalogueSource(const StageFiles& files, const SemanticTable& table,
-                                const std::vector<Sequence>& held_out) {
-  std::vector<CatalogueModel> models = ReadFurnitureCatalogue(files.at("furniture"));
-  const size_t all = models.size();
-  for (const Sequence& sequence : held_out) {
-    models = WithoutObjectsOf(sequence, table, std::move(models));
-  }
-  fmt::print("{}: {} models, {} left out as objects of sequences that are held out\n",
-             files.at("furniture").filename().string(), all, all - models.size());
-  return SourceOfCatalogue(files.at("furniture").filename().string(), models,
-                           ReadCatalogueNames(files.at("furniture_labels")));
 }
 
 void PrintErrors(const Sequence& sequence, const SemanticTable& table) {
@@ -130,14 +98,28 @@ void RunLearnPriors(const LearnPriorsOptions& options, const StageFiles& files, 
   const std::vector<std::filesystem::path> held_out_files = FilesOf(files, "held_out");
   const std::vector<Sequence> sequences = ReadSequences(sequence_files);
   const std::vector<Sequence> held_out = ReadSequences(held_out_files);
-  RefuseLearningFromHeldOut(sequences, held_out);
+  for (const Sequence& sequence : held_out) {
+    if (std::ranges::find(sequences, sequence.name, &Sequence::name) == sequences.end()) continue;
+    throw SettingsError(
+        fmt::format("sequence '{}' is given as --sequence and as --held_out; expected one of them",
+                    sequence.name));
+  }
 
   SemanticRows base;
   if (files.contains("base")) base = ReadSemanticRows(files.at("base"));
   const SemanticTable base_table = LookUpTable(base);
   std::vector<PriorSource> sources;
   if (files.contains("furniture")) {
-    sources.push_back(ReadCatalogueSource(files, base_table, held_out));
+    const std::string catalogue = files.at("furniture").filename().string();
+    std::vector<CatalogueModel> models = ReadFurnitureCatalogue(files.at("furniture"));
+    const size_t all = models.size();
+    for (const Sequence& sequence : held_out) {
+      models = WithoutObjectsOf(sequence, base_table, std::move(models));
+    }
+    fmt::print("{}: {} models, {} left out as objects of sequences that are held out\n", catalogue,
+               all, all - models.size());
+    sources.push_back(
+        SourceOfCatalogue(catalogue, models, ReadCatalogueNames(files.at("furniture_labels"))));
   }
   for (const Sequence& sequence : sequences) {
     sources.push_back(SourceOfSequence(sequence, base_table, options.min_views));

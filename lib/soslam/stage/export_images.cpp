@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <opencv2/imgcodecs.hpp>
@@ -13,7 +12,6 @@
 #include <utility>
 
 #include "soslam/artefact/atomic_file.h"
-#include "soslam/base/error.h"
 #include "soslam/base/parallel.h"
 #include "soslam/base/progress.h"
 #include "soslam/image/image_format.h"
@@ -48,35 +46,6 @@ std::vector<PlacedImage> PlacedImages(const Sequence& sequence, const StageFiles
     placed.push_back({image, place->second.first, place->second.second});
   }
   return placed;
-}
-
-// Names of overlays by image.
-std::map<std::string, std::string> NamesOfOverlays(const std::vector<PlacedImage>& images,
-                                                   const fs::path& folder) {
-  std::set<fs::path> names;
-  for (const auto& [image, world, frame] : images) {
-    names.insert(fs::path(frame->image).replace_extension(".jpg"));
-  }
-  std::map<std::string, std::string> name_of_image;
-  for (const auto& [image, world, frame] : images) {
-    fs::path name = fs::path(frame->image).lexically_relative(folder);
-    if (names.size() == images.size()) {
-      name.replace_extension(".jpg");
-    } else {
-      name += ".jpg";
-    }
-    name_of_image[frame->image] = name.string();
-  }
-  return name_of_image;
-}
-
-std::vector<uchar> DrawnJpeg(const cv::Mat& image, const OverlayInput& input) {
-  cv::Mat picture = DrawingGround(image);
-  DrawOverlay(input, &picture);
-  constexpr int kJpegQuality = 90;
-  std::vector<uchar> jpeg;
-  cv::imencode(".jpg", picture, jpeg, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
-  return jpeg;
 }
 
 }  // namespace
@@ -130,7 +99,21 @@ void ColourPoints(const Sequence& sequence, const StageFiles& files, int threads
 size_t WriteOverlays(const Sequence& sequence, const std::vector<World>& worlds,
                      const StageFiles& files, int threads) {
   const std::vector<PlacedImage> images = PlacedImages(sequence, files, worlds);
-  const auto names = NamesOfOverlays(images, FolderOfImages(worlds));
+  const fs::path folder = FolderOfImages(worlds);
+  std::set<fs::path> jpegs;
+  for (const PlacedImage& placed : images) {
+    jpegs.insert(fs::path(placed.frame->image).replace_extension(".jpg"));
+  }
+  std::map<std::string, std::string> names;  // by image
+  for (const PlacedImage& placed : images) {
+    fs::path name = fs::path(placed.frame->image).lexically_relative(folder);
+    if (jpegs.size() == images.size()) {
+      name.replace_extension(".jpg");
+    } else {
+      name += ".jpg";
+    }
+    names[placed.frame->image] = name.string();
+  }
   const FrameImageReader reader(sequence);
   Progress progress("overlays", static_cast<int>(images.size()));
   const size_t batch = 4 * static_cast<size_t>(threads);  // limits the pictures in memory
@@ -138,7 +121,10 @@ size_t WriteOverlays(const Sequence& sequence, const std::vector<World>& worlds,
     std::vector<std::vector<uchar>> pictures(std::min(batch, images.size() - begin));
     ParallelFor(pictures.size(), threads, [&](size_t i) {
       const auto& [image, world, frame] = images[begin + i];
-      pictures[i] = DrawnJpeg(reader.Read(image, cv::IMREAD_COLOR), OverlayOfWorld(*world, *frame));
+      cv::Mat picture = DrawingGround(reader.Read(image, cv::IMREAD_COLOR));
+      DrawOverlay(OverlayOfWorld(*world, *frame), &picture);
+      constexpr int kJpegQuality = 90;
+      cv::imencode(".jpg", picture, pictures[i], {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
       progress.Step();
     });
     for (size_t i = 0; i < pictures.size(); ++i) {

@@ -23,20 +23,6 @@ namespace fs = std::filesystem;
 // Coordinate of a pixel after scaling; both count from the centre of the first pixel.
 double Scaled(double coordinate, double scale) { return (coordinate + 0.5) * scale - 0.5; }
 
-// Boxes of soslam-detect name their images, which are all of the frames.
-void RefuseBoxesOfOtherImages(const fs::path& path, size_t frames) {
-  std::ifstream stream(path);
-  size_t images = 0;
-  for (std::string line; std::getline(stream, line) && line.starts_with('#');) {
-    if (line.starts_with("# input ")) ++images;
-  }
-  if (images == 0 || images == frames) return;
-  throw InputError(fmt::format(
-      "{}: is of {} images; expected boxes of all {} photos or video frames: were they detected in "
-      "images that soslam-frames had chosen? Give the network instead",
-      path.string(), images, frames));
-}
-
 }  // namespace
 
 std::string FrameBoxesText(const fs::path& path, const ChosenFrames& chosen) {
@@ -55,7 +41,19 @@ std::string FrameBoxesText(const fs::path& path, const ChosenFrames& chosen) {
   std::ranges::stable_sort(frames, {}, &NumberedFrame::name);
   const double scale_x = static_cast<double>(chosen.record.width) / chosen.source_size.width;
   const double scale_y = static_cast<double>(chosen.record.height) / chosen.source_size.height;
-  RefuseBoxesOfOtherImages(path, frames.size());
+  // Boxes of soslam-detect name their images, which are all of the frames.
+  std::ifstream stream(path);
+  size_t images = 0;
+  for (std::string line; std::getline(stream, line) && line.starts_with('#');) {
+    if (line.starts_with("# input ")) ++images;
+  }
+  if (images > 0 && images != frames.size()) {
+    throw InputError(
+        fmt::format("{}: is of {} images; expected boxes of all {} photos or video frames: were "
+                    "they detected in "
+                    "images that soslam-frames had chosen? Give the network instead",
+                    path.string(), images, frames.size()));
+  }
   const std::vector<LabelledBox> boxes = ReadDetectionsCsv(path);
   std::vector<LabelledBox> of_chosen;
   int left_out = 0, unknown = 0;

@@ -47,8 +47,9 @@ void CheckPointEvidence(const PointOptions& options, std::string_view method,
 }
 
 // None unless points are evidence.
-std::optional<PointsInFrames> PointsInFramesOf(const PointOptions& options,
-                                               const Sequence& sequence, const StageFiles& files) {
+std::optional<PointsInFrames> ReadPointsInFrames(const PointOptions& options,
+                                                 const Sequence& sequence,
+                                                 const StageFiles& files) {
   if (!options.point_evidence) return std::nullopt;
   return PointsInFrames(sequence, WithoutDistortion(sequence, ReadPointsOf(sequence, files)),
                         options);
@@ -63,20 +64,6 @@ std::string CountWithPoints(const std::optional<PointsInFrames>& points,
         return points->Of(observation.detection_index, observation.hypotheses).has_value();
       });
   return fmt::format("; points in {} of {} observations", count, estimates.observations.size());
-}
-
-// Says which labels have no entry in the semantic table; a finding if they are many.
-std::vector<Finding> ReportMissingLabels(const Sequence& sequence, const SemanticTable& table,
-                                         const std::filesystem::path& file) {
-  auto findings = CheckLabels(sequence, table, file.filename().string());
-  ReportFindings("initialise", findings);
-  const auto labels = LabelsWithoutEntry(sequence, table);
-  if (findings.empty() && !labels.empty()) {
-    fmt::print(stderr, "soslam-initialise: not in {}: {}; {}\n", file.string(),
-               fmt::join(labels, ", "),
-               table.default_prior ? "its default is used" : "their objects are left out");
-  }
-  return findings;
 }
 
 // The estimates of the method that the options name.
@@ -119,9 +106,16 @@ void RunInitialise(const InitialiseOptions& options, const StageFiles& files, in
   const bool has_ratios = options.method != InitialisationMethod::kSvd &&
                           options.method != InitialisationMethod::kCuboidProposals;
   if (has_ratios && options.ratio_prior == RatioPrior::kTable) {
-    of_labels = ReportMissingLabels(sequence, table, files.at("table"));
+    of_labels = CheckLabels(sequence, table, files.at("table").filename().string());
+    ReportFindings("initialise", of_labels);
+    const auto labels = LabelsWithoutEntry(sequence, table);
+    if (of_labels.empty() && !labels.empty()) {  // few labels are no finding
+      fmt::print(stderr, "soslam-initialise: not in {}: {}; {}\n", files.at("table").string(),
+                 fmt::join(labels, ", "),
+                 table.default_prior ? "its default is used" : "their objects are left out");
+    }
   }
-  const auto points = PointsInFramesOf(options.points, sequence, files);
+  const auto points = ReadPointsInFrames(options.points, sequence, files);
   const LandmarkEstimates estimates = Initialise(sequence, table, points, options, files, threads);
   const auto failures = CountFailures(estimates);
   int failed = 0;
@@ -238,7 +232,7 @@ void RunRefine(const OrientationOptions& options, const StageFiles& files, int t
   ArtefactInfo info = {.settings = OptionsToJson(options), .inputs = inputs, .stage = "refine"};
   if (point_options.point_evidence) info.inputs.push_back(files.at("points"));
 
-  const auto points = PointsInFramesOf(point_options, sequence, files);
+  const auto points = ReadPointsInFrames(point_options, sequence, files);
   auto refined = RefineAll(sequence, to_refine, priors, points, options,
                            EdgesOfSequence(sequence, files), threads);
   std::vector<SymmetryRecord> curves;

@@ -60,10 +60,17 @@ void CheckEvidence(const OptimiseOptions& options, const StageFiles& files) {
   }
 }
 
-// Reads the edge maps for symmetry and edge alignment.
-void ReadImages(const OptimiseOptions& options, const StageFiles& files, int threads,
-                BackEndInput* input) {
-  const Sequence& sequence = input->sequence;
+// The back end's input, still without initial landmarks.
+BackEndInput ReadInput(const Sequence& sequence, const OptimiseOptions& options,
+                       const StageFiles& files, int threads) {
+  const SemanticTable table = ReadSemanticTable(files.at("table"));
+  BackEndInput input{
+      sequence, {}, ObjectPriors(sequence, table, options.ratio_prior, options.shape)};
+  if (options.points.point_evidence) {
+    input.points = FindObjectPoints(
+        sequence, WithoutDistortion(sequence, ReadPointsOf(sequence, files)), options.points);
+  }
+  if (!UsesEdges(options)) return input;
   const auto frame_of = [&](int index) {
     return static_cast<size_t>(sequence.detections[static_cast<size_t>(index)].frame_index);
   };
@@ -97,7 +104,7 @@ void ReadImages(const OptimiseOptions& options, const StageFiles& files, int thr
     const Camera& camera = sequence.CameraOf(detection);
     auto image =
         std::make_shared<const SymmetryImage>(frames[frame_of(index)]->maps, detection.box);
-    input->images.emplace_back(
+    input.images.emplace_back(
         index, is_quadric ? PairsOfTexture(std::move(image), camera, options.symmetry_options,
                                            options.symmetry_sigma)
                           : AsymmetryOfTexture(std::move(image), camera, options.texture,
@@ -107,22 +114,9 @@ void ReadImages(const OptimiseOptions& options, const StageFiles& files, int thr
     const Detection& detection = sequence.detections[index];
     auto image = std::make_shared<const EdgeImage>(
         EdgeImage{frames[frame_of(index)], detection.box, BoxesInFront(sequence, detection)});
-    input->images.emplace_back(
+    input.images.emplace_back(
         index, AlignmentOfEdges(std::move(image), sequence.CameraOf(detection), options.edges));
   }
-}
-
-// The back end's input, still without initial landmarks.
-BackEndInput ReadInput(const Sequence& sequence, const OptimiseOptions& options,
-                       const StageFiles& files, int threads) {
-  const SemanticTable table = ReadSemanticTable(files.at("table"));
-  BackEndInput input{
-      sequence, {}, ObjectPriors(sequence, table, options.ratio_prior, options.shape)};
-  if (options.points.point_evidence) {
-    input.points = FindObjectPoints(
-        sequence, WithoutDistortion(sequence, ReadPointsOf(sequence, files)), options.points);
-  }
-  if (UsesEdges(options)) ReadImages(options, files, threads, &input);
   return input;
 }
 

@@ -108,6 +108,11 @@ cv::Mat FrameImageReader::Read(const FrameImage& image, int mode) const {
 
 namespace {
 
+bool HasImages(const Sequence& sequence) {
+  return std::ranges::any_of(sequence.frames,
+                             [](const Frame& frame) { return !frame.image.empty(); });
+}
+
 // Straight edges of at least `min_length_px` in an image of a sequence, with its frame's pose.
 SegmentView ReadSegmentView(const Sequence& sequence, const FrameImageReader& reader,
                             const FrameImage& image, double min_length_px) {
@@ -121,9 +126,7 @@ SegmentView ReadSegmentView(const Sequence& sequence, const FrameImageReader& re
 std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, const VerticalOptions& options,
                                          const StageFiles& files, int threads,
                                          std::vector<std::filesystem::path>* inputs) {
-  const bool has_images =
-      std::ranges::any_of(sequence.frames, [](const Frame& frame) { return !frame.image.empty(); });
-  if (!options.are_used || !has_images) return {};
+  if (!options.are_used || !HasImages(sequence)) return {};
   if (!files.contains("dataset")) {
     throw SettingsError(
         "verticals is true; expected --dataset with the images, or verticals = false");
@@ -155,43 +158,6 @@ void CheckOneSegment(const Sequence& sequence, const std::filesystem::path& path
   }
 }
 
-namespace {
-
-constexpr int kMaxSceneImages = 24;
-constexpr double kMinSegmentPx = 30.0;
-constexpr double kSceneCorrelation = 20.0 * kRadPerDeg;
-
-// The sequence's images that exist, at most kMaxSceneImages, spread over all.
-std::vector<FrameImage> SomeImages(const Sequence& sequence, const std::filesystem::path& folder) {
-  std::vector<FrameImage> images;
-  if (std::ranges::all_of(sequence.frames, [](const Frame& frame) { return frame.image.empty(); }))
-    return images;
-  for (const FrameImage& image : FrameImages(sequence, folder, folder)) {
-    if (IsFile(image.path)) images.push_back(image);
-  }
-  const size_t step = images.size() / kMaxSceneImages + 1;
-  std::vector<FrameImage> some;
-  for (size_t i = 0; i < images.size(); i += step) some.push_back(images[i]);
-  return some;
-}
-
-// Straight edges of the images that can be read; soslam-edges says what is wrong with others.
-std::vector<SegmentView> SegmentsOf(const std::vector<FrameImage>& images, int threads,
-                                    const Sequence& sequence) {
-  const FrameImageReader reader(sequence);
-  std::vector<SegmentView> views(images.size());
-  ParallelFor(images.size(), threads, [&](size_t i) {
-    try {
-      views[i] = ReadSegmentView(sequence, reader, images[i], kMinSegmentPx);
-    } catch (const InputError&) {
-    }
-  });
-  std::erase_if(views, [](const SegmentView& view) { return view.segments.empty(); });
-  return views;
-}
-
-}  // namespace
-
 void AddSceneAxes(const std::filesystem::path& folder, int threads, Sequence* sequence,
                   std::vector<std::filesystem::path>* inputs) {
   const auto has_axis = [](const SupportPlane& plane) { return bool(plane.scene_axis_in_world); };
@@ -202,9 +168,28 @@ void AddSceneAxes(const std::filesystem::path& folder, int threads, Sequence* se
       !std::ranges::all_of(sequence->frames, is_of_first)) {
     return;
   }
-  const std::vector<FrameImage> images = SomeImages(*sequence, folder);
-  for (const FrameImage& image : images) inputs->push_back(image.path);
-  SetSceneAxes(SegmentsOf(images, threads, *sequence), kSceneCorrelation, sequence);
+  std::vector<FrameImage> all;
+  if (HasImages(*sequence)) all = FrameImages(*sequence, folder, folder);
+  std::erase_if(all, [](const FrameImage& image) { return !IsFile(image.path); });
+  constexpr int kMaxImages = 24;
+  const size_t step = all.size() / kMaxImages + 1;
+  std::vector<FrameImage> images;  // spread over all
+  for (size_t i = 0; i < all.size(); i += step) {
+    images.push_back(all[i]);
+    inputs->push_back(all[i].path);
+  }
+  constexpr double kMinSegmentPx = 30.0;
+  constexpr double kCorrelation = 20.0 * kRadPerDeg;
+  const FrameImageReader reader(*sequence);
+  std::vector<SegmentView> views(images.size());
+  ParallelFor(images.size(), threads, [&](size_t i) {
+    try {
+      views[i] = ReadSegmentView(*sequence, reader, images[i], kMinSegmentPx);
+    } catch (const InputError&) {  // soslam-edges says what is wrong with the image
+    }
+  });
+  std::erase_if(views, [](const SegmentView& view) { return view.segments.empty(); });
+  SetSceneAxes(views, kCorrelation, sequence);
 }
 
 }  // namespace soslam

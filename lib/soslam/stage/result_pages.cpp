@@ -22,36 +22,8 @@
 #include "soslam/stage/stages.h"
 
 namespace soslam {
-namespace {
 
 namespace fs = std::filesystem;
-
-// All tables in the order of the report: the paper's tables, paired differences, maps, single
-// datasets.
-std::vector<Table> AllTables(const std::vector<DatasetResult>& datasets, const Published& published,
-                             const std::vector<Comparison>& comparisons,
-                             const std::vector<std::string>& maps,
-                             const std::vector<std::string>& what_if) {
-  std::vector<Table> tables = {SequencesTable(datasets)};
-  std::ranges::move(PaperTables(datasets, published), std::back_inserter(tables));
-  tables.push_back(TimeTable(datasets, published));
-  tables.push_back(DifferencesOverDatasets(datasets, comparisons));
-  for (const ObjectMetric& metric : kMeanMetrics) {
-    tables.push_back(DifferencesTable(datasets, comparisons, metric));
-  }
-  tables.push_back(MapsTable(datasets, maps));
-  tables.push_back(LostTable(datasets, maps));
-  tables.push_back(LimitsTable(datasets, maps));
-  tables.push_back(WhatIfTable(datasets, what_if));
-  for (const DatasetResult& dataset : datasets) {
-    tables.push_back(DatasetTable(dataset));
-    std::ranges::move(QualityTables(dataset), std::back_inserter(tables));
-  }
-  std::erase_if(tables, [](const Table& table) { return table.rows.empty(); });
-  return tables;
-}
-
-}  // namespace
 
 void RunReport(const ReportOptions& options, const StageFiles& files, int /*threads*/) {
   const std::vector<Comparison> comparisons = ParseComparisons(options.compare);
@@ -69,9 +41,24 @@ void RunReport(const ReportOptions& options, const StageFiles& files, int /*thre
                              ": no <dataset>/<variant>/metrics.json; expected at least one");
   }
   for (DatasetResult& dataset : datasets) dataset.facts = ReadFacts(dataset, settings);
-  const std::vector<Table> tables =
-      AllTables(datasets, published, comparisons, SplitAtSpaces(options.maps),
-                SplitAtSpaces(options.what_if));
+  const std::vector<std::string> maps = SplitAtSpaces(options.maps);
+  // The paper's tables, paired differences, maps, single datasets.
+  std::vector<Table> tables = {SequencesTable(datasets)};
+  std::ranges::move(PaperTables(datasets, published), std::back_inserter(tables));
+  tables.push_back(TimeTable(datasets, published));
+  tables.push_back(DifferencesOverDatasets(datasets, comparisons));
+  for (const ObjectMetric& metric : kMeanMetrics) {
+    tables.push_back(DifferencesTable(datasets, comparisons, metric));
+  }
+  tables.push_back(MapsTable(datasets, maps));
+  tables.push_back(LostTable(datasets, maps));
+  tables.push_back(LimitsTable(datasets, maps));
+  tables.push_back(WhatIfTable(datasets, SplitAtSpaces(options.what_if)));
+  for (const DatasetResult& dataset : datasets) {
+    tables.push_back(DatasetTable(dataset));
+    std::ranges::move(QualityTables(dataset), std::back_inserter(tables));
+  }
+  std::erase_if(tables, [](const Table& table) { return table.rows.empty(); });
   const fs::path folder = files.at("output").parent_path() / "tables";
   std::error_code error;  // a missing folder fails on writing below
   fs::create_directory(folder, error);
@@ -111,32 +98,6 @@ ImageSource ImagesIn(const fs::path& dataset, const Sequence& sequence) {
           }};
 }
 
-// Returns the page, and writes it unless it has nothing to show.
-DatasetPage WriteDatasetPage(const DatasetResult& result, const fs::path& folder, int threads) {
-  const auto page_with = [&](const std::string& tables, const nlohmann::json& data) {
-    return PageHtml(result.name, tables, data, PageScripts::kDataset);
-  };
-  const size_t max_data_bytes = kMaxPageBytes - page_with("", {}).size();
-  const fs::path dataset = DatasetFolderOf(folder);
-  DatasetPage page = MakePage(
-      result, [&](const Sequence& sequence) { return ImagesIn(dataset, sequence); }, max_data_bytes,
-      threads);
-  const auto print = [&](const std::string& problem) {
-    fmt::print(stderr, "soslam-pages: {}: {}\n", result.name, problem);
-  };
-  for (const UnfinishedVariant& variant : page.unfinished) {
-    print(variant.name + " " + variant.state);
-  }
-  for (const std::string& problem : page.problems) print(problem);
-  if (page.variants.empty()) return page;
-  const std::string html = page_with(DatasetTables(page), DataOf(page));
-  WriteTextFile(folder / "report.html", html);
-  fmt::print("{}: {} variants, {} images, {:.1f} MB\n", (folder / "report.html").string(),
-             page.variants.size(), page.images.size(), static_cast<double>(html.size()) / 1e6);
-  page.images.clear();
-  return page;
-}
-
 }  // namespace
 
 void RunPages(const NoOptions& /*options*/, const StageFiles& files, int threads) {
@@ -146,7 +107,28 @@ void RunPages(const NoOptions& /*options*/, const StageFiles& files, int threads
   }
   std::vector<DatasetPage> pages;
   for (const DatasetResult& result : ReadResults(results, DamagedFiles::kNoted)) {
-    pages.push_back(WriteDatasetPage(result, results / result.name, threads));
+    const auto page_with = [&](const std::string& tables, const nlohmann::json& data) {
+      return PageHtml(result.name, tables, data, PageScripts::kDataset);
+    };
+    const fs::path folder = results / result.name;
+    const size_t max_data_bytes = kMaxPageBytes - page_with("", {}).size();
+    const fs::path dataset = DatasetFolderOf(folder);
+    DatasetPage& page = pages.emplace_back(MakePage(
+        result, [&](const Sequence& sequence) { return ImagesIn(dataset, sequence); },
+        max_data_bytes, threads));
+    const auto print = [&](const std::string& problem) {
+      fmt::print(stderr, "soslam-pages: {}: {}\n", result.name, problem);
+    };
+    for (const UnfinishedVariant& variant : page.unfinished) {
+      print(variant.name + " " + variant.state);
+    }
+    for (const std::string& problem : page.problems) print(problem);
+    if (page.variants.empty()) continue;  // there is nothing to show
+    const std::string html = page_with(DatasetTables(page), DataOf(page));
+    WriteTextFile(folder / "report.html", html);
+    fmt::print("{}: {} variants, {} images, {:.1f} MB\n", (folder / "report.html").string(),
+               page.variants.size(), page.images.size(), static_cast<double>(html.size()) / 1e6);
+    page.images.clear();
   }
   const bool shows_something =
       std::ranges::any_of(pages, [](const DatasetPage& page) { return !page.variants.empty(); });

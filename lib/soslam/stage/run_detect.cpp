@@ -44,27 +44,22 @@ void CheckIsClass(const std::string& label, const std::vector<std::string>& clas
                                   fmt::join(classes, ", ")));
 }
 
-// Pairs from 'tv=monitor, couch=sofa'.
-std::map<std::string, std::string> ParseRenames(const std::string& text) {
-  std::map<std::string, std::string> renames;
-  if (Trimmed(text).empty()) return renames;
-  for (const std::string_view field : SplitFields(text)) {
-    const size_t equals = std::min(field.find('='), field.size());
-    const std::string from{Trimmed(field.substr(0, equals))};
-    const std::string to{Trimmed(field.substr(std::min(equals + 1, field.size())))};
-    if (from.empty() || to.empty() || !renames.emplace(from, to).second) {
-      throw SettingsError(fmt::format(
-          "rename_labels has '{}'; expected 'tv=monitor, couch=sofa', each label once", field));
-    }
-  }
-  return renames;
-}
-
 }  // namespace
 
 DetectorLabels LabelsForDetector(std::vector<std::string> classes, const DetectorOptions& options) {
   DetectorLabels labels;
-  const auto renames = ParseRenames(options.rename_labels);
+  std::map<std::string, std::string> renames;
+  if (!Trimmed(options.rename_labels).empty()) {
+    for (const std::string_view field : SplitFields(options.rename_labels)) {
+      const size_t equals = std::min(field.find('='), field.size());
+      const std::string from{Trimmed(field.substr(0, equals))};
+      const std::string to{Trimmed(field.substr(std::min(equals + 1, field.size())))};
+      if (from.empty() || to.empty() || !renames.emplace(from, to).second) {
+        throw SettingsError(fmt::format(
+            "rename_labels has '{}'; expected 'tv=monitor, couch=sofa', each label once", field));
+      }
+    }
+  }
   for (const auto& [from, to] : renames) CheckIsClass(from, classes, "rename_labels");
   for (std::string& label : classes) {
     if (const auto found = renames.find(label); found != renames.end()) label = found->second;

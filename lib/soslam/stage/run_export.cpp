@@ -95,50 +95,9 @@ std::vector<World> ReadWorlds(const Sequence& sequence, const ExportOptions& opt
 // Median reprojection error of points from which poses are not those of their images.
 constexpr double kMaxMedianErrorPx = 4.0;
 
-// What is wrong with points that the poses do not explain.
-std::vector<Finding> CheckPoints(const std::vector<World>& worlds, size_t given,
-                                 const fs::path& file) {
-  std::vector<double> errors_px;
-  for (const World& world : worlds) {
-    for (const WorldPoint& point : world.points) errors_px.push_back(point.reprojection_error_px);
-  }
-  const size_t placed = errors_px.size();
-  const std::optional<double> median_px = MedianOf(errors_px);
-  if (2 * placed >= given && median_px.value_or(0.0) <= kMaxMedianErrorPx) return {};
-  return {
-      {"points_and_poses", Severity::kWarning,
-       fmt::format("{}: {} of {} points can be placed by the poses that are written, at a median "
-                   "reprojection error of {:.1f} px",
-                   file.string(), placed, given, median_px.value_or(0.0)),
-       fmt::format("most of them, at less than {} px", kMaxMedianErrorPx),
-       "points of other images, or poses that drift", "points that were made of these images"}};
-}
-
 bool HasImage(const World& world) {
   return std::ranges::any_of(world.frames,
                              [](const WorldFrame& frame) { return !frame.image.empty(); });
-}
-
-// Adds and colours what is seen in the images, and says what other programs will not see as it is.
-void AddImages(const Sequence& sequence, const StageFiles& files, int threads,
-               std::vector<World>* worlds) {
-  if (files.contains("points")) {
-    const std::vector<MapPoint> points = ReadPointsOf(sequence, files);
-    AddPoints(sequence, points, worlds);
-    ReportFindings("export", CheckPoints(*worlds, points.size(), files.at("points")));
-  }
-  if (!files.contains("dataset")) return;
-  if (files.contains("points")) ColourPoints(sequence, files, threads, worlds);
-  if (files.contains("colmap") || files.contains("transforms")) {
-    ReportFindings("export", CheckTurnedImages(sequence, files));
-  }
-}
-
-// The dataset folder as seen from the folder of a file; empty if it is not known.
-fs::path DatasetFrom(const fs::path& file, const StageFiles& files) {
-  const auto dataset = files.find("dataset");
-  if (dataset == files.end()) return {};
-  return fs::relative(dataset->second, PlainPath(file).parent_path());
 }
 
 // Creates all outputs before any is written, so that a failure leaves no partial result.
@@ -187,7 +146,12 @@ std::vector<Output> MakeOutputs(const std::vector<World>& worlds, const ExportOp
     }
     if (files.contains("transforms")) {
       const fs::path file = path_of("transforms", world);
-      outputs.push_back({file, TransformsText(world, DatasetFrom(file, files))});
+      // The dataset folder as seen from that of the file; empty if it is not known.
+      const auto dataset = files.find("dataset");
+      const fs::path seen = dataset == files.end()
+                                ? fs::path()
+                                : fs::relative(dataset->second, PlainPath(file).parent_path());
+      outputs.push_back({file, TransformsText(world, seen)});
     }
   }
   return outputs;
@@ -225,7 +189,35 @@ void RunExport(const ExportOptions& options, const StageFiles& files, int thread
   const Sequence sequence = ReadSequence(files.at("sequence"), need);
   std::vector<World> worlds = ReadWorlds(sequence, options, files);
   CheckWorlds(worlds, files);
-  AddImages(sequence, files, threads, &worlds);
+  if (files.contains("points")) {
+    const std::vector<MapPoint> points = ReadPointsOf(sequence, files);
+    AddPoints(sequence, points, &worlds);
+    std::vector<double> errors_px;
+    for (const World& world : worlds) {
+      for (const WorldPoint& point : world.points) {
+        errors_px.push_back(point.reprojection_error_px);
+      }
+    }
+    const size_t placed = errors_px.size();
+    const std::optional<double> median_px = MedianOf(errors_px);
+    if (2 * placed < points.size() || !(median_px.value_or(0.0) <= kMaxMedianErrorPx)) {
+      ReportFindings(
+          "export",
+          {{"points_and_poses", Severity::kWarning,
+            fmt::format("{}: {} of {} points can be placed by the poses that are written, at a "
+                        "median reprojection error of {:.1f} px",
+                        files.at("points").string(), placed, points.size(),
+                        median_px.value_or(0.0)),
+            fmt::format("most of them, at less than {} px", kMaxMedianErrorPx),
+            "points of other images, or poses that drift",
+            "points that were made of these images"}});
+    }
+    if (files.contains("dataset")) ColourPoints(sequence, files, threads, &worlds);
+  }
+  // Other programs may read images as they are stored, where EXIF turns them.
+  if (files.contains("dataset") && (files.contains("colmap") || files.contains("transforms"))) {
+    ReportFindings("export", CheckTurnedImages(sequence, files));
+  }
   const std::vector<Output> outputs = MakeOutputs(worlds, options, files);
   if (files.contains("overlays")) {
     const size_t count = WriteOverlays(sequence, worlds, files, threads);

@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <opencv2/core/mat.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -99,35 +99,12 @@ void WriteJpeg(const cv::Mat& image, int max_image_px,
   output.Write(name, jpeg);
 }
 
-void CheckEnough(const FramesRecord& record, const fs::path& images) {
-  const auto left_out = std::ranges::count_if(record.frames, IsLeftOut);
-  if (std::ssize(record.frames) - left_out >= 2) return;
-  throw NothingUsableError(fmt::format(
-      "{}: {} of {} images can be used ({}); expected at least 2 from different places: move the "
-      "camera sideways, not only turn it",
-      images.string(), std::ssize(record.frames) - left_out, record.frames.size(),
-      CountsInWords(ReasonsInWords(CountLeftOut(record.frames)))));
-}
-
-void WriteVideoFrames(const FramesRecord& record, const fs::path& path, int max_image_px,
-                      const DatasetFolder& output) {
-  VideoReader video(path);
-  for (const SourceFrame& frame : record.frames) {
-    if (!video.Next()) throw InputError(path.string() + ": cannot be decoded a second time");
-    if (IsLeftOut(frame)) continue;
-    WriteJpeg(video.Image(cv::IMREAD_COLOR), max_image_px, {}, frame.image, output);
-  }
-}
-
-std::string ReadmeText(const DatasetFolder& output) {
-  return output.Mark() +
-         "; the next run into this folder replaces it. -->\n\n"
-         "Images that were chosen from photos or a video: `rgb/`, listed in `rgb.txt` in the "
-         "order\n"
-         "in which they were taken; times are seconds for videos, and count from 0 for photos.\n"
-         "`frames.json` says where each image comes from, and what was left out, and why. Its\n"
-         "`focal_hint` is no calibration.\n";
-}
+constexpr const char* kReadme =
+    "; the next run into this folder replaces it. -->\n\n"
+    "Images that were chosen from photos or a video: `rgb/`, listed in `rgb.txt` in the order\n"
+    "in which they were taken; times are seconds for videos, and count from 0 for photos.\n"
+    "`frames.json` says where each image comes from, and what was left out, and why. Its\n"
+    "`focal_hint` is no calibration.\n";
 
 }  // namespace
 
@@ -139,11 +116,25 @@ void RunFrames(const FrameOptions& options, const StageFiles& files, int threads
   ChosenFrames chosen =
       is_video ? ChooseFromVideo(options, images) : ChoosePhotos(options, images, threads, &photos);
   const FramesRecord& record = chosen.record;
-  CheckEnough(record, images);
+  const auto usable = std::ranges::count_if(record.frames, std::not_fn(IsLeftOut));
+  const std::string left_out = CountsInWords(ReasonsInWords(CountLeftOut(record.frames)));
+  if (usable < 2) {
+    throw NothingUsableError(fmt::format(
+        "{}: {} of {} images can be used ({}); expected at least 2 from different places: move the "
+        "camera sideways, not only turn it",
+        images.string(), usable, record.frames.size(), left_out));
+  }
   const std::vector<Finding> findings = CheckFrames(chosen, photos);
   ReportFindings("frames", findings);
   fs::create_directory(output.Temporary() / "rgb");
-  if (is_video) WriteVideoFrames(record, images, options.max_image_px, output);
+  if (is_video) {
+    VideoReader video(images);
+    for (const SourceFrame& frame : record.frames) {
+      if (!video.Next()) throw InputError(images.string() + ": cannot be decoded a second time");
+      if (IsLeftOut(frame)) continue;
+      WriteJpeg(video.Image(cv::IMREAD_COLOR), options.max_image_px, {}, frame.image, output);
+    }
+  }
   ParallelFor("images", photos.size(), threads, [&](size_t i) {
     if (IsLeftOut(record.frames[i])) return;
     const Photo& photo = photos[i];
@@ -159,7 +150,7 @@ void RunFrames(const FrameOptions& options, const StageFiles& files, int threads
     output.Write("detections.csv", FrameBoxesText(files.at("detections"), chosen));
     chosen.inputs.push_back(files.at("detections"));
   }
-  output.Write("README.md", ReadmeText(output));
+  output.Write("README.md", output.Mark() + kReadme);
   std::string list = "# timestamp filename\n";
   int count = 0;
   for (const SourceFrame& frame : record.frames) {
@@ -173,11 +164,9 @@ void RunFrames(const FrameOptions& options, const StageFiles& files, int threads
                             {OptionsToJson(options), chosen.inputs, findings, "frames"},
                             DescribedToJson(record)));
   output.Commit();
-  const auto left_out = std::ranges::count_if(record.frames, IsLeftOut);
   fmt::print(
-      "{}: {} of {} images chosen, {} x {} px; left out: {}{}\n", record.name,
-      std::ssize(record.frames) - left_out, record.frames.size(), record.width, record.height,
-      CountsInWords(ReasonsInWords(CountLeftOut(record.frames))),
+      "{}: {} of {} images chosen, {} x {} px; left out: {}{}\n", record.name, usable,
+      record.frames.size(), record.width, record.height, left_out,
       chosen.order.is_by_time ? "; in the order of their EXIF times, not of their names" : "");
 }
 

@@ -53,110 +53,63 @@ cv::Mat GreyImage(const InspectRequest& request, const Sequence& sequence, int f
   return FrameImageReader(sequence).Read({&frame, path}, cv::IMREAD_GRAYSCALE);
 }
 
-// Sequence and frame of a picture.
-struct FrameOfSequence {
-  Sequence sequence;
-  int frame_index;
-};
-
-FrameOfSequence FrameFor(const InspectRequest& request, const std::string& kind) {
+cv::Mat DrawPicture(const InspectRequest& request) {
+  const std::string kind = ReadArtefactHeader(request.file).at("kind");
+  if (kind == "edges") {
+    const int frame_id = Required(request.frame_id, "--frame", kind);
+    const EdgesReader reader(request.file);
+    if (!reader.Has(frame_id)) {
+      const std::vector<int> ids = reader.FrameIds();
+      if (ids.empty()) throw NothingUsableError(request.file.string() + ": has no frames");
+      RefuseFrame(frame_id, request.file, ids.front(), ids.back());
+    }
+    return EdgesPicture(reader.Read(frame_id), request.layer, fmt::format("frame {}", frame_id));
+  }
+  if (kind != "sequence" && kind != "landmarks" && kind != "map" && kind != "symmetry") {
+    throw SettingsError(
+        fmt::format("{}: there is no picture of kind '{}'; expected sequence, landmarks, map, "
+                    "edges or symmetry",
+                    request.file.string(), kind));
+  }
   const fs::path file =
       kind == "sequence" ? request.file : Required(request.sequence, "--sequence", kind);
   const int frame_id = Required(request.frame_id, "--frame", kind);
-  Sequence sequence = ReadSequence(file, PlaneNeed::kNotNeeded);
-  const auto found = std::ranges::lower_bound(sequence.frames, frame_id, {}, &Frame::id);
-  if (sequence.frames.empty()) throw NothingUsableError(file.string() + ": has no frames");
-  if (found == sequence.frames.end() || found->id != frame_id) {
-    RefuseFrame(frame_id, file, sequence.frames.front().id, sequence.frames.back().id);
+  const Sequence sequence = ReadSequence(file, PlaneNeed::kNotNeeded);
+  const std::vector<Frame>& frames = sequence.frames;
+  const auto frame = std::ranges::lower_bound(frames, frame_id, {}, &Frame::id);
+  if (frames.empty()) throw NothingUsableError(file.string() + ": has no frames");
+  if (frame == frames.end() || frame->id != frame_id) {
+    RefuseFrame(frame_id, file, frames.front().id, frames.back().id);
   }
-  const auto frame_index = static_cast<int>(found - sequence.frames.begin());
-  return {std::move(sequence), frame_index};
-}
-
-cv::Mat OverlayPicture(const InspectRequest& request, const std::string& kind) {
-  const auto [sequence, frame_index] = FrameFor(request, kind);
-  OverlayInput input;
-  if (kind == "sequence") {
-    input = OverlayOfFrame(sequence, frame_index);
-  } else if (kind == "landmarks") {
-    input = OverlayOfLandmarks(sequence, ReadLandmarks(request.file, sequence), frame_index);
-  } else {
-    input = OverlayOfMap(sequence, ReadMap(request.file, sequence), frame_index);
+  const auto frame_index = static_cast<int>(frame - frames.begin());
+  const std::string title = fmt::format("{}, frame {}", sequence.name, frame_id);
+  if (kind == "symmetry") {
+    const int object_id = Required(request.object_id, "--object", kind);
+    const std::vector<SymmetryRecord> records = ReadSymmetry(request.file);
+    const auto found = std::ranges::find_if(records, [&](const SymmetryRecord& record) {
+      return record.frame_id == frame_id && record.object_id == object_id;
+    });
+    if (found == records.end()) {
+      throw SettingsError(fmt::format("--object {}: {} has no observation of it in frame {}",
+                                      object_id, request.file.string(), frame_id));
+    }
+    return SymmetryPicture(*found, GreyImage(request, sequence, frame_index),
+                           fmt::format("{}, object {}", title, object_id));
   }
+  const OverlayInput input =
+      kind == "sequence" ? OverlayOfFrame(sequence, frame_index)
+      : kind == "landmarks"
+          ? OverlayOfLandmarks(sequence, ReadLandmarks(request.file, sequence), frame_index)
+          : OverlayOfMap(sequence, ReadMap(request.file, sequence), frame_index);
   cv::Mat picture = DrawingGround(GreyImage(request, sequence, frame_index));
   DrawOverlay(input, &picture);
   std::vector<CaptionEntry> caption = OverlayLegend(input);
-  caption.insert(caption.begin(), {fmt::format("{}, frame {}", sequence.name, *request.frame_id)});
+  caption.insert(caption.begin(), {title});
   return WithCaption(picture, caption);
-}
-
-cv::Mat PictureOfEdges(const InspectRequest& request) {
-  const int frame_id = Required(request.frame_id, "--frame", "edges");
-  const EdgesReader reader(request.file);
-  if (!reader.Has(frame_id)) {
-    const std::vector<int> ids = reader.FrameIds();
-    if (ids.empty()) throw NothingUsableError(request.file.string() + ": has no frames");
-    RefuseFrame(frame_id, request.file, ids.front(), ids.back());
-  }
-  return EdgesPicture(reader.Read(frame_id), request.layer, fmt::format("frame {}", frame_id));
-}
-
-cv::Mat PictureOfSymmetry(const InspectRequest& request) {
-  const auto [sequence, frame_index] = FrameFor(request, "symmetry");
-  const int frame_id = *request.frame_id;
-  const int object_id = Required(request.object_id, "--object", "symmetry");
-  const std::vector<SymmetryRecord> records = ReadSymmetry(request.file);
-  const auto found = std::ranges::find_if(records, [&](const SymmetryRecord& record) {
-    return record.frame_id == frame_id && record.object_id == object_id;
-  });
-  if (found == records.end()) {
-    throw SettingsError(fmt::format("--object {}: {} has no observation of it in frame {}",
-                                    object_id, request.file.string(), frame_id));
-  }
-  return SymmetryPicture(
-      *found, GreyImage(request, sequence, frame_index),
-      fmt::format("{}, frame {}, object {}", sequence.name, frame_id, object_id));
-}
-
-cv::Mat PictureOf(const InspectRequest& request) {
-  const std::string kind = ReadArtefactHeader(request.file).at("kind");
-  if (kind == "edges") return PictureOfEdges(request);
-  if (kind == "symmetry") return PictureOfSymmetry(request);
-  if (kind == "sequence" || kind == "landmarks" || kind == "map") {
-    return OverlayPicture(request, kind);
-  }
-  throw SettingsError(fmt::format(
-      "{}: there is no picture of kind '{}'; expected sequence, landmarks, map, edges or symmetry",
-      request.file.string(), kind));
-}
-
-void WritePng(const fs::path& path, const cv::Mat& picture) {
-  if (path.extension() != ".png") {
-    throw SettingsError(
-        fmt::format("--image {}: expected a name that ends in .png", path.string()));
-  }
-  std::vector<uchar> bytes;
-  cv::imencode(".png", picture, bytes);
-  WriteTextFile(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 std::string InBrackets(const std::string& doubts) {
   return doubts.empty() ? "" : fmt::format(" (uncertain: {})", doubts);
-}
-
-// ", scale ... (uncertain: ...), up (uncertain: ...)", up only if it is uncertain; empty for
-// a world whose scale is given.
-std::string WorldInHeadline(const std::optional<Artefact<WorldReport>>& world,
-                            const Sequence& sequence) {
-  constexpr const char* kUnknown = ", scale unknown";
-  if (!world) return IsInMetresWithoutWorld(sequence) ? "" : kUnknown;
-  std::string words = kUnknown;
-  if (const auto& scale = world->body.scale) {
-    words = fmt::format(", scale +- {:.0f} %{}", HalfIntervalPercent(*scale),
-                        InBrackets(ContradictionsInWords(*scale)));
-  }
-  const std::string doubt = DoubtOfUp(world->findings);
-  return doubt.empty() ? words : words + ", up" + InBrackets(doubt);
 }
 
 // One line on a map.json, such as "9 objects, scale +- 18 %, 2 objects uncertain": how many objects
@@ -182,7 +135,15 @@ std::string Headline(const InspectRequest& request) {
   }
   std::optional<Artefact<WorldReport>> world;
   if (Exists(folder / "world.json")) world = ReadWorld(folder / "world.json");
-  std::string line = Counted(placed, "object") + WorldInHeadline(world, sequence);
+  std::string line = Counted(placed, "object");
+  if (world && world->body.scale) {
+    line += fmt::format(", scale +- {:.0f} %{}", HalfIntervalPercent(*world->body.scale),
+                        InBrackets(ContradictionsInWords(*world->body.scale)));
+  } else if (world || !IsInMetresWithoutWorld(sequence)) {
+    line += ", scale unknown";
+  }
+  const std::string doubt = world ? DoubtOfUp(world->findings) : "";
+  if (!doubt.empty()) line += ", up" + InBrackets(doubt);
   if (uncertain > 0) line += fmt::format(", {} uncertain", Counted(uncertain, "object"));
   const std::string distrust = DistrustOfMap(world ? &world->body : nullptr, sequence);
   if (!distrust.empty()) line += "\ndo not trust this map: " + distrust;
@@ -199,7 +160,16 @@ std::string RunInspect(const InspectRequest& request, bool is_coloured) {
       CheckWasMadeOf(request.file, kind, *request.sequence);
     }
   }
-  if (request.image) WritePng(*request.image, PictureOf(request));
+  if (request.image) {
+    const cv::Mat picture = DrawPicture(request);
+    if (request.image->extension() != ".png") {
+      throw SettingsError(
+          fmt::format("--image {}: expected a name that ends in .png", request.image->string()));
+    }
+    std::vector<uchar> bytes;
+    cv::imencode(".png", picture, bytes);
+    WriteTextFile(*request.image, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  }
   if (request.image && !request.csv && !request.table) return "";
   std::optional<Sequence> sequence;
   if (request.sequence) sequence = ReadSequence(*request.sequence, PlaneNeed::kNotNeeded);

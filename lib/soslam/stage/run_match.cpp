@@ -17,25 +17,6 @@
 #include "soslam/stage/stages.h"
 
 namespace soslam {
-namespace {
-
-// A track through images of a sequence, with the pixels as they are stored.
-PointTrack AsStored(const Sequence& sequence, const std::vector<FrameImage>& images,
-                    const FeatureTrack& track) {
-  PointTrack result;
-  for (const FeatureTrack::Place& place : track.places) {
-    const Frame& frame = *images[place.image].frame;
-    const auto& distortion = sequence.image_distortion;
-    result.observations.push_back(
-        {frame.id, distortion
-                       ? DistortPixels(sequence.CameraOf(frame), *distortion, {place.pixel}).front()
-                       : place.pixel});
-  }
-  return result;
-}
-
-}  // namespace
-
 void RunMatch(const MatchOptions& options, const StageFiles& files, int threads) {
   const std::filesystem::path& sequence_file = files.at("sequence");
   const Sequence sequence = ReadSequence(sequence_file, PlaneNeed::kNotNeeded);
@@ -66,9 +47,17 @@ void RunMatch(const MatchOptions& options, const StageFiles& files, int threads)
   ParallelFor("pairs", pairs.size(), threads, [&](size_t i) {
     matches[i] = MatchFeatures(views[pairs[i].first], views[pairs[i].second], options);
   });
-  std::vector<PointTrack>& tracks = found.tracks;
+  std::vector<PointTrack>& tracks = found.tracks;  // with the pixels as they are stored
+  const auto& distortion = sequence.image_distortion;
   for (const FeatureTrack& track : JoinMatches(views, pairs, matches, options)) {
-    tracks.push_back(AsStored(sequence, images, track));
+    PointTrack& stored = tracks.emplace_back();
+    for (const FeatureTrack::Place& place : track.places) {
+      const Frame& frame = *images[place.image].frame;
+      stored.observations.push_back(
+          {frame.id,
+           distortion ? DistortPixels(sequence.CameraOf(frame), *distortion, {place.pixel}).front()
+                      : place.pixel});
+    }
   }
   if (tracks.empty()) {
     info.findings = {{"no_shared_points", Severity::kWarning,

@@ -46,20 +46,6 @@ struct Given {
   std::vector<std::optional<Rigid3d>> poses;  // one per image; empty: they are estimated
 };
 
-std::vector<std::optional<Rigid3d>> GivenPoses(const fs::path& path, double max_difference_s,
-                                               const std::vector<ListedImage>& images) {
-  const std::vector<TimedPose> trajectory = ReadTrajectory(path);
-  std::vector<std::optional<Rigid3d>> poses;
-  for (const ListedImage& image : images) {
-    const auto pose = NearestPose(trajectory, image.timestamp, max_difference_s);
-    poses.push_back(pose ? std::optional(pose->world_from_camera) : std::nullopt);
-  }
-  const auto count = std::ranges::count_if(poses, [](const auto& pose) { return bool(pose); });
-  if (count >= 2) return poses;
-  throw InputError(fmt::format("{}: {} of {} images have a pose within {} s; expected two at least",
-                               path.string(), count, images.size(), max_difference_s));
-}
-
 Given ReadGiven(const fs::path& dataset, const ReconstructOptions& options) {
   Given given;
   const fs::path list = dataset / "rgb.txt", camera = dataset / "camera.json";
@@ -81,8 +67,18 @@ Given ReadGiven(const fs::path& dataset, const ReconstructOptions& options) {
         "poses: given poses need a given camera; expected a camera.json, and "
         "calibration given or auto");
   }
-  given.poses = GivenPoses(dataset / "odometry.txt", options.max_time_difference_s, given.images);
-  return given;
+  const fs::path odometry = dataset / "odometry.txt";
+  const std::vector<TimedPose> trajectory = ReadTrajectory(odometry);
+  for (const ListedImage& image : given.images) {
+    const auto pose = NearestPose(trajectory, image.timestamp, options.max_time_difference_s);
+    given.poses.push_back(pose ? std::optional(pose->world_from_camera) : std::nullopt);
+  }
+  const auto count =
+      std::ranges::count_if(given.poses, [](const auto& pose) { return bool(pose); });
+  if (count >= 2) return given;
+  throw InputError(fmt::format("{}: {} of {} images have a pose within {} s; expected two at least",
+                               odometry.string(), count, given.images.size(),
+                               options.max_time_difference_s));
 }
 
 // Throws SettingsError if the output would replace poses of another source.
@@ -135,27 +131,6 @@ void CheckImages(const fs::path& dataset, const Given& given, ImageOrientation r
   }
 }
 
-// The boxes of things that move, of each image; empty: there are none, or no detections.csv.
-std::vector<std::vector<Box>> MovingBoxes(const fs::path& dataset, const Given& given,
-                                          const std::string& moving_labels) {
-  const fs::path file = dataset / "detections.csv";
-  if (!Exists(file)) return {};
-  Sequence boxes;  // without poses and objects
-  boxes.moving_labels = moving_labels;
-  for (const ListedImage& image : given.images) {
-    const ImageSize size = ReadImageHeader(dataset / image.image).value().stored;
-    boxes.frames.emplace_back().camera =
-        Camera{.width = static_cast<int>(size.width), .height = static_cast<int>(size.height)};
-  }
-  for (const DetectionRow& row : RowsWithoutObject(ReadDetectionsCsv(file), given.images)) {
-    boxes.rejected.push_back({row.frame_id, row.label, row.score, row.box, {}, {}, ""});
-  }
-  const std::vector<Finding> findings = CheckMovingThings(boxes);
-  if (findings.empty()) return {};
-  fmt::print("{}: {}\n", file.string(), findings.front().found);
-  return BoxesOfMovingThings(boxes);
-}
-
 std::vector<fs::path> MakeModels(const ReconstructOptions& options, const Given& given,
                                  const fs::path& dataset, const fs::path& output, int threads,
                                  std::string* version) {
@@ -164,8 +139,26 @@ std::vector<fs::path> MakeModels(const ReconstructOptions& options, const Given&
                 .camera = given.camera,
                 .camera_is_fixed = given.camera_is_fixed,
                 .poses = given.poses,
-                .masked = MovingBoxes(dataset, given, options.moving_labels),
+                .masked = {},
                 .threads = threads};
+  // Boxes of things that move are masked.
+  if (const fs::path file = dataset / "detections.csv"; Exists(file)) {
+    Sequence boxes;  // without poses and objects
+    boxes.moving_labels = options.moving_labels;
+    for (const ListedImage& image : given.images) {
+      const ImageSize size = ReadImageHeader(dataset / image.image).value().stored;
+      boxes.frames.emplace_back().camera =
+          Camera{.width = static_cast<int>(size.width), .height = static_cast<int>(size.height)};
+    }
+    for (const DetectionRow& row : RowsWithoutObject(ReadDetectionsCsv(file), given.images)) {
+      boxes.rejected.push_back({row.frame_id, row.label, row.score, row.box, {}, {}, ""});
+    }
+    const std::vector<Finding> findings = CheckMovingThings(boxes);
+    if (!findings.empty()) {
+      fmt::print("{}: {}\n", file.string(), findings.front().found);
+      job.masked = BoxesOfMovingThings(boxes);
+    }
+  }
   for (const ListedImage& image : given.images) job.images.push_back(image.image);
   job.exhaustive = options.matching == ImageMatching::kAuto
                        ? std::ssize(job.images) <= options.exhaustive_max_images
@@ -173,17 +166,9 @@ std::vector<fs::path> MakeModels(const ReconstructOptions& options, const Given&
   return RunColmap(job, output / "colmap", version);
 }
 
-std::vector<fs::path> GivenModels(const fs::path& folder) {
-  std::vector<fs::path> models = ColmapModelsIn(folder);
-  if (!models.empty()) return models;
-  throw InputError(folder.string() +
-                   ": has no model of COLMAP; expected cameras, images and points3D (.bin or "
-                   ".txt), or numbered folders of them");
-}
-
 // The largest model; lists all in `components`.
-ColmapModel LargestModel(const std::vector<fs::path>& folders,
-                         std::vector<ReconstructionSummary::Component>* components) {
+ColmapModel ReadLargestModel(const std::vector<fs::path>& folders,
+                             std::vector<ReconstructionSummary::Component>* components) {
   using Component = ReconstructionSummary::Component;
   const auto is_larger = [](const Component& a, const Component& b) {
     return std::pair(a.images, a.points) > std::pair(b.images, b.points);
@@ -337,17 +322,22 @@ void RunReconstruct(const ReconstructOptions& options, const StageFiles& files, 
   const Given given = ReadGiven(dataset, options);
   CheckReplaceable(output / "odometry.txt", options);
   CheckReplaceable(output / "camera.json", given.camera_is_fixed);
-  CheckImages(dataset, given, options.image_orientation, files.contains("model"));
+  const bool has_model = files.contains("model");
+  CheckImages(dataset, given, options.image_orientation, has_model);
   std::error_code ignored;  // the first file that is written reports it
   fs::create_directories(output, ignored);
 
   ReconstructionSummary summary;
-  ColmapModel model =
-      LargestModel(files.contains("model")
-                       ? GivenModels(files.at("model"))
-                       : MakeModels(options, given, dataset, output, threads, &summary.colmap),
-                   &summary.components);
-  if (files.contains("model")) {
+  const std::vector<fs::path> models =
+      has_model ? ColmapModelsIn(files.at("model"))
+                : MakeModels(options, given, dataset, output, threads, &summary.colmap);
+  if (has_model && models.empty()) {
+    throw InputError(files.at("model").string() +
+                     ": has no model of COLMAP; expected cameras, images and points3D (.bin or "
+                     ".txt), or numbered folders of them");
+  }
+  ColmapModel model = ReadLargestModel(models, &summary.components);
+  if (has_model) {
     TurnModel(given.images, dataset, options.image_orientation, &model);
   }
   Reconstruction reconstruction = ReconstructionOf(model, given.images);
@@ -355,7 +345,7 @@ void RunReconstruct(const ReconstructOptions& options, const StageFiles& files, 
   CheckPoses(reconstruction, given);
   ArtefactInfo info{OptionsToJson(options), model.files, model.findings, "reconstruct"};
   info.inputs.push_back(dataset / "rgb.txt");
-  if (reconstruction.points.empty() && files.contains("model")) {
+  if (reconstruction.points.empty() && has_model) {
     AddTrackedPoints(model, files.at("model"), dataset, given.images, options.image_orientation,
                      threads, &reconstruction, &info);
   }

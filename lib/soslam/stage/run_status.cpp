@@ -202,7 +202,7 @@ std::vector<Finding> FindingsOfRun(const StageInstance& instance, const fs::path
 }
 
 // All diagnoses, worst first. A finding that later stages pass on is attributed to the first one.
-std::vector<Diagnosis> DiagnosesOf(const Plan& plan, const fs::path& results) {
+std::vector<Diagnosis> CollectDiagnoses(const Plan& plan, const fs::path& results) {
   std::vector<Diagnosis> diagnoses;
   for (const Finding& finding : plan.findings) diagnoses.push_back({finding, "settings", {}});
   for (const StageInstance& instance : plan.instances) {
@@ -232,7 +232,7 @@ int RunDoctor(const DoctorOptions& options, const StageFiles& files, int /*threa
   const fs::path pipelines = ReadPlanFolders(results / "plan.mk").pipelines;
   const Plan plan = MakePlan(pipelines, options.name, PlannedVariants(pipelines, results),
                              Exists(results / kEditsFile));
-  const std::vector<Diagnosis> diagnoses = DiagnosesOf(plan, results);
+  const std::vector<Diagnosis> diagnoses = CollectDiagnoses(plan, results);
   for (const Diagnosis& diagnosis : diagnoses) {
     const Finding& finding = diagnosis.finding;
     const std::string variants = fmt::format("{}", fmt::join(diagnosis.variants, " "));

@@ -20,12 +20,13 @@
 #include "soslam/stage/stages.h"
 
 namespace soslam {
-namespace {
 
 namespace fs = std::filesystem;
 
-// The images of a dataset under the names that their photos had.
-std::vector<ListedImage> ListedPhotos(const fs::path& dataset) {
+void RunTruth(const NoOptions& /*options*/, const StageFiles& files, int /*threads*/) {
+  constexpr int kFewest = 3;  // poses that determine a similarity
+  const fs::path &truth = files.at("truth"), &output = files.at("output");
+  const fs::path& dataset = files.at("dataset");
   const auto record = ReadDescribed<FramesRecord>(dataset / "frames.json", "frames").body;
   std::vector<ListedImage> photos = ReadImageList(dataset / "rgb.txt");
   for (ListedImage& photo : photos) {
@@ -44,16 +45,11 @@ std::vector<ListedImage> ListedPhotos(const fs::path& dataset) {
     }
     photo.image = frame->source;
   }
-  return photos;
-}
-
-std::vector<NamedPose> TruePoses(const fs::path& truth) {
   const fs::path list = truth / "rgb.txt";
-  const std::vector<TimedPose> trajectory = ReadTrajectory(truth / "groundtruth.txt");
+  const std::vector<TimedPose> given = ReadTrajectory(truth / "groundtruth.txt");
   std::vector<NamedPose> poses;
   for (const ListedImage& image : ReadImageList(list)) {
-    const auto pose =
-        NearestPose(trajectory, image.timestamp, ImportOptions().max_time_difference_s);
+    const auto pose = NearestPose(given, image.timestamp, ImportOptions().max_time_difference_s);
     if (pose) poses.push_back({list.string(), image.image, pose->world_from_camera});
   }
   if (poses.empty()) {
@@ -61,16 +57,6 @@ std::vector<NamedPose> TruePoses(const fs::path& truth) {
                      ": no image has a pose in groundtruth.txt; expected poses at "
                      "the times of the images");
   }
-  return poses;
-}
-
-}  // namespace
-
-void RunTruth(const NoOptions& /*options*/, const StageFiles& files, int /*threads*/) {
-  constexpr int kFewest = 3;  // poses that determine a similarity
-  const fs::path &truth = files.at("truth"), &output = files.at("output");
-  const std::vector<ListedImage> photos = ListedPhotos(files.at("dataset"));
-  const std::vector<NamedPose> poses = TruePoses(truth);
   const std::vector<std::optional<int>> rows = RowsOfPoses(poses, photos);
   std::string trajectory = "# timestamp tx ty tz qx qy qz qw\n";
   int matched = 0;

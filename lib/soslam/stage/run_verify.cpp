@@ -80,12 +80,6 @@ class FolderBeside {
   fs::path path_;
 };
 
-void Print(const Outcome& outcome) {
-  fmt::print("{:<9}  {}{}\n", kOutcomeNames.at(static_cast<size_t>(outcome.kind)),
-             outcome.path.string(), outcome.detail.empty() ? "" : ": " + outcome.detail);
-  std::fflush(stdout);  // the next run takes long
-}
-
 }  // namespace
 
 int RunReproduce(const NoOptions& /*options*/, const StageFiles& files, int threads) {
@@ -99,7 +93,9 @@ int RunReproduce(const NoOptions& /*options*/, const StageFiles& files, int thre
   for (const DatasetRuns& dataset : datasets) {
     std::array<size_t, kOutcomeNames.size()> counts = {};  // indexed by kind
     const auto count = [&counts](const Outcome& outcome) {
-      Print(outcome);
+      fmt::print("{:<9}  {}{}\n", kOutcomeNames.at(static_cast<size_t>(outcome.kind)),
+                 outcome.path.string(), outcome.detail.empty() ? "" : ": " + outcome.detail);
+      std::fflush(stdout);  // the next run takes long
       ++counts.at(static_cast<size_t>(outcome.kind));
     };
     for (const VariantRuns& variant : dataset.variants) {

@@ -51,20 +51,6 @@ std::string DescribeTracks(const Association& association) {
   return CountsInWords(ReasonsInWords(counts));
 }
 
-// Throws InputError for an edit whose label is not in the semantic table.
-void CheckLabels(const Edits& edits, const SemanticTable& table) {
-  for (size_t i = 0; i < edits.edits.size(); ++i) {
-    const std::string label = NormalisedLabel(edits.edits[i].label);
-    if (label.empty() || table.priors.contains(label)) continue;
-    std::vector<std::string> known;
-    for (const auto& [name, prior] : table.priors) known.push_back(name);
-    const auto meant = LikelyMeant(label, known);
-    throw InputError(fmt::format(
-        "{}: /edits/{}/label is \"{}\"; expected a label of the semantic table{}", edits.file, i,
-        edits.edits[i].label, meant ? fmt::format(", as \"{}\"", *meant) : ""));
-  }
-}
-
 // What the matches of soslam-match tell of pairs of boxes; nothing where they are not used.
 PairEvidence ReadPairs(bool shared_points, const Sequence& sequence, const StageFiles& files) {
   if (!shared_points) return {};
@@ -96,7 +82,16 @@ void RunAssociate(const AssociateOptions& settings, const StageFiles& files, int
   if (!options.use_planes) sequence = WithoutPlanes(std::move(sequence));
   const PairEvidence pairs = ReadPairs(options.shared_points, sequence, files);
   const Edits edits = files.contains("edits") ? ReadEdits(files.at("edits")) : Edits();
-  CheckLabels(edits, table);
+  for (size_t i = 0; i < edits.edits.size(); ++i) {
+    const std::string label = NormalisedLabel(edits.edits[i].label);
+    if (label.empty() || table.priors.contains(label)) continue;
+    std::vector<std::string> known;
+    for (const auto& [name, prior] : table.priors) known.push_back(name);
+    const auto meant = LikelyMeant(label, known);
+    throw InputError(fmt::format(
+        "{}: /edits/{}/label is \"{}\"; expected a label of the semantic table{}", edits.file, i,
+        edits.edits[i].label, meant ? fmt::format(", as \"{}\"", *meant) : ""));
+  }
   const Association association = Associate(sequence, table, pairs, options, threads, edits);
   if (association.objects.empty()) {
     throw NothingUsableError(fmt::format("{}: no object in {} detections; tracks: {}",
@@ -146,10 +141,12 @@ struct Result {
   std::vector<std::filesystem::path> inputs;  // in addition to the sequence
 };
 
-// Joint optimisation of poses, landmarks and planes, as odometry also drifts along the plane's
-// normal. Objects that may lie have no ratio, and those that may lean are left out.
-MapEstimate Adjusted(const Sequence& sequence, std::vector<std::optional<ShapePrior>> priors,
-                     const PlanesOptions& options, int threads) {
+// Optimises poses, planes and bodies jointly, as odometry also drifts along the plane's normal; the
+// poses of `level` are replaced. Objects that may lie have no ratio, and those that may lean are
+// left out.
+void RefineWithPoses(std::vector<std::optional<ShapePrior>> priors, const PlanesOptions& options,
+                     int threads, PlanesEstimate* estimate, Sequence* level) {
+  const Sequence sequence = WithPlanes(*level, *estimate);
   OptimiseOptions optimise;
   optimise.detection_model = DetectionModel::kTangency;
   optimise.upright = options.upright;  // whose axes of the scene are not known yet
@@ -167,14 +164,7 @@ MapEstimate Adjusted(const Sequence& sequence, std::vector<std::optional<ShapePr
   for (size_t i = 0; i < may_lean.size(); ++i) {
     if (may_lean[i]) input.initial_landmarks[i].reset();
   }
-  return OptimiseMap(input, optimise, threads);
-}
-
-// Optimises poses, planes and bodies jointly; the poses of `level` are replaced.
-void RefineWithPoses(const std::vector<std::optional<ShapePrior>>& priors,
-                     const PlanesOptions& options, int threads, PlanesEstimate* estimate,
-                     Sequence* level) {
-  const MapEstimate map = Adjusted(WithPlanes(*level, *estimate), priors, options, threads);
+  const MapEstimate map = OptimiseMap(input, optimise, threads);
   for (size_t i = 0; i < map.planes_in_world.size(); ++i) {
     EstimatedPlane& plane = estimate->planes[i];
     plane.plane_in_world = map.planes_in_world[i];

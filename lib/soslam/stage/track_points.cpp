@@ -19,8 +19,9 @@
 namespace soslam {
 namespace {
 
-std::vector<FeatureTrack> TracksOf(const Sequence& sequence, const std::vector<FrameImage>& images,
-                                   const FeatureTrackOptions& options, int threads) {
+std::vector<FeatureTrack> FollowFeatures(const Sequence& sequence,
+                                         const std::vector<FrameImage>& images,
+                                         const FeatureTrackOptions& options, int threads) {
   const FrameImageReader reader(sequence);
   const std::vector<std::vector<Box>> moving = BoxesOfMovingThings(sequence);
   FeatureTracker tracker(options);
@@ -53,8 +54,9 @@ std::vector<FeatureTrack> TracksOf(const Sequence& sequence, const std::vector<F
 }
 
 // None if a track's image points are not those of one static point, or it is too far away.
-std::optional<MapPoint> PointOf(const Sequence& sequence, const std::vector<FrameImage>& images,
-                                const FeatureTrack& track, const TrackOptions& options) {
+std::optional<MapPoint> TriangulateTrack(const Sequence& sequence,
+                                         const std::vector<FrameImage>& images,
+                                         const FeatureTrack& track, const TrackOptions& options) {
   std::vector<PointView> all;
   for (const FeatureTrack::Place& place : track.places) {
     const Frame& frame = *images[place.image].frame;
@@ -138,10 +140,11 @@ std::vector<Finding> CheckPoints(const std::vector<MapPoint>& points,
 
 TrackedPoints TrackPoints(const Sequence& sequence, const std::vector<FrameImage>& images,
                           const TrackOptions& options, int threads) {
-  const std::vector<FeatureTrack> tracks = TracksOf(sequence, images, options.features, threads);
+  const std::vector<FeatureTrack> tracks =
+      FollowFeatures(sequence, images, options.features, threads);
   std::vector<std::optional<MapPoint>> found(tracks.size());
   ParallelFor(tracks.size(), threads,
-              [&](size_t i) { found[i] = PointOf(sequence, images, tracks[i], options); });
+              [&](size_t i) { found[i] = TriangulateTrack(sequence, images, tracks[i], options); });
   TrackedPoints tracked{{}, tracks.size(), {}};
   for (auto& point : found) {
     if (point) tracked.points.push_back(std::move(*point));
