@@ -49,20 +49,6 @@ void CheckScale(const GroundEstimate& estimate, std::vector<Finding>* findings) 
        "too few objects whose labels have heights, or heights that vary much", kGiveScale});
 }
 
-void CheckSizesByHand(const GroundEstimate& estimate, std::vector<Finding>* findings) {
-  for (const WorldReport::ObjectRow& object : estimate.objects) {
-    if (!object.is_measured || object.log_scale) continue;
-    findings->push_back(
-        {"size_tells_nothing", Severity::kWarning,
-         fmt::format("the size that edits give a {} ({} boxes) does not tell the scale",
-                     object.label, object.boxes),
-         "a thing that stands upright, with a label of the semantic table, whose body fits its "
-         "boxes",
-         "a label that is not in the table or may lie, or boxes of several things",
-         "measure another thing, one that many photos show whole"});
-  }
-}
-
 void CheckContradictions(const GroundEstimate& estimate, std::vector<Finding>* findings) {
   constexpr double kOtherScales = 0.05;  // probability
   constexpr double kMisfit = 2.0;        // variance of heights, relative to that of the table
@@ -120,7 +106,7 @@ void CheckObjectsAgainstSettings(const GroundEstimate& estimate, std::vector<Fin
        "or leave them out"});
 }
 
-// The two that differ most of what gives the scale, whether or not labels tell it.
+// The two values of the scale that differ most, whether or not labels tell the scale.
 void CheckSettingsAgainstEachOther(const GroundEstimate& estimate, std::vector<Finding>* findings) {
   const std::vector<KnownScale>& known = estimate.known_scales;
   double most = kContradictionSigmas;
@@ -154,9 +140,37 @@ constexpr const char* kSeeWhetherUpright =
     "camera always held level, looking ahead, with more of the floor or table and of upright "
     "edges in them, such as door frames and table legs";
 
-void CheckTurned(const GroundEstimate& estimate, std::vector<Finding>* findings) {
+}  // namespace
+
+std::vector<Finding> CheckGround(const GroundEstimate& estimate, const GroundOptions& options) {
+  constexpr double kUncertainUpDeg = 2.0;
+  std::vector<Finding> findings;
+  CheckScale(estimate, &findings);
+  for (const WorldReport::ObjectRow& object : estimate.objects) {
+    if (!object.is_measured || object.log_scale) continue;
+    findings.push_back(
+        {"size_tells_nothing", Severity::kWarning,
+         fmt::format("the size that edits give a {} ({} boxes) does not tell the scale",
+                     object.label, object.boxes),
+         "a thing that stands upright, with a label of the semantic table, whose body fits its "
+         "boxes",
+         "a label that is not in the table or may lie, or boxes of several things",
+         "measure another thing, one that many photos show whole"});
+  }
+  CheckContradictions(estimate, &findings);
+  CheckObjectsAgainstSettings(estimate, &findings);
+  CheckSettingsAgainstEachOther(estimate, &findings);
+  const bool has_used_height =
+      std::ranges::count(estimate.known_scales, "camera_height_m", &KnownScale::setting) > 0;
+  if (options.camera_height_m > 0.0 && !has_used_height) {
+    findings.push_back({"camera_height_unused", Severity::kWarning,
+                        "camera_height_m is given, and no horizontal plane below the cameras is "
+                        "found",
+                        "a plane that camera_height_m is the height above",
+                        "a floor without texture has no points", "give scale instead"});
+  }
   if (estimate.cameras_are_turned) {
-    findings->push_back(
+    findings.push_back(
         {kCamerasTurnedCheck, Severity::kWarning,
          "which way is up is not clear: however the camera was held, most objects stand on no flat "
          "surface; the flat surfaces with most points and objects are taken to be level. If that "
@@ -166,32 +180,6 @@ void CheckTurned(const GroundEstimate& estimate, std::vector<Finding>* findings)
          "surfaces of points come out tilted",
          kSeeWhetherUpright});
   }
-}
-
-void CheckCameraHeight(const GroundEstimate& estimate, const GroundOptions& options,
-                       std::vector<Finding>* findings) {
-  const bool is_used =
-      std::ranges::count(estimate.known_scales, "camera_height_m", &KnownScale::setting) > 0;
-  if (options.camera_height_m <= 0.0 || is_used) return;
-  findings->push_back(
-      {"camera_height_unused", Severity::kWarning,
-       "camera_height_m is given, and no horizontal plane below the cameras is found",
-       "a plane that camera_height_m is the height above", "a floor without texture has no points",
-       "give scale instead"});
-}
-
-}  // namespace
-
-std::vector<Finding> CheckGround(const GroundEstimate& estimate, const GroundOptions& options) {
-  constexpr double kUncertainUpDeg = 2.0;
-  std::vector<Finding> findings;
-  CheckScale(estimate, &findings);
-  CheckSizesByHand(estimate, &findings);
-  CheckContradictions(estimate, &findings);
-  CheckObjectsAgainstSettings(estimate, &findings);
-  CheckSettingsAgainstEachOther(estimate, &findings);
-  CheckCameraHeight(estimate, options, &findings);
-  CheckTurned(estimate, &findings);
   if (estimate.planes.empty()) {
     findings.push_back({"no_support_plane", Severity::kWarning,
                         fmt::format("no object stands on any of {} horizontal planes in {} points; "

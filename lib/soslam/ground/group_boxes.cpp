@@ -15,18 +15,6 @@ namespace {
 constexpr double kMetresPerUnit = 2.0;
 constexpr double kUnitLogSigma = 0.7;
 
-// The table with its heights in units of the normalised world, as uncertain as that unit is.
-SemanticTable InUnits(SemanticTable table) {
-  const auto convert = [](ShapePrior* prior) {
-    if (!prior->height_m) return;
-    prior->height_m->median /= kMetresPerUnit;
-    prior->height_m->log_sigma = std::hypot(prior->height_m->log_sigma, kUnitLogSigma);
-  };
-  for (auto& [label, prior] : table.priors) convert(&prior);
-  if (table.default_prior) convert(&*table.default_prior);
-  return table;
-}
-
 }  // namespace
 
 std::vector<int> FramesToGroup(const Sequence& sequence, const FoundEdits& edits) {
@@ -57,7 +45,15 @@ std::vector<std::vector<int>> GroupBoxes(Sequence sequence, const std::vector<in
   sequence.ground.emplace();
   sequence.ground->up_in_world = up.up_in_world;
   sequence.ground->up_information = up.information;
-  const SemanticTable in_units = InUnits(table);
+  // Heights in units of the normalised world are as uncertain as that unit is.
+  SemanticTable in_units = table;
+  const auto convert = [](ShapePrior* prior) {
+    if (!prior->height_m) return;
+    prior->height_m->median /= kMetresPerUnit;
+    prior->height_m->log_sigma = std::hypot(prior->height_m->log_sigma, kUnitLogSigma);
+  };
+  for (auto& [label, prior] : in_units.priors) convert(&prior);
+  if (in_units.default_prior) convert(&*in_units.default_prior);
   const AssociationModel model(sequence, in_units, association);
   std::vector<DetectionDecision> decisions(sequence.detections.size());
   std::vector<int> kept = WithoutDuplicates(sequence, association.duplicate_overlap, &decisions);

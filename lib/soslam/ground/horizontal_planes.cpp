@@ -21,7 +21,7 @@ namespace {
 // Error of a point's depth that all its views share, as a fraction.
 constexpr double kDepthError = 1e-3;
 
-std::optional<GroundPoint> GroundPointOf(const Sequence& sequence, const MapPoint& point) {
+std::optional<GroundPoint> MeasureGroundPoint(const Sequence& sequence, const MapPoint& point) {
   GroundPoint result{point.position_in_world, Eigen::Matrix3d::Zero(), {}};
   const double sigma_px = std::max(kLeastPixelSigma, point.reprojection_error_px);
   std::vector<PointView> views;
@@ -219,20 +219,6 @@ Fit FitPlanes(const std::vector<GroundPoint>& points, const UpPrior& up_prior,
   return fit;
 }
 
-// The fit without the planes whose points are as probable on no plane.
-Fit FitProbablePlanes(const std::vector<GroundPoint>& points, const UpPrior& up_prior,
-                      const Eigen::Vector3d& up, const std::vector<double>& heights) {
-  Fit fit = FitPlanes(points, up_prior, up, heights);
-  while (fit.heights.size() > 1) {
-    std::vector<double> others = fit.heights;
-    others.erase(others.begin() + (std::ranges::min_element(fit.shares) - fit.shares.begin()));
-    Fit without = FitPlanes(points, up_prior, fit.up, others);
-    if (without.gain < fit.gain) break;
-    fit = std::move(without);
-  }
-  return fit;
-}
-
 // The points without those of one sector each, around the centre of those on planes.
 std::vector<std::vector<GroundPoint>> WithoutSectors(const std::vector<GroundPoint>& points,
                                                      const Eigen::Vector3d& centre,
@@ -249,8 +235,8 @@ std::vector<std::vector<GroundPoint>> WithoutSectors(const std::vector<GroundPoi
   return others;
 }
 
-HorizontalPlanes PlanesOf(const std::vector<GroundPoint>& points, const UpPrior& up_prior,
-                          const Fit& fit, const Eigen::Matrix2d& ambiguity) {
+HorizontalPlanes MeasurePlanes(const std::vector<GroundPoint>& points, const UpPrior& up_prior,
+                               const Fit& fit, const Eigen::Matrix2d& ambiguity) {
   HorizontalPlanes result;
   result.ambiguity = ambiguity;
   result.up_in_world = fit.up;
@@ -302,27 +288,6 @@ HorizontalPlanes PlanesOf(const std::vector<GroundPoint>& points, const UpPrior&
   return result;
 }
 
-// Mean squared turn from the best direction to others that are nearly as likely.
-Eigen::Matrix2d AmbiguityOf(std::vector<Fit> fits, const Fit& best) {
-  constexpr double kSameUp = 0.3 * kRadPerDeg;
-  std::ranges::stable_sort(fits, std::ranges::greater(), &Fit::gain);
-  std::vector<Eigen::Vector3d> seen;
-  const Eigen::Matrix3d level = UprightRotation(best.up, 0.0).toRotationMatrix();
-  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
-  double sum = 0.0;
-  for (const Fit& fit : fits) {
-    const bool is_new = std::ranges::all_of(
-        seen, [&](const Eigen::Vector3d& other) { return AngleBetween(other, fit.up) > kSameUp; });
-    if (!is_new) continue;
-    seen.push_back(fit.up);
-    const double weight = WeightOfGain(fit.gain, best.gain);
-    const Eigen::Vector2d turn(-level.col(1).dot(fit.up), level.col(0).dot(fit.up));
-    squares += weight * turn * turn.transpose();
-    sum += weight;
-  }
-  return squares / sum;
-}
-
 HorizontalPlanes WithoutPlanes(const UpPrior& up_prior) {
   HorizontalPlanes result;
   result.up_in_world = up_prior.up_in_world;
@@ -336,7 +301,7 @@ std::vector<GroundPoint> GroundPoints(const Sequence& sequence,
                                       const std::vector<MapPoint>& points) {
   std::vector<GroundPoint> result;
   for (const MapPoint& point : points) {
-    if (auto one = GroundPointOf(sequence, point)) result.push_back(std::move(*one));
+    if (auto one = MeasureGroundPoint(sequence, point)) result.push_back(std::move(*one));
   }
   return result;
 }
@@ -356,15 +321,40 @@ HorizontalPlanes FindHorizontalPlanes(const std::vector<GroundPoint>& points,
     for (int round = 0; round < 2; ++round) {
       const std::vector<double> heights = PeakHeights(usable, up);
       if (heights.empty()) break;
-      fits.push_back(FitProbablePlanes(usable, up_prior, up, heights));
-      up = fits.back().up;
+      Fit fit = FitPlanes(usable, up_prior, up, heights);
+      // Planes whose points are as probable on no plane are left out.
+      while (fit.heights.size() > 1) {
+        std::vector<double> others = fit.heights;
+        others.erase(others.begin() + (std::ranges::min_element(fit.shares) - fit.shares.begin()));
+        Fit without = FitPlanes(usable, up_prior, fit.up, others);
+        if (without.gain < fit.gain) break;
+        fit = std::move(without);
+      }
+      up = fit.up;
+      fits.push_back(std::move(fit));
     }
   }
   const auto best_fit = std::ranges::max_element(fits, {}, &Fit::gain);
   if (best_fit == fits.end() || best_fit->gain < 0.0) return WithoutPlanes(up_prior);
-  const Fit& best = *best_fit;
-  const Eigen::Matrix2d ambiguity = AmbiguityOf(fits, best);
-  return PlanesOf(usable, up_prior, best, ambiguity);
+  const Fit best = *best_fit;
+  std::ranges::stable_sort(fits, std::ranges::greater(), &Fit::gain);
+  // Ambiguity: mean squared turn from the best direction to others that are nearly as likely.
+  constexpr double kSameUp = 0.3 * kRadPerDeg;
+  std::vector<Eigen::Vector3d> seen;
+  const Eigen::Matrix3d level = UprightRotation(best.up, 0.0).toRotationMatrix();
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  double sum = 0.0;
+  for (const Fit& fit : fits) {
+    const bool is_new = std::ranges::all_of(
+        seen, [&](const Eigen::Vector3d& other) { return AngleBetween(other, fit.up) > kSameUp; });
+    if (!is_new) continue;
+    seen.push_back(fit.up);
+    const double weight = WeightOfGain(fit.gain, best.gain);
+    const Eigen::Vector2d turn(-level.col(1).dot(fit.up), level.col(0).dot(fit.up));
+    squares += weight * turn * turn.transpose();
+    sum += weight;
+  }
+  return MeasurePlanes(usable, up_prior, best, squares / sum);
 }
 
 double WeightOfGain(double gain, double best_gain) {
@@ -387,8 +377,8 @@ HorizontalPlanes Refined(const HorizontalPlanes& planes, const std::vector<Groun
   std::vector<double> heights;
   for (const PlaneOfPoints& plane : planes.planes) heights.push_back(plane.height);
   const std::vector<GroundPoint> usable = UsablePoints(points, planes.up_in_world);
-  return PlanesOf(usable, up_prior, FitPlanes(usable, up_prior, planes.up_in_world, heights),
-                  planes.ambiguity);
+  return MeasurePlanes(usable, up_prior, FitPlanes(usable, up_prior, planes.up_in_world, heights),
+                       planes.ambiguity);
 }
 
 }  // namespace soslam

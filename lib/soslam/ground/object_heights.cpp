@@ -21,19 +21,6 @@ constexpr double kNoSupport = 0.1;       // prior probability of a free height
 constexpr double kBesidePlane = 0.02;    // factor where a plane has no surface under the object
 constexpr double kEvidenceWeight = 0.5;  // see AssociateOptions::label_evidence_weight
 
-std::map<std::string, double> VotesOf(const Sequence& sequence,
-                                      const std::vector<int>& detections) {
-  std::map<std::string, double> votes;
-  double sum = 0.0;
-  for (const int index : detections) {
-    const Detection& detection = sequence.detections[index];
-    votes[sequence.ObjectOf(detection).label] += detection.score;
-    sum += detection.score;
-  }
-  for (auto& [label, share] : votes) share = sum > 0.0 ? share / sum : 1.0;
-  return votes;
-}
-
 // True if the plane has a surface under the object or beside it: points that are not on one line,
 // as those on a wall are.
 bool IsOverSurface(const PlaneOfPoints& plane, const Eigen::Vector3d& up,
@@ -207,7 +194,13 @@ std::vector<MeasuredObject> MeasureObjects(const Sequence& sequence, const std::
     MeasuredObject& object = objects.emplace_back();
     object.detections = group.detections;
     object.size = group.size;
-    object.votes = VotesOf(sequence, group.detections);
+    double sum = 0.0;
+    for (const int index : group.detections) {
+      const Detection& detection = sequence.detections[index];
+      object.votes[sequence.ObjectOf(detection).label] += detection.score;
+      sum += detection.score;
+    }
+    for (auto& [label, share] : object.votes) share = sum > 0.0 ? share / sum : 1.0;
   }
   ParallelFor("objects", objects.size(), threads, [&](size_t i) {
     Measure(sequence, table, planes, up, moving, options, &objects[i]);

@@ -36,7 +36,7 @@ double Density(const ScaleEvidence& object, double log_scale) {
 
 // Factor on the variance: the mean squared deviation of the objects, with a prior of 1 that has the
 // weight of kSpreadKnowledge objects; at least 1.
-double MisfitOf(const std::vector<ScaleEvidence>& objects, double log_scale) {
+double EstimateMisfit(const std::vector<ScaleEvidence>& objects, double log_scale) {
   double squares = 0.0;
   double count = -1.0;  // one degree of freedom is the scale's
   for (const ScaleEvidence& object : objects) {
@@ -146,7 +146,7 @@ std::optional<ScalePosterior> EstimateScale(const std::vector<ScaleEvidence>& ob
   }
   const double mode =
       low + kGridStep * static_cast<double>(std::ranges::max_element(logs) - logs.begin());
-  const double misfit = MisfitOf(objects, mode);
+  const double misfit = EstimateMisfit(objects, mode);
   const auto normalise = [&](std::vector<double> values) {
     const double highest = std::ranges::max(values);
     for (double& value : values) value = std::exp((value - highest) / misfit);

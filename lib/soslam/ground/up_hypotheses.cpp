@@ -24,29 +24,8 @@ UpPrior WithCommonError(const UpPrior& up_prior) {
   return WithTiltCovariance(up_prior.up_in_world, covariance);
 }
 
-// Edges that are taken for vertical need not be: those of flat things, seen from above, or any
-// where all cameras look in one direction. Where planes of points are likelier without them, they
-// are ignored; where nearly as likely, up is ambiguous.
-void CheckVerticals(const std::vector<GroundPoint>& points, UpHypothesis* hypothesis) {
-  constexpr double kSameUp = 3.0 * kRadPerDeg;
-  if (!hypothesis->verticals) return;
-  HorizontalPlanes& planes = hypothesis->planes;
-  const UpPrior& without_verticals = hypothesis->without_verticals;
-  HorizontalPlanes other = FindHorizontalPlanes(points, without_verticals);
-  const double angle = AngleBetween(planes.up_in_world, other.up_in_world);
-  if (angle < kSameUp || other.planes.empty()) return;
-  const double gain = planes.gain, other_gain = other.gain;
-  if (other_gain > gain) {
-    std::swap(planes, other);
-    hypothesis->up_prior = without_verticals;
-    hypothesis->verticals = false;
-  }
-  const double weight = WeightOfGain(std::min(gain, other_gain), std::max(gain, other_gain));
-  AddAmbiguity(weight / (1.0 + weight) * angle * angle, &planes);
-}
-
-// What the settings say of the scale. `on_lowest_plane`: of points, whether or not objects stand on
-// it.
+// What the settings say of the scale. `on_lowest_plane`: a point on the lowest plane of points,
+// whether or not objects stand on it.
 std::vector<KnownScale> KnownScales(const NormalisedInput& input, const Eigen::Vector3d& up,
                                     const std::optional<Eigen::Vector3d>& on_lowest_plane) {
   const GroundOptions& options = input.options;
@@ -78,8 +57,8 @@ double CostOfTurns(const NormalisedInput& input, const Eigen::Vector3d& up_in_wo
   return images.empty() ? 0.0 : -LogLikelihoodOfTurns(images);
 }
 
-// The scale by objects and the scales that are known already, to which those of measured objects
-// are added.
+// Estimates the scale from objects and the known scales, and adds those by measured objects to the
+// known ones.
 void TellScale(double same_label_correlation, UpHypothesis* hypothesis) {
   std::vector<MeasuredObject*> objects;
   for (MeasuredObject& object : hypothesis->objects) {
@@ -106,10 +85,28 @@ void TellScale(double same_label_correlation, UpHypothesis* hypothesis) {
   }
 }
 
-// Finds the planes of points of a hypothesis of which cameras and up priors are known.
+// Finds the planes of points of a hypothesis whose cameras and up priors are known.
 void FindPlanesOfPoints(const NormalisedInput& input, UpHypothesis* hypothesis) {
   hypothesis->planes = FindHorizontalPlanes(input.points, hypothesis->up_prior);
-  CheckVerticals(input.points, hypothesis);
+  // Edges that are taken for vertical need not be: those of flat things, seen from above, or any
+  // where all cameras look in one direction. Where planes of points are likelier without them, they
+  // are ignored; where nearly as likely, up is ambiguous.
+  if (hypothesis->verticals) {
+    constexpr double kSameUp = 3.0 * kRadPerDeg;
+    HorizontalPlanes& planes = hypothesis->planes;
+    HorizontalPlanes other = FindHorizontalPlanes(input.points, hypothesis->without_verticals);
+    const double angle = AngleBetween(planes.up_in_world, other.up_in_world);
+    if (angle >= kSameUp && !other.planes.empty()) {
+      const double gain = planes.gain, other_gain = other.gain;
+      if (other_gain > gain) {
+        std::swap(planes, other);
+        hypothesis->up_prior = hypothesis->without_verticals;
+        hypothesis->verticals = false;
+      }
+      const double weight = WeightOfGain(std::min(gain, other_gain), std::max(gain, other_gain));
+      AddAmbiguity(weight / (1.0 + weight) * angle * angle, &planes);
+    }
+  }
   hypothesis->cost = hypothesis->cost_of_boxes + CostOfTurns(input, hypothesis->planes.up_in_world);
   if (hypothesis->cameras_are_turned) hypothesis->cost += kNotLevelCost;
 }
