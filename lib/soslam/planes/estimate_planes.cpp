@@ -126,8 +126,8 @@ StandingBodies OnSharedPlanes(const std::map<size_t, StandingBody>& own,
   return standing;
 }
 
-EstimatedPlane EstimatedPlaneOf(const StandingBodies& standing, const RefinedPlanes& refined,
-                                size_t index) {
+EstimatedPlane FindEstimatedPlane(const StandingBodies& standing, const RefinedPlanes& refined,
+                                  size_t index) {
   const Plane& plane = standing.planes[index];
   std::vector<StandingBody> bodies;
   for (size_t i = 0; i < standing.bodies.size(); ++i) {
@@ -192,8 +192,8 @@ EstimatedPlane OfPoints(const HeightPrior& prior, const UpPrior& up_prior) {
           prior};
 }
 
-// The planes near an up direction; those of points where no body's views determine the height of
-// its base. None when there are none, or a fit fails.
+// The planes near an up direction. Where no body's views determine the height of its base, they are
+// those of points; none if there are no such planes either, or if a fit fails.
 std::optional<PlanesEstimate> EstimateFrom(const Eigen::Vector3d& up, const UpPrior& up_prior,
                                            const std::vector<HeightPrior>& of_points,
                                            const Observations& observations,
@@ -227,7 +227,7 @@ std::optional<PlanesEstimate> EstimateFrom(const Eigen::Vector3d& up, const UpPr
     if (observation) estimate.expected_cost += ExpectedCost(*observation);
   }
   for (size_t i = 0; i < standing.planes.size(); ++i) {
-    estimate.planes.push_back(EstimatedPlaneOf(standing, *refined, i));
+    estimate.planes.push_back(FindEstimatedPlane(standing, *refined, i));
   }
   if (standing.planes.empty()) {
     estimate.settled = true;
@@ -305,46 +305,6 @@ std::optional<PlanesEstimate> EstimatePlanes(const Sequence& sequence,
   return best;
 }
 
-// Up prior for hanging objects, whose z axes point down. Ceilings are parallel to floors, if there
-// are any.
-UpPrior DownOf(const UpPrior& up_prior, const std::optional<PlanesEstimate>& floors) {
-  UpPrior down{up_prior.information, -up_prior.up_in_world};
-  if (!floors) return down;
-  const EstimatedPlane& floor = floors->planes.front();
-  down.up_in_world = -floor.plane_in_world.normal;
-  // Rotations about x move the normal by -y, those about y by x.
-  Eigen::Matrix<double, 3, 2> d_turns;
-  d_turns.col(0) = floor.plane_in_world.normal.cross(floor.x_axis_in_world);
-  d_turns.col(1) = -floor.x_axis_in_world;
-  down.information =
-      d_turns * floor.covariance->topLeftCorner<2, 2>().inverse() * d_turns.transpose();
-  return down;
-}
-
-// Floors and ceilings in one estimate, with the objects of each on their own planes. Ceilings are
-// made parallel to the floor, through their own points.
-PlanesEstimate JoinedPlanes(const PlanesEstimate& floors, const PlanesEstimate& ceilings,
-                            const std::vector<std::optional<ShapePrior>>& priors) {
-  PlanesEstimate joined = floors;
-  const Eigen::Vector3d down = -floors.planes.front().plane_in_world.normal;
-  for (EstimatedPlane ceiling : ceilings.planes) {
-    ceiling.plane_in_world = {down, -down.dot(ceiling.point_in_world)};
-    const Eigen::Vector3d x = ceiling.x_axis_in_world;
-    ceiling.x_axis_in_world = (x - down.dot(x) * down).normalized();
-    joined.planes.push_back(ceiling);
-  }
-  for (size_t i = 0; i < priors.size(); ++i) {
-    if (MountOf(priors[i]) != Mount::kHanging) continue;
-    joined.objects[i] = ceilings.objects[i];
-    joined.objects[i].plane_index += static_cast<int>(floors.planes.size());
-  }
-  joined.cost = *floors.cost + *ceilings.cost;
-  joined.expected_cost += ceilings.expected_cost;
-  joined.rounds = std::max(floors.rounds, ceilings.rounds);
-  joined.settled = floors.settled && ceilings.settled;
-  return joined;
-}
-
 }  // namespace
 
 BodyCosts CostsOfUprightBodies(const Sequence& sequence,
@@ -369,11 +329,40 @@ std::optional<PlanesEstimate> FindPlanes(const Sequence& sequence,
                                          int threads) {
   const auto floors =
       EstimatePlanes(sequence, priors, Mount::kStanding, up_prior, options, threads);
-  const auto ceilings =
-      EstimatePlanes(sequence, priors, Mount::kHanging, DownOf(up_prior, floors), options, threads);
+  // The z axes of hanging objects point down. Ceilings are parallel to floors, if there are any.
+  UpPrior down{up_prior.information, -up_prior.up_in_world};
+  if (floors) {
+    const EstimatedPlane& floor = floors->planes.front();
+    down.up_in_world = -floor.plane_in_world.normal;
+    // Rotations about x move the normal by -y, those about y by x.
+    Eigen::Matrix<double, 3, 2> d_turns;
+    d_turns.col(0) = floor.plane_in_world.normal.cross(floor.x_axis_in_world);
+    d_turns.col(1) = -floor.x_axis_in_world;
+    down.information =
+        d_turns * floor.covariance->topLeftCorner<2, 2>().inverse() * d_turns.transpose();
+  }
+  const auto ceilings = EstimatePlanes(sequence, priors, Mount::kHanging, down, options, threads);
   std::optional<PlanesEstimate> estimate = floors ? floors : ceilings;
   if (!estimate) return std::nullopt;
-  if (floors && ceilings) estimate = JoinedPlanes(*floors, *ceilings, priors);
+  if (floors && ceilings) {
+    // Each ceiling is made parallel to the floor, through its own point.
+    const Eigen::Vector3d normal = -floors->planes.front().plane_in_world.normal;
+    for (EstimatedPlane ceiling : ceilings->planes) {
+      ceiling.plane_in_world = {normal, -normal.dot(ceiling.point_in_world)};
+      const Eigen::Vector3d x = ceiling.x_axis_in_world;
+      ceiling.x_axis_in_world = (x - normal.dot(x) * normal).normalized();
+      estimate->planes.push_back(ceiling);
+    }
+    for (size_t i = 0; i < priors.size(); ++i) {
+      if (MountOf(priors[i]) != Mount::kHanging) continue;
+      estimate->objects[i] = ceilings->objects[i];
+      estimate->objects[i].plane_index += static_cast<int>(floors->planes.size());
+    }
+    estimate->cost = *floors->cost + *ceilings->cost;
+    estimate->expected_cost += ceilings->expected_cost;
+    estimate->rounds = std::max(floors->rounds, ceilings->rounds);
+    estimate->settled = floors->settled && ceilings->settled;
+  }
   estimate->up_of_cameras = up_prior.up_in_world;
   estimate->attitude_information = up_prior.information;
   for (size_t i = 0; i < priors.size(); ++i) {

@@ -114,7 +114,7 @@ HoldingChoice Choose(const std::vector<Hypothesis>& hypotheses) {
 
 // Estimates the planes of a hypothesis. If no object's views determine the height of its base, the
 // hypothesis counts as having one plane and cannot be chosen.
-void EstimatePlanesOf(const Sequence& sequence,
+void FollowHypothesis(const Sequence& sequence,
                       const std::vector<std::optional<ShapePrior>>& priors,
                       const PlanesOptions& options, int threads, Hypothesis* hypothesis) {
   PlanesAndHolding held;
@@ -163,28 +163,6 @@ bool IsIgnoringVerticalsUseless(const std::vector<Hypothesis>& hypotheses, size_
     return hypotheses[i].planes && costs_of_bodies[i] <= costs_of_bodies[doubting];
   }
   return false;
-}
-
-// `tried`: all hypotheses, including those dropped for the cost of their bodies, which are not in
-// `followed`; `place_in_tried`: the place of each followed one.
-PlanesAndHolding MostProbable(std::vector<TriedHolding> tried,
-                              const std::vector<size_t>& place_in_tried,
-                              const std::vector<Hypothesis>& followed) {
-  const HoldingChoice choice = Choose(followed);
-  for (size_t i = 0; i < followed.size(); ++i) {
-    TriedHolding& one = tried[place_in_tried[i]];
-    one.cost = choice.costs[i];
-    one.probability = choice.probabilities[i];
-    if (const auto& held = followed[i].planes) {
-      one.planes = static_cast<int>(held->estimate.planes.size());
-    }
-  }
-  PlanesAndHolding best = *followed[choice.best].planes;
-  best.estimate.holding = tried[place_in_tried[choice.best]].holding;
-  best.estimate.verticals = tried[place_in_tried[choice.best]].verticals;
-  best.estimate.holding_tilt_variance = choice.tilt_variance;
-  best.estimate.holdings = std::move(tried);
-  return best;
 }
 
 }  // namespace
@@ -265,7 +243,7 @@ PlanesAndHolding EstimatePlanesAndHolding(const Sequence& sequence,
                   threads, &hypotheses);
   }
   const HoldingChoice by_bodies = Choose(hypotheses);
-  std::vector<TriedHolding> tried;
+  std::vector<TriedHolding> tried;  // also those dropped for the cost of their bodies
   std::vector<Hypothesis> followed;
   std::vector<size_t> place_in_tried;  // of each followed one
   for (size_t i = 0; i < hypotheses.size(); ++i) {
@@ -274,7 +252,7 @@ PlanesAndHolding EstimatePlanesAndHolding(const Sequence& sequence,
                      by_bodies.costs[i], 0.0, std::nullopt});
     if (by_bodies.costs[i] > kMaxHypothesisCost) continue;
     if (IsIgnoringVerticalsUseless(hypotheses, i, by_bodies.costs)) continue;
-    EstimatePlanesOf(sequence, priors, options, threads, &hypotheses[i]);
+    FollowHypothesis(sequence, priors, options, threads, &hypotheses[i]);
     // Different holdings may converge to one up.
     const bool is_known = std::ranges::any_of(followed, [&](const Hypothesis& other) {
       return other.planes && hypotheses[i].planes &&
@@ -286,10 +264,22 @@ PlanesAndHolding EstimatePlanesAndHolding(const Sequence& sequence,
   }
   const bool has_planes = std::ranges::any_of(
       followed, [](const Hypothesis& hypothesis) { return hypothesis.planes.has_value(); });
-  if (!has_planes) {
-    ThrowNoPlane(sequence.name);
+  if (!has_planes) ThrowNoPlane(sequence.name);
+  const HoldingChoice choice = Choose(followed);
+  for (size_t i = 0; i < followed.size(); ++i) {
+    TriedHolding& one = tried[place_in_tried[i]];
+    one.cost = choice.costs[i];
+    one.probability = choice.probabilities[i];
+    if (const auto& held = followed[i].planes) {
+      one.planes = static_cast<int>(held->estimate.planes.size());
+    }
   }
-  return MostProbable(std::move(tried), place_in_tried, followed);
+  PlanesAndHolding best = *followed[choice.best].planes;
+  best.estimate.holding = tried[place_in_tried[choice.best]].holding;
+  best.estimate.verticals = tried[place_in_tried[choice.best]].verticals;
+  best.estimate.holding_tilt_variance = choice.tilt_variance;
+  best.estimate.holdings = std::move(tried);
+  return best;
 }
 
 }  // namespace soslam
