@@ -8,7 +8,7 @@
 namespace soslam {
 namespace {
 
-std::set<std::string> LabelsOf(const Sequence& sequence) {
+std::set<std::string> CollectLabels(const Sequence& sequence) {
   std::set<std::string> labels;
   for (const Object& object : sequence.objects) labels.insert(object.label);
   return labels;
@@ -23,23 +23,6 @@ Eigen::Vector3d UpOfPlanes(const Sequence& sequence) {
     });
   };
   return std::ranges::max_element(sequence.planes, {}, parallel_to)->plane_in_world.normal;
-}
-
-// True if the foot of a body at a free height may be on a plane: nearer than half the body's
-// height, the errors of boxes or three standard deviations.
-bool MayStandOnSome(const Sequence& sequence, const FittedObject& free) {
-  constexpr double kErrorM = 0.2;
-  const Landmark& landmark = free.landmark_in_world;
-  const double half_height = landmark.half_axes.z();
-  return std::ranges::any_of(sequence.planes, [&](const SupportPlane& plane) {
-    const Eigen::Vector3d& normal = plane.plane_in_world.normal;
-    const double above = plane.plane_in_world.SignedDistance(landmark.Centre()) - half_height;
-    LandmarkStep d_above = LandmarkStep::Zero();
-    d_above.segment<3>(3) = normal;
-    d_above(8) = -half_height;
-    const double sigma = std::sqrt(d_above.dot(free.covariance * d_above));
-    return std::abs(above) < std::max({kErrorM, half_height, 3.0 * sigma});
-  });
 }
 
 // True if objects of this mount can be on a plane with this cosine between its normal and up.
@@ -92,7 +75,7 @@ AssociationModel::AssociationModel(const Sequence& sequence, const SemanticTable
       up_of_segments_(sequence.planes.empty() ? UpOfSegments(sequence, table, options)
                                               : std::map<int, UpEstimate>()),
       boxes_(sequence, options),
-      labels_(LabelsOf(sequence), options),
+      labels_(CollectLabels(sequence), options),
       moving_labels_(NormalisedLabels("moving_labels", options.moving_labels)) {}
 
 std::vector<Support> AssociationModel::SupportsOf(const Track& track) const {
@@ -139,7 +122,22 @@ void AssociationModel::TryFreeHeight(const Track& track, const std::string& labe
   const UpEstimate up{UpOfPlanes(sequence_), Eigen::Matrix3d::Zero()};
   const auto free =
       FitTrack(sequence_, track.detections, prior, options_, up, {.feet_may_be_hidden = false});
-  if (!free || MayStandOnSome(sequence_, *free)) return;
+  if (!free) return;
+  // The foot may be on a plane that is nearer than half the body's height, the errors of boxes or
+  // three standard deviations.
+  const Landmark& landmark = free->landmark_in_world;
+  const double half_height = landmark.half_axes.z();
+  const auto may_stand_on = [&](const SupportPlane& plane) {
+    constexpr double kErrorM = 0.2;
+    const Eigen::Vector3d& normal = plane.plane_in_world.normal;
+    const double above = plane.plane_in_world.SignedDistance(landmark.Centre()) - half_height;
+    LandmarkStep d_above = LandmarkStep::Zero();
+    d_above.segment<3>(3) = normal;
+    d_above(8) = -half_height;
+    const double sigma = std::sqrt(d_above.dot(free->covariance * d_above));
+    return std::abs(above) < std::max({kErrorM, half_height, 3.0 * sigma});
+  };
+  if (std::ranges::any_of(sequence_.planes, may_stand_on)) return;
   hypotheses->cost_at_free_height =
       std::min(hypotheses->cost_at_free_height,
                CostOfLabel(track, label, *free) - std::log(options_.no_support_probability));

@@ -25,8 +25,7 @@ constexpr double kOnePlaceCost = 60.0;
 // Log odds from which two boxes of neighbouring frames are certainly of one object, and by which
 // they are ahead of all rivals.
 constexpr double kCertain = 3.0;
-// Number of others that a cluster is tried to be joined with, once joins with one gain nothing
-// more.
+// Number of others with which joins of a cluster are tried, once joins with one gain nothing more.
 constexpr size_t kMostPromising = 3;
 // Number of frames within which boxes are grouped first, then within twice as many, and so on.
 constexpr int kBlockFrames = 128;
@@ -36,7 +35,7 @@ constexpr double kNone = -std::numeric_limits<double>::infinity();
 
 // A cluster, and with which others it has been compared.
 struct Group : Cluster {
-  int block = 0;        // number of frames of the blocks up to which that is done with all others
+  int block = 0;        // it is compared with all others in its block of this number of frames
   int tried_until = 0;  // divisions into clusters with ids below are tried
 };
 
@@ -188,21 +187,6 @@ double Promise(const Clustering& all, const Cluster& one, const Cluster& other, 
   return may_be_one ? by_pictures + by_boxes + by_place : kNone;
 }
 
-// Both as one cluster: fitted from their landmarks, and anew where pictures say that they are one
-// object and some box is not explained.
-Cluster Joint(const Clustering& all, const Cluster& one, const Cluster& other) {
-  std::vector<int> both = one.track.detections;
-  both.insert(both.end(), other.track.detections.begin(), other.track.detections.end());
-  const double between = all.pairs.LogRatio(one.track.detections, other.track.detections);
-  const double log_ratio = one.log_ratio + other.log_ratio + between;
-  Cluster joint = Evaluate(all, both, log_ratio, {&one.track, &other.track});
-  if (std::ranges::all_of(joint.matches, &std::optional<BoxMatch>::has_value) || between <= 0.0) {
-    return joint;
-  }
-  Cluster anew = Evaluate(all, std::move(both), log_ratio, {});
-  return anew.cost < joint.cost ? anew : joint;
-}
-
 // Single boxes of neighbouring frames that are certainly of one object.
 std::vector<std::vector<int>> Tracklets(const Clustering& all, const std::vector<int>& detections) {
   std::vector<std::vector<int>> in_frame(all.model.sequence().frames.size());
@@ -319,28 +303,22 @@ void ComparePairs(int block, Clustering* all) {
   for (auto& [id, group] : all->groups) group.block = block;
 }
 
-// The pairs that are among the `partners_each` most promising ones for one of the two.
-std::set<std::pair<int, int>> MostPromising(const Clustering& all, size_t partners_each) {
-  std::map<int, std::vector<std::pair<double, int>>> partners;
-  for (const auto& [pair, promise] : all.promises) {
-    partners[pair.first].emplace_back(-promise, pair.second);
-    partners[pair.second].emplace_back(-promise, pair.first);
-  }
-  std::set<std::pair<int, int>> pairs;
-  for (auto& [one, others] : partners) {
-    std::ranges::sort(others);
-    if (others.size() > partners_each) others.resize(partners_each);
-    for (const auto& [promise, other] : others) pairs.insert(std::minmax(one, other));
-  }
-  return pairs;
-}
-
-// Joins clusters in one block that each gain most by each other, of MostPromising pairs, until
-// nothing is gained.
+// Joins clusters in one block that each gain most by each other, until nothing is gained. Pairs are
+// tried that are among the `partners_each` most promising ones for one of the two.
 void Join(int block, size_t partners_each, Clustering* all) {
   while (true) {
     ComparePairs(block, all);
-    const std::set<std::pair<int, int>> tried = MostPromising(*all, partners_each);
+    std::map<int, std::vector<std::pair<double, int>>> partners;
+    for (const auto& [pair, promise] : all->promises) {
+      partners[pair.first].emplace_back(-promise, pair.second);
+      partners[pair.second].emplace_back(-promise, pair.first);
+    }
+    std::set<std::pair<int, int>> tried;
+    for (auto& [one, others] : partners) {
+      std::ranges::sort(others);
+      if (others.size() > partners_each) others.resize(partners_each);
+      for (const auto& [promise, other] : others) tried.insert(std::minmax(one, other));
+    }
     std::vector<std::pair<int, int>> unknown;
     std::ranges::copy_if(tried, std::back_inserter(unknown),
                          [&](const auto& pair) { return !all->trials.contains(pair); });
@@ -348,10 +326,20 @@ void Join(int block, size_t partners_each, Clustering* all) {
     ParallelFor("pairs", unknown.size(), all->threads, [&](size_t i) {
       const Cluster& one = all->groups.at(unknown[i].first);
       const Cluster& other = all->groups.at(unknown[i].second);
-      trials[i].joint = Joint(*all, one, other);
-      trials[i].gain =
-          one.cost + other.cost + OnePlaceCost(all->model, one, other) - trials[i].joint.cost;
-      if (trials[i].gain < kLeastGain) trials[i].joint = {};  // is not needed any more
+      std::vector<int> both = one.track.detections;
+      both.insert(both.end(), other.track.detections.begin(), other.track.detections.end());
+      const double between = all->pairs.LogRatio(one.track.detections, other.track.detections);
+      const double log_ratio = one.log_ratio + other.log_ratio + between;
+      Cluster joint = Evaluate(*all, both, log_ratio, {&one.track, &other.track});
+      // Fitted anew where pictures say that both are one object and some box is not explained.
+      const auto is_explained = &std::optional<BoxMatch>::has_value;
+      if (between > 0.0 && !std::ranges::all_of(joint.matches, is_explained)) {
+        Cluster anew = Evaluate(*all, std::move(both), log_ratio, {});
+        if (anew.cost < joint.cost) joint = std::move(anew);
+      }
+      trials[i].gain = one.cost + other.cost + OnePlaceCost(all->model, one, other) - joint.cost;
+      if (trials[i].gain < kLeastGain) return;
+      trials[i].joint = std::move(joint);
     });
     for (size_t i = 0; i < unknown.size(); ++i) all->trials[unknown[i]] = std::move(trials[i]);
     std::map<int, std::pair<double, int>> best;  // gain and partner of each cluster
@@ -379,7 +367,7 @@ void Join(int block, size_t partners_each, Clustering* all) {
 
 // The parts of a cluster that may be of another object: a box that its body does not explain; all
 // of these; the half in time that pictures hold least.
-std::vector<std::vector<int>> PartsOf(const Clustering& all, const Cluster& cluster) {
+std::vector<std::vector<int>> FindParts(const Clustering& all, const Cluster& cluster) {
   const std::vector<int>& detections = cluster.track.detections;
   std::vector<std::vector<int>> parts;
   std::vector<int> unexplained;
@@ -421,7 +409,7 @@ struct Division {
 // The division that lowers the cost most; none if there is no such.
 Division BestDivision(int block, int id, const Clustering& all) {
   const Group& cluster = all.groups.at(id);
-  const std::vector<std::vector<int>> parts = PartsOf(all, cluster);
+  const std::vector<std::vector<int>> parts = FindParts(all, cluster);
   std::vector<Division> divisions(parts.size());
   ParallelFor(parts.size(), all.threads, [&](size_t i) {
     std::vector<int> others;

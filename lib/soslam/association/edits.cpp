@@ -32,7 +32,7 @@ std::string InWords(const Box& box) {
 }
 
 // The one frame with the image of an anchor.
-int FrameOf(const BoxAnchor& anchor, const Sequence& sequence, const std::string& place) {
+int FindFrame(const BoxAnchor& anchor, const Sequence& sequence, const std::string& place) {
   std::vector<int> of_name;  // without folders
   std::vector<std::string> names;
   for (size_t i = 0; i < sequence.frames.size(); ++i) {
@@ -90,9 +90,9 @@ std::string NearestInWords(const Box& box, const Sequence& sequence, int frame) 
   return words;
 }
 
-int DetectionOf(const BoxAnchor& anchor, const Sequence& sequence,
-                const std::vector<DetectionDecision>& decisions, const std::string& place) {
-  const int frame = FrameOf(anchor, sequence, place);
+int FindDetection(const BoxAnchor& anchor, const Sequence& sequence,
+                  const std::vector<DetectionDecision>& decisions, const std::string& place) {
+  const int frame = FindFrame(anchor, sequence, place);
   std::map<int, double> overlaps;  // by detection
   for (const Detection& detection : DetectionsIn(sequence, frame)) {
     auto index = static_cast<int>(&detection - sequence.detections.data());
@@ -138,7 +138,7 @@ int DetectionOf(const BoxAnchor& anchor, const Sequence& sequence,
                   NameOf(edits.edits[other].kind), why));
 }
 
-// True if no object can be as both say, if both name it.
+// True if one object cannot be as both edits say.
 bool Contradict(const Edit& one, const Edit& other) {
   const auto differ = [](const auto& of_one, const auto& of_other) {
     return of_one && of_other && *of_one != *of_other;
@@ -158,8 +158,8 @@ FoundEdits FindBoxes(const Edits& edits, const Sequence& sequence,
   for (size_t i = 0; i < edits.edits.size(); ++i) {
     found.boxes.emplace_back();
     for (size_t k = 0; k < edits.edits[i].boxes.size(); ++k) {
-      const int detection = DetectionOf(edits.edits[i].boxes[k], sequence, decisions,
-                                        fmt::format("{}: /edits/{}/boxes/{}", edits.file, i, k));
+      const int detection = FindDetection(edits.edits[i].boxes[k], sequence, decisions,
+                                          fmt::format("{}: /edits/{}/boxes/{}", edits.file, i, k));
       found.boxes[i].push_back(detection);
       if (edits.edits[i].kind == EditKind::kDeleteBoxes) {
         found.deleted.emplace(detection, static_cast<int>(i));
@@ -211,7 +211,7 @@ std::vector<Cluster> WithEdits(const AssociationModel& model, const FoundEdits& 
     while (joined_to[group] != group) group = joined_to[group];
     return group;
   };
-  // A split, and a box that it parts from its boxes and that is joined to them.
+  // A split that a join undoes: a box that it parts from its boxes is joined to them.
   const auto undone_split = [&]() -> std::optional<int> {
     for (const auto& box_and_group : group_of) {
       const int box = box_and_group.first;

@@ -95,14 +95,6 @@ std::optional<FittedObject> FitOnFaces(const ObjectEvidence& evidence,
   return best;
 }
 
-// -log of the density of the lower edge of a box whose foot may be hidden, anywhere within twice
-// the box's height, over that of one where it is expected.
-double CostOfHiddenFoot(const BoxView& view) {
-  const double height_px = std::abs((view.edges[1].plane + view.edges[3].plane).z());
-  return std::log(2.0 * height_px /
-                  (kHiddenFeetInView * std::sqrt(2.0 * std::numbers::pi) * view.edges[3].sigma_px));
-}
-
 }  // namespace
 
 std::optional<FittedObject> FitTrack(const Sequence& sequence, const std::vector<int>& detections,
@@ -120,10 +112,17 @@ std::optional<FittedObject> FitTrack(const Sequence& sequence, const std::vector
   WeighViews(options.upright.ViewCorrelation(), &evidence);
   const Eigen::Matrix3d up_covariance = up != nullptr ? up->covariance : Eigen::Matrix3d::Zero();
   std::optional<FittedObject> best = FitOnFaces(evidence, up_covariance, how.starts, options);
-  // Boxes that do not fit cost more than the edges that would be left out, or these are not tried.
+  // Lower edges are left out only where the misfit of all boxes costs more than hiding the feet.
   double cost_of_hiding = -std::log(kHiddenFeet);
   for (const BoxView& view : evidence.views) {
-    if (!view.edges[3].is_one_sided) cost_of_hiding += view.weight * CostOfHiddenFoot(view);
+    if (view.edges[3].is_one_sided) continue;
+    // -log of the density of a lower edge whose foot may be hidden, anywhere within twice the box's
+    // height, over that of one where it is expected.
+    const double height_px = std::abs((view.edges[1].plane + view.edges[3].plane).z());
+    const double sigma_px = view.edges[3].sigma_px;
+    cost_of_hiding +=
+        view.weight * std::log(2.0 * height_px /
+                               (kHiddenFeetInView * std::sqrt(2.0 * std::numbers::pi) * sigma_px));
   }
   if (!best || !how.feet_may_be_hidden || best->cost_of_misfit <= cost_of_hiding) return best;
   for (BoxView& view : evidence.views) view.edges[3].is_one_sided = true;

@@ -28,17 +28,6 @@ double CostOfMisses(int frames) {
          std::lgamma(kDetected + kMissed + frames) - std::lgamma(kDetected + kMissed);
 }
 
-// True if a box of the frame, also one that is not used, may be of what stands at the outline.
-bool IsTaken(const Sequence& sequence, const Miss& miss) {
-  constexpr double kLeastOverlap = 0.2;
-  const auto is_at_outline = [&](const auto& detection) {
-    return detection.frame_index == miss.frame_index &&
-           BoxOverlap(detection.box, miss.outline) >= kLeastOverlap;
-  };
-  return std::ranges::any_of(sequence.detections, is_at_outline) ||
-         std::ranges::any_of(sequence.rejected, is_at_outline);
-}
-
 // True if the camera of a frame sees the track's body as that of one of its detections: from about
 // the same direction and distance, so that what hides it in the one hides it in the other.
 bool IsSeenAlike(const AssociationModel& model, const Track& track, int frame_index) {
@@ -78,7 +67,15 @@ std::vector<MovedThing> FindMovedThings(const AssociationModel& model,
     const auto [first, last] = std::ranges::minmax(frames);
     seen.push_back({first, last, {}});
     for (const Miss& miss : MissesOf(model, track)) {
-      if (!IsTaken(sequence, miss) && IsSeenAlike(model, track, miss.frame_index)) {
+      // A box of the frame, also one that is not used, may be of what stands at the outline.
+      constexpr double kLeastOverlap = 0.2;
+      const auto is_at_outline = [&](const auto& detection) {
+        return detection.frame_index == miss.frame_index &&
+               BoxOverlap(detection.box, miss.outline) >= kLeastOverlap;
+      };
+      const bool is_taken = std::ranges::any_of(sequence.detections, is_at_outline) ||
+                            std::ranges::any_of(sequence.rejected, is_at_outline);
+      if (!is_taken && IsSeenAlike(model, track, miss.frame_index)) {
         seen.back().empty.push_back(miss.frame_index);
       }
     }

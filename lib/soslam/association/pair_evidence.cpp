@@ -28,11 +28,6 @@ double LogProbability(const PairEvidence::Counts& counts, const ShareOfPoints& s
          LogBeta(share.in_both, share.in_one);
 }
 
-bool IsInside(const Box& box, const Eigen::Vector2d& pixel) {
-  return pixel.x() >= box.x_min && pixel.x() <= box.x_max && pixel.y() >= box.y_min &&
-         pixel.y() <= box.y_max;
-}
-
 }  // namespace
 
 double LogRatioOfSharedPoints(const PairEvidence::Counts& counts) {
@@ -66,8 +61,11 @@ PairEvidence::PairEvidence(const Sequence& sequence, const ImageMatches& matches
       sights.push_back({static_cast<int>(*frame), {}});
       Sight& sight = sights.back();
       for (const Detection& detection : DetectionsIn(sequence, sight.frame_index)) {
-        if (!IsInside(detection.box, *pixel)) continue;
-        sight.detections.push_back(static_cast<int>(&detection - sequence.detections.data()));
+        const Box& box = detection.box;
+        if (pixel->x() >= box.x_min && pixel->x() <= box.x_max && pixel->y() >= box.y_min &&
+            pixel->y() <= box.y_max) {
+          sight.detections.push_back(static_cast<int>(&detection - sequence.detections.data()));
+        }
       }
     }
     for (const Sight& sight : sights) {

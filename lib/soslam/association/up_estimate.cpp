@@ -39,24 +39,8 @@ struct Segment {
 // Per label, single-box observations of an upright body at a free height.
 using BoxesOfLabels = std::vector<std::vector<ObjectEvidence>>;
 
-BoxesOfLabels ObserveLabels(const Sequence& sequence, const Segment& segment,
-                            const SemanticTable& table, const AssociateOptions& options) {
-  BoxesOfLabels boxes;
-  for (const auto& [label, detections] : segment.detections) {
-    const ShapePrior prior = PriorOfLabel(table, label, options);
-    if (prior.mount == Mount::kOnWall || prior.attitude != Attitude::kStanding) continue;
-    boxes.emplace_back();
-    for (const int detection : SpreadOver(detections, kBoxesOfLabel)) {
-      boxes.back().push_back(EvidenceInWorld(sequence, {detection}, prior, options.upright));
-      boxes.back().back().height_is_free = true;
-      boxes.back().back().size_is_known = true;
-    }
-  }
-  return boxes;
-}
-
-UpEstimate UpOf(const Segment& segment, const BoxesOfLabels& boxes,
-                const AssociateOptions& options) {
+UpEstimate EstimateUp(const Segment& segment, const BoxesOfLabels& boxes,
+                      const AssociateOptions& options) {
   std::vector<UpPrior> up_priors;
   std::vector<HoldingEvidence> evidence;
   for (const CameraHolding holding : kHoldings) {
@@ -131,7 +115,18 @@ std::map<int, UpEstimate> UpOfSegments(const Sequence& sequence, const SemanticT
       up[id] = UpEstimateOf({sequence.ground->up_information, sequence.ground->up_in_world});
       continue;
     }
-    up[id] = UpOf(segment, ObserveLabels(sequence, segment, table, options), options);
+    BoxesOfLabels boxes;
+    for (const auto& [label, detections] : segment.detections) {
+      const ShapePrior prior = PriorOfLabel(table, label, options);
+      if (prior.mount == Mount::kOnWall || prior.attitude != Attitude::kStanding) continue;
+      boxes.emplace_back();
+      for (const int detection : SpreadOver(detections, kBoxesOfLabel)) {
+        boxes.back().push_back(EvidenceInWorld(sequence, {detection}, prior, options.upright));
+        boxes.back().back().height_is_free = true;
+        boxes.back().back().size_is_known = true;
+      }
+    }
+    up[id] = EstimateUp(segment, boxes, options);
   }
   return up;
 }
