@@ -26,13 +26,6 @@ double SteadySeconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-std::string Duration(double duration_s) {
-  const auto seconds = static_cast<long long>(std::ceil(duration_s));
-  if (seconds < 60) return fmt::format("{} s", seconds);
-  if (seconds < 3600) return fmt::format("{} min {} s", seconds / 60, seconds % 60);
-  return fmt::format("{} h {} min", seconds / 3600, seconds % 3600 / 60);
-}
-
 }  // namespace
 
 ProgressOnStderr::ProgressOnStderr(const std::string& program) {
@@ -73,8 +66,11 @@ void Progress::Step() {
 std::string Progress::Text(double elapsed_s) const {
   const double rate = done_ / elapsed_s;
   if (count_ == kUnknownCount) return fmt::format("{} {}, {:.3g}/s", done_, what_, rate);
-  return fmt::format("{}/{} {}, {:.3g}/s, {} left", done_, count_, what_, rate,
-                     Duration((count_ - done_) / rate));
+  const auto seconds = static_cast<long long>(std::ceil((count_ - done_) / rate));
+  std::string left = fmt::format("{} s", seconds);
+  if (seconds >= 60) left = fmt::format("{} min {} s", seconds / 60, seconds % 60);
+  if (seconds >= 3600) left = fmt::format("{} h {} min", seconds / 3600, seconds % 3600 / 60);
+  return fmt::format("{}/{} {}, {:.3g}/s, {} left", done_, count_, what_, rate, left);
 }
 
 std::string Progress::Bar() const {

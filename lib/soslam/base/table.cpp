@@ -13,8 +13,6 @@
 namespace soslam {
 namespace {
 
-using Lines = std::vector<std::vector<std::string>>;
-
 std::string MarkdownText(const std::string& text) {
   constexpr std::string_view kSpecial = "\\|*`<";
   std::string escaped;
@@ -30,55 +28,28 @@ std::string MarkdownText(const Cell& cell) {
   return cell.bold ? "**" + text + "**" : text;
 }
 
-std::vector<size_t> Widths(const Lines& lines) {
-  std::vector<size_t> widths(lines.front().size(), 0);
-  for (const auto& line : lines) {
-    for (size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], WidthOf(line[i]));
-  }
-  return widths;
-}
-
-std::string MarkdownGrid(const Lines& lines, size_t left_columns) {
-  const std::vector<size_t> widths = Widths(lines);
-  const auto format_line = [&](const std::vector<std::string>& line) {
-    std::string text = "|";
-    for (size_t i = 0; i < line.size(); ++i) {
-      const std::string padding(widths[i] - WidthOf(line[i]), ' ');
-      text += i < left_columns ? " " + line[i] + padding : " " + padding + line[i];
-      text += " |";
-    }
-    return text + "\n";
-  };
-  std::string text = format_line(lines.front()) + "|";
-  for (size_t i = 0; i < widths.size(); ++i) {
-    text += std::string(widths[i] + 1, '-') + (i < left_columns ? "-|" : ":|");
-  }
-  text += "\n";
-  for (size_t i = 1; i < lines.size(); ++i) text += format_line(lines[i]);
-  return text;
-}
-
-std::string LatexCharacter(char c) {
-  if (c == '\\') return "\\textbackslash{}";
-  if (c == '~') return "\\textasciitilde{}";
-  if (c == '^') return "\\textasciicircum{}";
-  if (c == '<' || c == '>') return fmt::format("${}$", c);
-  constexpr std::string_view kSpecial = "_&%$#{}";
-  return (kSpecial.find(c) == kSpecial.npos ? "" : "\\") + std::string(1, c);
-}
-
 std::string LatexText(const std::string& text) {
-  constexpr std::string_view kPlusMinus = "±";
+  constexpr std::string_view kPlusMinus = "±", kSpecial = "_&%$#{}";
   std::string escaped;
   for (size_t i = 0; i < text.size(); ++i) {
-    const bool is_sign = text[i] == '-' && (i == 0 || text[i - 1] == ' ' || text[i - 1] == '[') &&
+    const char c = text[i];
+    const bool is_sign = c == '-' && (i == 0 || text[i - 1] == ' ' || text[i - 1] == '[') &&
                          i + 1 < text.size() &&
                          std::isdigit(static_cast<unsigned char>(text[i + 1]));
     if (text.compare(i, kPlusMinus.size(), kPlusMinus) == 0) {
       escaped += "$\\pm$";
       i += kPlusMinus.size() - 1;
+    } else if (is_sign || c == '<' || c == '>') {
+      escaped += fmt::format("${}$", c);
+    } else if (c == '\\') {
+      escaped += "\\textbackslash{}";
+    } else if (c == '~') {
+      escaped += "\\textasciitilde{}";
+    } else if (c == '^') {
+      escaped += "\\textasciicircum{}";
     } else {
-      escaped += is_sign ? "$-$" : LatexCharacter(text[i]);
+      if (kSpecial.find(c) != kSpecial.npos) escaped += '\\';
+      escaped += c;
     }
   }
   return escaped;
@@ -108,10 +79,28 @@ std::string CsvText(const std::string& text) {
 
 std::string ToMarkdown(const Table& table) {
   const auto format = [](const Cell& cell) { return MarkdownText(cell); };
-  Lines lines = {Formatted(table.header, format)};
+  std::vector<std::vector<std::string>> lines = {Formatted(table.header, format)};
   for (const auto& row : table.rows) lines.push_back(Formatted(row, format));
-  std::string text = fmt::format("## {}\n\n{}", MarkdownText(table.title),
-                                 MarkdownGrid(lines, table.left_columns));
+  std::vector<size_t> widths(lines.front().size(), 0);
+  for (const auto& line : lines) {
+    for (size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], WidthOf(line[i]));
+  }
+  const auto format_line = [&](const std::vector<std::string>& line) {
+    std::string text = "|";
+    for (size_t i = 0; i < line.size(); ++i) {
+      const std::string padding(widths[i] - WidthOf(line[i]), ' ');
+      text += i < table.left_columns ? " " + line[i] + padding : " " + padding + line[i];
+      text += " |";
+    }
+    return text + "\n";
+  };
+  std::string text =
+      fmt::format("## {}\n\n{}|", MarkdownText(table.title), format_line(lines.front()));
+  for (size_t i = 0; i < widths.size(); ++i) {
+    text += std::string(widths[i] + 1, '-') + (i < table.left_columns ? "-|" : ":|");
+  }
+  text += "\n";
+  for (size_t i = 1; i < lines.size(); ++i) text += format_line(lines[i]);
   for (const std::string& note : table.notes) text += "\n" + MarkdownText(note) + "\n";
   return text;
 }

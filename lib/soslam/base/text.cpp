@@ -14,18 +14,6 @@
 namespace soslam {
 namespace {
 
-// The begin and the end of a long text in UTF-8, cut between characters.
-std::string WithoutMiddle(const std::string& text) {
-  constexpr size_t kMaxHalf = 1000;
-  if (text.size() <= 2 * kMaxHalf) return text;
-  const auto is_inside_character = [&](size_t i) { return (text[i] & 0xC0) == 0x80; };
-  size_t begin = kMaxHalf;
-  size_t end = text.size() - kMaxHalf;
-  while (begin > 0 && is_inside_character(begin)) --begin;
-  while (end < text.size() && is_inside_character(end)) ++end;
-  return text.substr(0, begin) + " ... " + text.substr(end);
-}
-
 // Levenshtein distance: number of letters to insert, remove or replace.
 size_t Misspellings(std::string_view a, std::string_view b) {
   std::vector<size_t> row(b.size() + 1);
@@ -61,7 +49,15 @@ std::string OneLine(const std::string& message) {
       line += character;
     }
   }
-  return WithoutMiddle(line);
+  // A long line keeps only its begin and its end, cut between characters of UTF-8.
+  constexpr size_t kMaxHalf = 1000;
+  if (line.size() <= 2 * kMaxHalf) return line;
+  const auto is_inside_character = [&](size_t i) { return (line[i] & 0xC0) == 0x80; };
+  size_t begin = kMaxHalf;
+  size_t end = line.size() - kMaxHalf;
+  while (begin > 0 && is_inside_character(begin)) --begin;
+  while (end < line.size() && is_inside_character(end)) ++end;
+  return line.substr(0, begin) + " ... " + line.substr(end);
 }
 
 std::string_view Trimmed(std::string_view text) {
