@@ -29,8 +29,8 @@ struct RowOffsets {
   std::map<std::string, int> objects_of_sequence;
 };
 
-EdgeOffsets OffsetsOf(const Sequence& sequence, const std::vector<int>& detections,
-                      const ShapeExponents& shape_exponents) {
+EdgeOffsets MeasureOffsets(const Sequence& sequence, const std::vector<int>& detections,
+                           const ShapeExponents& shape_exponents) {
   EdgeOffsets offsets;
   for (const int index : detections) {
     const Detection& detection = sequence.detections[index];
@@ -49,11 +49,12 @@ EdgeOffsets OffsetsOf(const Sequence& sequence, const std::vector<int>& detectio
   return offsets;
 }
 
-// Offsets by index of the row.
-std::map<size_t, RowOffsets> OffsetsByRow(const std::vector<Sequence>& sequences,
-                                          const SemanticRows& rows) {
-  const auto row_of_name = RowsByName(rows);
-  std::map<size_t, RowOffsets> of_rows;
+}  // namespace
+
+void LearnEdgeBias(const std::vector<Sequence>& sequences, double no_bias_weight,
+                   SemanticRows* rows) {
+  const auto row_of_name = RowsByName(*rows);
+  std::map<size_t, RowOffsets> of_rows;  // by index of the row
   for (const Sequence& sequence : sequences) {
     const auto by_object = DetectionsByObject(sequence);
     for (size_t i = 0; i < sequence.objects.size(); ++i) {
@@ -61,7 +62,7 @@ std::map<size_t, RowOffsets> OffsetsByRow(const std::vector<Sequence>& sequences
       const auto row = row_of_name.find(NormalisedLabel(object.label));
       if (!object.ground_truth || row == row_of_name.end()) continue;
       const auto offsets =
-          OffsetsOf(sequence, by_object[i], rows.rows[row->second].prior.shape_exponents);
+          MeasureOffsets(sequence, by_object[i], rows->rows[row->second].prior.shape_exponents);
       const auto is_enough = [](const auto& of_side) { return of_side.size() >= kMinEdges; };
       if (std::ranges::none_of(offsets, is_enough)) continue;
       RowOffsets& of_row = of_rows[row->second];
@@ -71,24 +72,16 @@ std::map<size_t, RowOffsets> OffsetsByRow(const std::vector<Sequence>& sequences
       }
     }
   }
-  return of_rows;
-}
-
-double Bias(const std::vector<double>& medians, double no_bias_weight) {
-  if (medians.empty()) return 0.0;
-  const double bias = std::accumulate(medians.begin(), medians.end(), 0.0) /
-                      (no_bias_weight + static_cast<double>(medians.size()));
-  return std::round(std::clamp(bias, kLeastBias, kLargestBias) * 1e4) / 1e4;
-}
-
-}  // namespace
-
-void LearnEdgeBias(const std::vector<Sequence>& sequences, double no_bias_weight,
-                   SemanticRows* rows) {
-  for (const auto& [index, offsets] : OffsetsByRow(sequences, *rows)) {
+  for (const auto& [index, offsets] : of_rows) {
     SemanticRow& row = rows->rows[index];
     for (size_t side = 0; side < offsets.medians.size(); ++side) {
-      row.prior.edge_bias[side] = Bias(offsets.medians[side], no_bias_weight);
+      const std::vector<double>& medians = offsets.medians[side];
+      row.prior.edge_bias[side] = 0.0;
+      if (medians.empty()) continue;
+      const double bias = std::accumulate(medians.begin(), medians.end(), 0.0) /
+                          (no_bias_weight + static_cast<double>(medians.size()));
+      row.prior.edge_bias[side] =
+          std::round(std::clamp(bias, kLeastBias, kLargestBias) * 1e4) / 1e4;
     }
     std::vector<std::string> cited;
     for (const auto& [name, count] : offsets.objects_of_sequence) {

@@ -39,33 +39,6 @@ constexpr double kMaxCorrelation = 0.95;
 
 double Rounded(double value) { return std::round(value * 1e4) / 1e4; }
 
-void Add(const std::string& source, const LabelFacts& facts, RowData* data) {
-  for (const Eigen::Vector3d& half_axes : facts.half_axes) {
-    data->logs[kDepthRatio].push_back(std::log(half_axes.x() / half_axes.z()));
-    data->logs[kWidthRatio].push_back(std::log(half_axes.y() / half_axes.z()));
-    data->logs[kHeight].push_back(std::log(2.0 * half_axes.z()));
-  }
-  data->shape_exponents.insert(data->shape_exponents.end(), facts.shape_exponents.begin(),
-                               facts.shape_exponents.end());
-  data->cited.push_back(fmt::format("{} of {}", facts.half_axes.size(), source));
-}
-
-// Data by label of the row; labels that are aliases contribute to their row.
-std::map<std::string, RowData> DataByRow(const SemanticRows& base,
-                                         const std::vector<PriorSource>& sources) {
-  std::map<std::string, std::string> label_of;  // by normalised name
-  for (const auto& [name, row] : RowsByName(base)) label_of[name] = base.rows[row].label;
-  std::map<std::string, RowData> data;
-  for (const PriorSource& source : sources) {
-    for (const auto& [label, facts] : source.facts) {
-      if (facts.half_axes.empty()) continue;
-      const auto row = label_of.emplace(NormalisedLabel(label), label).first;
-      Add(source.name, facts, &data[row->second]);
-    }
-  }
-  return data;
-}
-
 // Means over the labels with enough objects, weighted with their degrees of freedom.
 Pooled Pool(const std::map<std::string, RowData>& data, double min_sigma) {
   std::array<double, kNumQuantities> squares{};
@@ -114,7 +87,13 @@ class Learner {
               &row.prior.ratio[k], &row.prior.log_sigma[k]);
       }
       row.samples += static_cast<int>(data.Count());
-      LearnShape(data, &row.prior);
+      const auto mean = [&](double ShapeExponents::*exponent) {
+        return Rounded(*MeanOf(ValuesOf(data.shape_exponents, exponent)));
+      };
+      if (!data.shape_exponents.empty()) {
+        row.prior.shape_exponents = {mean(&ShapeExponents::horizontal),
+                                     mean(&ShapeExponents::vertical)};
+      }
     }
     const auto& height = base.prior.height_m;
     if (!height) {
@@ -162,14 +141,6 @@ class Learner {
     LogNormal height{};
     Learn(data.logs[kHeight], belief, &height.median, &height.log_sigma);
     prior->height_m = height;
-  }
-
-  static void LearnShape(const RowData& data, ShapePrior* prior) {
-    const auto mean = [&](double ShapeExponents::*exponent) {
-      return Rounded(*MeanOf(ValuesOf(data.shape_exponents, exponent)));
-    };
-    if (data.shape_exponents.empty()) return;
-    prior->shape_exponents = {mean(&ShapeExponents::horizontal), mean(&ShapeExponents::vertical)};
   }
 
   Pooled pooled_;
@@ -229,7 +200,24 @@ std::vector<CatalogueModel> WithoutObjectsOf(const Sequence& sequence, const Sem
 
 SemanticRows LearnPriors(const SemanticRows& base, const std::vector<PriorSource>& sources,
                          const LearnPriorsOptions& options) {
-  std::map<std::string, RowData> data = DataByRow(base, sources);
+  std::map<std::string, std::string> label_of;  // by normalised name
+  for (const auto& [name, row] : RowsByName(base)) label_of[name] = base.rows[row].label;
+  // Data by label of the row; labels that are aliases contribute to their row.
+  std::map<std::string, RowData> data;
+  for (const PriorSource& source : sources) {
+    for (const auto& [label, facts] : source.facts) {
+      if (facts.half_axes.empty()) continue;
+      RowData& row = data[label_of.emplace(NormalisedLabel(label), label).first->second];
+      for (const Eigen::Vector3d& half_axes : facts.half_axes) {
+        row.logs[kDepthRatio].push_back(std::log(half_axes.x() / half_axes.z()));
+        row.logs[kWidthRatio].push_back(std::log(half_axes.y() / half_axes.z()));
+        row.logs[kHeight].push_back(std::log(2.0 * half_axes.z()));
+      }
+      row.shape_exponents.insert(row.shape_exponents.end(), facts.shape_exponents.begin(),
+                                 facts.shape_exponents.end());
+      row.cited.push_back(fmt::format("{} of {}", facts.half_axes.size(), source.name));
+    }
+  }
   const Learner learner(Pool(data, options.min_log_sigma), options);
   SemanticRows learned{base.description, base.default_row, {}};
   if (learned.default_row) learner.LearnCorrelation({}, &learned.default_row->prior);

@@ -28,39 +28,6 @@ double Loss(const Sequence& sequence, const Detection& detection,
   return loss;
 }
 
-// Detections of objects whose cuboid, which reaches farthest, is in front of the camera: all edges
-// have a tangent point.
-std::vector<int> WhollyInFront(const Sequence& sequence, const std::vector<int>& detections) {
-  std::vector<int> in_front;
-  for (const int index : detections) {
-    Landmark cuboid = *TrueLandmarkInCamera(sequence, sequence.detections[index]);
-    cuboid.shape_exponents = kCuboidExponent;
-    if (IsInFront(cuboid)) in_front.push_back(index);
-  }
-  return in_front;
-}
-
-// The exponents in [1, 2] for which the true pose and size of an object fit its boxes best: least
-// Huber loss of the tangency residuals, at true camera poses if they are known.
-ShapeExponents BestShapeExponents(const Sequence& sequence, const std::vector<int>& detections) {
-  ShapeExponents best = kCuboidExponent;
-  double least_loss = std::numeric_limits<double>::infinity();
-  for (int i = 0; i <= kSteps; ++i) {
-    for (int j = 0; j <= kSteps; ++j) {
-      const ShapeExponents exponents(ExponentAt(i), ExponentAt(j));
-      double loss = 0.0;
-      for (const int index : detections) {
-        loss += Loss(sequence, sequence.detections[index], exponents);
-      }
-      if (loss < least_loss) {
-        least_loss = loss;
-        best = exponents;
-      }
-    }
-  }
-  return best;
-}
-
 }  // namespace
 
 std::map<int, ShapeExponents> LearnShapeExponents(const Sequence& sequence, int min_views) {
@@ -68,9 +35,33 @@ std::map<int, ShapeExponents> LearnShapeExponents(const Sequence& sequence, int 
   const auto by_object = DetectionsByObject(sequence);
   for (size_t i = 0; i < sequence.objects.size(); ++i) {
     if (!sequence.objects[i].ground_truth) continue;
-    const std::vector<int> usable = WhollyInFront(sequence, by_object[i]);
+    // Detections with the object's cuboid, which reaches farthest, in front of the camera: all
+    // edges have a tangent point.
+    std::vector<int> usable;
+    for (const int index : by_object[i]) {
+      Landmark cuboid = *TrueLandmarkInCamera(sequence, sequence.detections[index]);
+      cuboid.shape_exponents = kCuboidExponent;
+      if (IsInFront(cuboid)) usable.push_back(index);
+    }
     if (usable.size() < static_cast<size_t>(min_views)) continue;
-    exponents.emplace(static_cast<int>(i), BestShapeExponents(sequence, usable));
+    // The exponents in [1, 2] for which the true pose and size of the object fit its boxes best:
+    // least Huber loss of the tangency residuals, at true camera poses if they are known.
+    ShapeExponents best = kCuboidExponent;
+    double least_loss = std::numeric_limits<double>::infinity();
+    for (int h = 0; h <= kSteps; ++h) {
+      for (int v = 0; v <= kSteps; ++v) {
+        const ShapeExponents candidate(ExponentAt(h), ExponentAt(v));
+        double loss = 0.0;
+        for (const int index : usable) {
+          loss += Loss(sequence, sequence.detections[index], candidate);
+        }
+        if (loss < least_loss) {
+          least_loss = loss;
+          best = candidate;
+        }
+      }
+    }
+    exponents.emplace(static_cast<int>(i), best);
   }
   return exponents;
 }
