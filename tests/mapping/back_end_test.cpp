@@ -89,7 +89,7 @@ TEST(BackEnd, RefusesAnInitialLandmarkWhoseCostIsNotDefined) {
   const Sequence sequence = SyntheticSequence(RandomScene(5, 3, 10), false);
   BackEndInput input = EllipsoidInput(sequence);
   input.initial_landmarks[0]->half_axes.x() = std::numeric_limits<double>::infinity();
-  EXPECT_THROW(OptimiseMap(input, OptimiseOptions()), NumericalError);
+  EXPECT_THROW(OptimiseMap(input, OptimiseOptions()), InputError);
 }
 
 // Other views tell apart what explains one box equally well.

@@ -28,7 +28,7 @@ TEST(CheckBackEndInput, NamesWhatIsWrong) {
        [](auto* sequence, auto*) { sequence->detections[1].frame_index = 99; }},
       {{"detection 0", "object_index is -1"},
        [](auto* sequence, auto*) { sequence->detections[0].object_index = -1; }},
-      {{"detection 2", "expected an area"},
+      {{"detection 2", "not finite"},
        [](auto* sequence, auto*) { sequence->detections[2].box.x_max = kNan; }},
       {{"object 0", "plane_index", "support has to be false"},
        [](auto* sequence, auto*) { sequence->objects[0].plane_index = kNoPlane; }},

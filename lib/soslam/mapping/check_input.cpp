@@ -72,9 +72,8 @@ void CheckBackEndInput(const BackEndInput& input, const OptimiseOptions& options
     RequireIndex(detection.frame_index, sequence.frames.size(), row, "frame_index");
     RequireIndex(detection.object_index, objects, row, "object_index");
     const Box& box = detection.box;
-    Require(box.Width() > 0.0 && box.Height() > 0.0 && std::isfinite(box.Width() * box.Height()),
-            row,
-            fmt::format("has a box of {} x {} px; expected an area", box.Width(), box.Height()));
+    Require(box.Width() >= 0.0 && box.Height() >= 0.0 && std::isfinite(box.Width() * box.Height()),
+            row, "has a box whose corners are not in order, or not finite");
     const Object& object = sequence.ObjectOf(detection);
     if (options.support && object.is_static) {
       RequireIndex(object.plane_index, sequence.planes.size(),
