@@ -143,8 +143,8 @@ OneObject::OneObject(const Sequence& all, size_t object_index, size_t textures)
     const auto& edges = EdgesOfTwelveViews()[detection.frame_index];
     input.images.emplace_back(
         index,
-        AsymmetryOfTexture(std::make_shared<const SymmetryImage>(edges->maps, detection.box),
-                           sequence.CameraOf(detection), TextureOptions(), SymmetryOptions()));
+        MakeAsymmetryEvidence(std::make_shared<const SymmetryImage>(edges->maps, detection.box),
+                              sequence.CameraOf(detection), TextureOptions(), SymmetryOptions()));
   }
 }
 

@@ -285,7 +285,7 @@ EvidenceOfImages DisplacedEdgesOfAllViews(const Truth& truth, const EdgeOptions&
         Transform(truth.world_from_camera[i].Inverse(), truth.landmark_in_world);
     images.emplace_back(
         static_cast<int>(i),
-        AlignmentOfEdges(std::make_shared<const EdgeImage>(DisplacedEdges(TestCamera(), in_camera)),
+        MakeEdgeEvidence(std::make_shared<const EdgeImage>(DisplacedEdges(TestCamera(), in_camera)),
                          TestCamera(), options));
   }
   return images;

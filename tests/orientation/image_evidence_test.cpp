@@ -38,7 +38,7 @@ TEST(ImageEvidence, AsymmetryOfTextureCostsAsMuchInMapsAsWhereLandmarksAreCompar
   const auto image = std::make_shared<const SymmetryImage>(SparseImage());
   const SymmetryOptions symmetry = Everywhere(Descriptor::kDistanceTransform);
   const TextureOptions texture;
-  const auto evidence = AsymmetryOfTexture(image, TestCamera(), texture, symmetry);
+  const auto evidence = MakeAsymmetryEvidence(image, TestCamera(), texture, symmetry);
   const Landmark start = FacingView().LandmarkInCamera();
   const double compared = evidence->ComparedCost(start);
   EXPECT_EQ(compared, TextureAsymmetry(*image, TestCamera(), texture, symmetry).Cost(start));
@@ -58,7 +58,7 @@ TEST(ImageEvidence, AsymmetryOfTextureCostsAsMuchInMapsAsWhereLandmarksAreCompar
 TEST(ImageEvidence, PairsOfTextureAreOneResidualEachWhateverTheWeight) {
   const auto image = std::make_shared<const SymmetryImage>(SparseImage());
   const auto evidence =
-      PairsOfTexture(image, TestCamera(), Everywhere(Descriptor::kDistanceTransform), 30.0);
+      MakeSymmetryEvidence(image, TestCamera(), Everywhere(Descriptor::kDistanceTransform), 30.0);
   const Landmark start = FacingView().LandmarkInCamera();
   const ImageResiduals residuals = evidence->ResidualsAt(start, nullptr, 0.25);
   EXPECT_GT(residuals.count, 50);
@@ -76,7 +76,7 @@ TEST(ImageEvidence, EdgesWeighAsMuchAsTheyAreSeen) {
                     ComputeEdgeMaps(DrawCuboids(TestCamera(), {truth}), EdgesOptions())),
                 *OutlineBox(TestCamera(), truth),
                 {}});
-  const auto evidence = AlignmentOfEdges(image, TestCamera(), EdgeOptions());
+  const auto evidence = MakeEdgeEvidence(image, TestCamera(), EdgeOptions());
   const Landmark turned = RotatedAboutZ(truth, 0.4);
   const auto cost = [&](const Landmark* weighed_at, double weight) {
     return CostOfResiduals(evidence->ResidualsAt(turned, weighed_at, weight), turned);

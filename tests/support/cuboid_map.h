@@ -42,7 +42,7 @@ inline EvidenceOfImages DrawnEdges(const Sequence& sequence) {
     const EdgeMaps maps = ComputeEdgeMaps(image, EdgesOptions());
     images.emplace_back(
         static_cast<int>(i),
-        AlignmentOfEdges(std::make_shared<const EdgeImage>(EdgeImage{
+        MakeEdgeEvidence(std::make_shared<const EdgeImage>(EdgeImage{
                              std::make_shared<const FrameEdges>(maps), detection.box, {}}),
                          sequence.camera, EdgeOptions()));
   }

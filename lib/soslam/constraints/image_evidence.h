@@ -12,14 +12,13 @@
 
 namespace soslam {
 
-// Residuals of one image for one landmark, of which each compares something, as a pair of pixels.
-// Blocks: world_from_camera, landmark in the world. Bodies of any shape have no loss on top of
-// these: their cost should be bounded.
+// Residuals of one image for one landmark. Blocks: world_from_camera, landmark in the world. Bodies
+// of any shape have no loss on top of these: their cost should be bounded.
 struct ImageResiduals {
   std::string name;      // in SolverSummary::residuals, with `count`; no other evidence has it
   std::string why_none;  // in SolverSummary::gated, where there are no functions
   std::vector<std::unique_ptr<ceres::CostFunction>> functions = {};
-  int count = 0;
+  int count = 0;               // of what they compare: pairs of pixels, images, points
   double constant_cost = 0.0;  // on top of theirs
 };
 
@@ -29,11 +28,11 @@ class ImageEvidence {
  public:
   virtual ~ImageEvidence() = default;
 
-  // The residuals. `weight`, below 1 where other detections see the object from the same side
-  // (view_correlation_deg), is a factor of the cost of what errs as their boxes do; what errs
-  // independently need not have it. What is compared, as the edges that are
-  // visible, is chosen at `start`. How reliable the image is may be measured at another landmark,
-  // `weighed_at`; null: at `start`.
+  // The residuals. What they compare, as the edges that are visible, is chosen at `start`. How
+  // reliable the image is may be measured at another landmark, `weighed_at`; null: at `start`.
+  // `weight` is below 1 where other detections see the object from the same side
+  // (view_correlation_deg): a factor of the cost of what errs as their boxes do. What errs
+  // independently need not have it.
   virtual ImageResiduals ResidualsAt(const Landmark& start, const Landmark* weighed_at,
                                      double weight) const = 0;
 

@@ -75,10 +75,9 @@ void AddCovariances(const Sequence& sequence, const MarginalCovariances& covaria
   }
 }
 
-}  // namespace
-
-MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& options, int threads) {
-  CheckBackEndInput(input, options);
+// OptimiseMap of input that is checked.
+MapEstimate OptimiseChecked(const BackEndInput& input, const OptimiseOptions& options,
+                            int threads) {
   BackEndProblem problem(input, options, threads);
   MapEstimate map;
   problem.Solve();
@@ -131,6 +130,14 @@ MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& option
   return map;
 }
 
+}  // namespace
+
+MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& options, int threads) {
+  CheckBackEndInput(input, options);
+  CheckInitialLandmarks(input);
+  return OptimiseChecked(input, options, threads);
+}
+
 std::optional<OptimisedObject> OptimiseObject(const BackEndInput& input, size_t object_index,
                                               const Landmark& start,
                                               const OptimiseOptions& options) {
@@ -144,7 +151,7 @@ std::optional<OptimisedObject> OptimiseObject(const BackEndInput& input, size_t 
   std::ranges::fill(of_object.initial_landmarks, std::nullopt);
   of_object.initial_landmarks[object_index] = start;
   try {
-    const MapEstimate map = OptimiseMap(of_object, alone);
+    const MapEstimate map = OptimiseChecked(of_object, alone, /*threads=*/1);
     const auto& landmark = map.objects[object_index].landmark_in_world;
     if (!landmark) return std::nullopt;
     return OptimisedObject{*landmark, map.solver.final_cost + map.solver.constant_cost,

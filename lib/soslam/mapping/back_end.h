@@ -42,7 +42,7 @@ struct BackEndInput {
 // each segment is constant, as it defines the segment's world; with hold_poses all are, and
 // odometry has no cost. Objects fail with no_start without an initial landmark, with moving if they
 // move, and with collapsed if their landmark ends without HasExtent. The result does not depend on
-// the number of threads. Throws InputError as CheckBackEndInput (check_input.h), NumericalError
+// the number of threads. Throws InputError as the checks of check_input.h, NumericalError
 // when the solver has no usable solution.
 MapEstimate OptimiseMap(const BackEndInput& input, const OptimiseOptions& options, int threads = 1);
 
@@ -54,7 +54,7 @@ struct OptimisedObject {
 };
 
 // The object's minimum near `start`, with the poses and planes of the input's sequence; its initial
-// landmarks only say how much images weigh. None if there is no minimum.
+// landmarks only say how much images weigh. Does not check the input. None if there is no minimum.
 std::optional<OptimisedObject> OptimiseObject(const BackEndInput& input, size_t object_index,
                                               const Landmark& start,
                                               const OptimiseOptions& options);

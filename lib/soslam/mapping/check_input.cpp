@@ -17,6 +17,16 @@ void Require(bool holds, const std::string& row, const std::string& found_and_ex
   if (!holds) throw InputError(row + ": " + found_and_expected);
 }
 
+void RequireOnePerObject(const Sequence& sequence, size_t size, const char* list) {
+  Require(
+      size == sequence.objects.size(), list,
+      fmt::format("has {} entries; expected {}, one per object", size, sequence.objects.size()));
+}
+
+std::string NameObject(const Sequence& sequence, size_t object_index) {
+  return fmt::format("object {}, \"{}\"", object_index, sequence.objects[object_index].label);
+}
+
 void RequireIndex(int index, size_t size, const std::string& row, const char* name) {
   Require(index >= 0 && static_cast<size_t>(index) < size, row,
           fmt::format("{} is {}; expected an index in a list of {}", name, index, size));
@@ -42,15 +52,10 @@ void RequireExponents(const ShapeExponents& exponents, const std::string& row) {
 void CheckBackEndInput(const BackEndInput& input, const OptimiseOptions& options) {
   const Sequence& sequence = input.sequence;
   const size_t objects = sequence.objects.size();
-  const auto require_one_per_object = [&](size_t size, const char* list) {
-    Require(size == objects, list,
-            fmt::format("has {} entries; expected {}, one per object", size, objects));
-  };
-  require_one_per_object(input.initial_landmarks.size(), "initial_landmarks");
-  require_one_per_object(input.priors.size(), "priors");
-  if (!input.points.empty()) require_one_per_object(input.points.size(), "points");
+  RequireOnePerObject(sequence, input.priors.size(), "priors");
+  if (!input.points.empty()) RequireOnePerObject(sequence, input.points.size(), "points");
   if (!input.images_weighed_at.empty()) {
-    require_one_per_object(input.images_weighed_at.size(), "images_weighed_at");
+    RequireOnePerObject(sequence, input.images_weighed_at.size(), "images_weighed_at");
   }
   for (const SupportPlane& plane : sequence.planes) {
     Require(std::abs(plane.plane_in_world.normal.norm() - 1.0) < kNormTolerance &&
@@ -77,28 +82,35 @@ void CheckBackEndInput(const BackEndInput& input, const OptimiseOptions& options
     const Object& object = sequence.ObjectOf(detection);
     if (options.support && object.is_static) {
       RequireIndex(object.plane_index, sequence.planes.size(),
-                   fmt::format("object {}, \"{}\"", detection.object_index, object.label),
+                   NameObject(sequence, detection.object_index),
                    "plane_index (without a plane, support has to be false)");
     }
   }
   for (size_t i = 0; i < objects; ++i) {
-    const std::string row = fmt::format("object {}, \"{}\"", i, sequence.objects[i].label);
+    const std::string row = NameObject(sequence, i);
     if (const auto& prior = input.priors[i]) {
       RequireExponents(prior->shape_exponents, row);
       Require((prior->ratio.array() > 0.0).all() && (prior->log_sigma.array() > 0.0).all() &&
                   prior->ratio.allFinite() && prior->log_sigma.allFinite(),
               row, "has a prior with a ratio or log_sigma that is not positive; expected positive");
     }
-    if (const auto& landmark = input.initial_landmarks[i]) {
-      RequireRigid(landmark->frame_from_object, row, "its initial landmark");
-      RequireExponents(landmark->shape_exponents, row);
-      Require((landmark->half_axes.array() > 0.0).all() && landmark->half_axes.allFinite(), row,
-              "has an initial landmark with a half axis that is not positive; expected lengths");
-    }
   }
   for (const auto& [index, image] : input.images) {
     RequireIndex(index, sequence.detections.size(), "images", "the index of a detection");
     Require(image != nullptr, "images", fmt::format("that of detection {} is null", index));
+  }
+}
+
+void CheckInitialLandmarks(const BackEndInput& input) {
+  RequireOnePerObject(input.sequence, input.initial_landmarks.size(), "initial_landmarks");
+  for (size_t i = 0; i < input.initial_landmarks.size(); ++i) {
+    const auto& landmark = input.initial_landmarks[i];
+    if (!landmark) continue;
+    const std::string row = NameObject(input.sequence, i);
+    RequireRigid(landmark->frame_from_object, row, "its initial landmark");
+    RequireExponents(landmark->shape_exponents, row);
+    Require((landmark->half_axes.array() > 0.0).all() && landmark->half_axes.allFinite(), row,
+            "has an initial landmark with a half axis that is not positive; expected lengths");
   }
 }
 

@@ -8,7 +8,9 @@ namespace soslam {
 
 // Throws InputError, which names the first row and value, where an index is not in its list, a list
 // that belongs to the objects has another length, a number is not finite, a rotation or normal does
-// not have norm 1, the corners of a box are not in order, or a body or its prior is none.
+// not have norm 1, the corners of a box are not in order, or a prior is of no body.
 void CheckBackEndInput(const BackEndInput& input, const OptimiseOptions& options);
+// The same of the initial landmarks, of which CheckBackEndInput knows nothing.
+void CheckInitialLandmarks(const BackEndInput& input);
 
 }  // namespace soslam

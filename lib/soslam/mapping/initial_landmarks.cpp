@@ -186,9 +186,7 @@ std::vector<std::optional<Landmark>> ChooseInitialUprightLandmarks(
     const BackEndInput& input, const LandmarkEstimates& estimates, const OptimiseOptions& options,
     int threads) {
   const Sequence& sequence = input.sequence;
-  BackEndInput checked = input;
-  checked.initial_landmarks.resize(sequence.objects.size());
-  CheckBackEndInput(checked, options);
+  CheckBackEndInput(input, options);
   std::vector<std::vector<Landmark>> hypotheses = HypothesesByObject(sequence, estimates);
   for (const ObjectEstimate& object : estimates.objects) {
     if (!object.landmark_in_world) continue;

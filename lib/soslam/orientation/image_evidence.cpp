@@ -25,10 +25,10 @@ class TextureEvidence : public ImageEvidence {
   SymmetryOptions symmetry_options_;
 };
 
-class PaperEvidence final : public TextureEvidence {
+class SymmetryEvidence final : public TextureEvidence {
  public:
-  PaperEvidence(std::shared_ptr<const SymmetryImage> image, const Camera& camera,
-                const SymmetryOptions& options, double sigma)
+  SymmetryEvidence(std::shared_ptr<const SymmetryImage> image, const Camera& camera,
+                   const SymmetryOptions& options, double sigma)
       : TextureEvidence(std::move(image), camera, options), sigma_(sigma) {}
 
   ImageResiduals ResidualsAt(const Landmark& start, const Landmark* /*weighed_at*/,
@@ -116,20 +116,19 @@ class EdgeEvidence final : public ImageEvidence {
 
 }  // namespace
 
-std::shared_ptr<const ImageEvidence> PairsOfTexture(std::shared_ptr<const SymmetryImage> image,
-                                                    const Camera& camera,
-                                                    const SymmetryOptions& options, double sigma) {
-  return std::make_shared<PaperEvidence>(std::move(image), camera, options, sigma);
+std::shared_ptr<const ImageEvidence> MakeSymmetryEvidence(
+    std::shared_ptr<const SymmetryImage> image, const Camera& camera,
+    const SymmetryOptions& options, double sigma) {
+  return std::make_shared<SymmetryEvidence>(std::move(image), camera, options, sigma);
 }
 
-std::shared_ptr<const ImageEvidence> AsymmetryOfTexture(std::shared_ptr<const SymmetryImage> image,
-                                                        const Camera& camera,
-                                                        const TextureOptions& options,
-                                                        const SymmetryOptions& symmetry_options) {
+std::shared_ptr<const ImageEvidence> MakeAsymmetryEvidence(
+    std::shared_ptr<const SymmetryImage> image, const Camera& camera, const TextureOptions& options,
+    const SymmetryOptions& symmetry_options) {
   return std::make_shared<AsymmetryEvidence>(std::move(image), camera, options, symmetry_options);
 }
 
-std::shared_ptr<const ImageEvidence> AlignmentOfEdges(std::shared_ptr<const EdgeImage> image,
+std::shared_ptr<const ImageEvidence> MakeEdgeEvidence(std::shared_ptr<const EdgeImage> image,
                                                       const Camera& camera,
                                                       const EdgeOptions& options) {
   return std::make_shared<EdgeEvidence>(std::move(image), camera, options);

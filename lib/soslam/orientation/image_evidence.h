@@ -14,20 +14,19 @@ namespace soslam {
 // The symmetry constraint of the paper, eq. (16), of all visible pairs of pixels. `sigma`: standard
 // deviation of a pair's difference, in the descriptor's unit; as in the paper, neither the weight
 // of the view nor the initial landmark has to do with it.
-std::shared_ptr<const ImageEvidence> PairsOfTexture(std::shared_ptr<const SymmetryImage> image,
-                                                    const Camera& camera,
-                                                    const SymmetryOptions& options, double sigma);
+std::shared_ptr<const ImageEvidence> MakeSymmetryEvidence(
+    std::shared_ptr<const SymmetryImage> image, const Camera& camera,
+    const SymmetryOptions& options, double sigma);
 
 // The asymmetry of the texture as a bounded cost (AsymmetryCost).
-std::shared_ptr<const ImageEvidence> AsymmetryOfTexture(std::shared_ptr<const SymmetryImage> image,
-                                                        const Camera& camera,
-                                                        const TextureOptions& options,
-                                                        const SymmetryOptions& symmetry_options);
+std::shared_ptr<const ImageEvidence> MakeAsymmetryEvidence(
+    std::shared_ptr<const SymmetryImage> image, const Camera& camera, const TextureOptions& options,
+    const SymmetryOptions& symmetry_options);
 
 // The alignment of the body's edges (EdgeCost). Where they are not visible in the image, as those
 // of the cuboid of a chair, the edges that happen to be near carry no information: the weight is
 // that of the detection times the square of EdgeCost::Support.
-std::shared_ptr<const ImageEvidence> AlignmentOfEdges(std::shared_ptr<const EdgeImage> image,
+std::shared_ptr<const ImageEvidence> MakeEdgeEvidence(std::shared_ptr<const EdgeImage> image,
                                                       const Camera& camera,
                                                       const EdgeOptions& options);
 

@@ -105,17 +105,17 @@ BackEndInput ReadInput(const Sequence& sequence, const OptimiseOptions& options,
     auto image =
         std::make_shared<const SymmetryImage>(frames[frame_of(index)]->maps, detection.box);
     input.images.emplace_back(
-        index, is_quadric ? PairsOfTexture(std::move(image), camera, options.symmetry_options,
-                                           options.symmetry_sigma)
-                          : AsymmetryOfTexture(std::move(image), camera, options.texture,
-                                               options.symmetry_options));
+        index, is_quadric ? MakeSymmetryEvidence(std::move(image), camera, options.symmetry_options,
+                                                 options.symmetry_sigma)
+                          : MakeAsymmetryEvidence(std::move(image), camera, options.texture,
+                                                  options.symmetry_options));
   }
   for (const int index : for_edges) {
     const Detection& detection = sequence.detections[index];
     auto image = std::make_shared<const EdgeImage>(
         EdgeImage{frames[frame_of(index)], detection.box, BoxesInFront(sequence, detection)});
     input.images.emplace_back(
-        index, AlignmentOfEdges(std::move(image), sequence.CameraOf(detection), options.edges));
+        index, MakeEdgeEvidence(std::move(image), sequence.CameraOf(detection), options.edges));
   }
   return input;
 }
