@@ -142,7 +142,9 @@ void BackEndProblem::AddStanding(size_t object_index) {
 
 void BackEndProblem::AddLandmark(size_t object_index) {
   const Object& object = input_.sequence.objects[object_index];
-  const SupportPlane& support = input_.sequence.planes[object.plane_index];
+  // An object of no plane has only up, which evidence of shape needs.
+  const SupportPlane support =
+      object.plane_index == kNoPlane ? SupportPlane{} : input_.sequence.planes[object.plane_index];
   const Plane& plane = support.plane_in_world;
   double* landmark = variables_.Landmark(object_index);
   if (options_.support) {
