@@ -242,13 +242,13 @@ TEST(UpEstimateTest, OtherWaysToHoldCamerasAreNamedWithTheirProbabilities) {
         .at(0);
   };
   const UpEstimate clear = up_with(0.3);
-  EXPECT_EQ(clear.holding, CameraHolding::kRolled90);
-  EXPECT_EQ(clear.holding_tilt_variance, 0.0);
+  EXPECT_EQ(clear.orientation, CameraOrientation::kRolled90);
+  EXPECT_EQ(clear.orientation_tilt_variance, 0.0);
   const UpEstimate open = up_with(0.5);
-  EXPECT_EQ(open.holding, CameraHolding::kRolled90);
-  EXPECT_GT(open.holding_tilt_variance, 0.0);
+  EXPECT_EQ(open.orientation, CameraOrientation::kRolled90);
+  EXPECT_GT(open.orientation_tilt_variance, 0.0);
   double sum = 0.0;
-  for (const TriedHolding& tried : open.holdings) sum += tried.probability;
+  for (const TriedOrientation& tried : open.orientations) sum += tried.probability;
   EXPECT_NEAR(sum, 1.0, 1e-9);
 }
 
@@ -263,7 +263,7 @@ TEST(UpEstimateTest, AGroundThatIsKnownIsNotGuessed) {
       UpOfSegments(sequence, TableOfPostsAndMats(), AssociateOptions()).begin()->second;
   EXPECT_EQ(up.up_in_world, ground.up_in_world);
   EXPECT_LT((up.covariance - 1e-4 * across).norm(), 1e-9);
-  EXPECT_TRUE(up.holdings.empty());
+  EXPECT_TRUE(up.orientations.empty());
 }
 
 // A table that says nothing leaves cameras level, and no surer of it.

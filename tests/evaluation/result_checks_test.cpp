@@ -267,12 +267,12 @@ TEST(CheckPlaneCountTest, NearlyAPlaneForEachObject) {
 }
 
 TEST(CheckUpTest, OtherWaysToHoldTheCameraThatAreAboutAsProbable) {
-  TriedHolding level, rolled;
+  TriedOrientation level, rolled;
   level.probability = 0.25;
-  rolled.holding = CameraHolding::kRolled90;
+  rolled.orientation = CameraOrientation::kRolled90;
   rolled.probability = 0.75;
-  EXPECT_THAT(CheckUp(CameraHolding::kRolled90, {level, rolled}, 0.0), IsEmpty());
-  EXPECT_EQ(Only(CheckUp(CameraHolding::kRolled90, {level, rolled}, 0.5)).found,
+  EXPECT_THAT(CheckUp(CameraOrientation::kRolled90, {level, rolled}, 0.0), IsEmpty());
+  EXPECT_EQ(Only(CheckUp(CameraOrientation::kRolled90, {level, rolled}, 0.5)).found,
             "cameras are taken to be held rolled_90; probabilities: level 0.25, rolled_90 0.75");
 }
 

@@ -309,11 +309,11 @@ TEST(EstimateGroundTest, WithoutPointsThereAreNoPlanes) {
 TEST(EstimateGroundTest, TurnedImagesTellUpFromDown) {
   const PriorScene scene = SceneOf(3);
   // Boxes alone do not.
-  EXPECT_EQ(Estimate(scene.sequence, {}).up_of_cameras.holding, CameraHolding::kLevel);
+  EXPECT_EQ(Estimate(scene.sequence, {}).up_of_cameras.orientation, CameraOrientation::kLevel);
   const std::vector<TurnedImage> upside_down = {{0, {3.0, 2.0, 20.0, 2.0}}};
   const GroundEstimate estimate =
       EstimateGround(scene.sequence, {}, {}, upside_down, {}, {}, ShippedTable(), {}, 2);
-  EXPECT_EQ(estimate.up_of_cameras.holding, CameraHolding::kRolled180);
+  EXPECT_EQ(estimate.up_of_cameras.orientation, CameraOrientation::kRolled180);
   EXPECT_GT(AngleBetweenDeg(estimate.up_in_input, scene.up_in_world), 170.0);
 }
 
@@ -325,10 +325,10 @@ TEST(EstimateGroundTest, WaysToHoldCamerasHaveProbabilities) {
       << "cameras alone are less sure";
   const UpEstimate& up = estimate.up_of_cameras;
   double sum = 0.0;
-  for (const TriedHolding& tried : up.holdings) sum += tried.probability;
+  for (const TriedOrientation& tried : up.orientations) sum += tried.probability;
   EXPECT_NEAR(sum, 1.0, 1e-9);
-  EXPECT_EQ(up.holding, CameraHolding::kLevel);
-  EXPECT_EQ(up.holding_tilt_variance, 0.0);
+  EXPECT_EQ(up.orientation, CameraOrientation::kLevel);
+  EXPECT_EQ(up.orientation_tilt_variance, 0.0);
 }
 
 TEST(EstimateGroundTest, PlanesTellUpWhereCamerasAreTurnedInManyWays) {

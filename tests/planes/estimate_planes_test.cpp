@@ -263,7 +263,7 @@ TEST(HeightPriorTest, ItsEvidenceIsItsCostInMovedPlanes) {
     const Eigen::Vector3d pivot = RandomVector(-1, 1);
     const PlaneEvidence evidence = EvidenceOf(prior, plane, pivot);
     const PlaneMotion motion = 1e-5 * RandomVector(-1, 1);
-    const double at_moved = EvidenceOf(prior, Moved(plane, pivot, motion), pivot).cost;
+    const double at_moved = EvidenceOf(prior, ApplyMotion(plane, pivot, motion), pivot).cost;
     EXPECT_NEAR(at_moved - evidence.cost,
                 evidence.gradient.dot(motion) + 0.5 * motion.dot(evidence.information * motion),
                 1e-6 * (1.0 + evidence.cost));

@@ -213,7 +213,7 @@ ObjectEvidence RandomEvidence(int seed, bool noise = true) {
 }
 
 // After a body is carried along, it is as upright on its plane as before.
-TEST(Moved, KeepsBodiesOnTheirPlanes) {
+TEST(ApplyMotion, KeepsBodiesOnTheirPlanes) {
   for (int i = 0; i < 20; ++i) {
     const Plane plane = RandomPlane();
     UprightVector parameters;
@@ -221,8 +221,8 @@ TEST(Moved, KeepsBodiesOnTheirPlanes) {
     const Landmark landmark = UprightGround(plane).LandmarkAt(parameters, kCuboidExponent);
     const Eigen::Vector3d pivot = RandomVector(-3, 3);
     const PlaneMotion motion = RandomVector(-0.5, 0.5);
-    const Plane moved = Moved(plane, pivot, motion);
-    const Landmark body = Moved(plane, pivot, motion, landmark);
+    const Plane moved = ApplyMotion(plane, pivot, motion);
+    const Landmark body = ApplyMotion(plane, pivot, motion, landmark);
     EXPECT_NEAR(moved.SignedDistance(body.Centre()), body.half_axes.z(), 1e-12);
     EXPECT_LT((body.frame_from_object.rotation * Eigen::Vector3d::UnitZ() - moved.normal).norm(),
               1e-12);
@@ -246,8 +246,8 @@ TEST(EvidenceOf, IsHowTheBestCostChanges) {
     const auto start = FitObject(evidence, kStep, 1);
     ASSERT_FALSE(start.empty());
     const auto at = [&](const PlaneMotion& motion) {
-      StandingBody body{evidence, Moved(Plane(), pivot, motion, start.front().landmark)};
-      body.evidence.plane = Moved(Plane(), pivot, motion);
+      StandingBody body{evidence, ApplyMotion(Plane(), pivot, motion, start.front().landmark)};
+      body.evidence.plane = ApplyMotion(Plane(), pivot, motion);
       return EvidenceOf(*FitOnPlane(body), pivot);
     };
     const PlaneEvidence here = at(PlaneMotion::Zero());

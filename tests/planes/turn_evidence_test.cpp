@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "soslam/planes/camera_holding.h"
+#include "soslam/planes/camera_orientation.h"
 
 namespace soslam {
 namespace {
@@ -32,11 +32,11 @@ TEST(TurnEvidenceTest, TurnedImagesWithTurnedUpAreAsProbable) {
               LogLikelihoodOfTurns({{turned, UpAtTurn(0.3 + 0.5 * std::numbers::pi)}}), 1e-9);
 }
 
-TEST(TurnEvidenceTest, QuarterTurnsAreThoseOfTheHoldings) {
-  EXPECT_TRUE(UpOfQuarterTurn(0).isApprox(AxesOf(CameraHolding::kLevel).up));
-  EXPECT_TRUE(UpOfQuarterTurn(1).isApprox(AxesOf(CameraHolding::kRolled90).up));
-  EXPECT_TRUE(UpOfQuarterTurn(2).isApprox(AxesOf(CameraHolding::kRolled180).up));
-  EXPECT_TRUE(UpOfQuarterTurn(3).isApprox(AxesOf(CameraHolding::kRolled270).up));
+TEST(TurnEvidenceTest, QuarterTurnsAreThoseOfTheOrientations) {
+  EXPECT_TRUE(UpOfQuarterTurn(0).isApprox(AxesOf(CameraOrientation::kLevel).up));
+  EXPECT_TRUE(UpOfQuarterTurn(1).isApprox(AxesOf(CameraOrientation::kRolled90).up));
+  EXPECT_TRUE(UpOfQuarterTurn(2).isApprox(AxesOf(CameraOrientation::kRolled180).up));
+  EXPECT_TRUE(UpOfQuarterTurn(3).isApprox(AxesOf(CameraOrientation::kRolled270).up));
 }
 
 TEST(TurnEvidenceTest, NothingFoundTellsNothing) {

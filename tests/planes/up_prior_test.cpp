@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "soslam/geometry/angles.h"
-#include "soslam/planes/planes_and_holding.h"
+#include "soslam/planes/planes_and_orientation.h"
 #include "soslam/planes/scene_axis.h"
 #include "support/looking_at.h"
 #include "support/random.h"
@@ -105,7 +105,7 @@ TEST(RobustUpPriorFromCameras, SomeCamerasMayBeTurnedInAnyWay) {
           Eigen::Quaterniond(Eigen::AngleAxisd(RandomUniform(0.5, 1.0), Eigen::Vector3d::UnitZ()));
     }
     const auto robust = [](const std::vector<Rigid3d>& poses) {
-      return RobustUpPriorFromCameras(poses, kTilt, kCorrelation, CameraHolding::kLevel);
+      return RobustUpPriorFromCameras(poses, kTilt, kCorrelation, CameraOrientation::kLevel);
     };
     const UpPrior up = robust(turned);
     EXPECT_GT(up.up_in_world.z(), std::cos(3.0 * kRadPerDeg));
@@ -126,16 +126,17 @@ TEST(UpPriorFromCameras, RolledCamerasHaveTheUpOfLevelOnes) {
       const Rigid3d level = LevelCamera(i * 30.0 * kRadPerDeg, 20.0 * kRadPerDeg);
       poses.push_back({level.rotation * roll, level.translation});
     }
-    const auto up =
-        UpPriorFromCameras(poses, kTilt, kCorrelation, kCameraHoldings.at(quarters)).up_in_world;
+    const auto up = UpPriorFromCameras(poses, kTilt, kCorrelation, kCameraOrientations.at(quarters))
+                        .up_in_world;
     EXPECT_LT(std::atan2(up.head<2>().norm(), up.z()), 3.0 * kRadPerDeg) << quarters;
   }
 }
 
 TEST(UpPriorFromCameras, CamerasThatLookDownHaveUpBehindThem) {
   const std::vector<Rigid3d> poses = {LevelCamera(0.3, 80.0 * kRadPerDeg)};
-  for (const auto holding : {CameraHolding::kLookingDown, CameraHolding::kLookingDownRolled90}) {
-    const auto up = UpPriorFromCameras(poses, kTilt, kCorrelation, holding).up_in_world;
+  for (const auto orientation :
+       {CameraOrientation::kLookingDown, CameraOrientation::kLookingDownRolled90}) {
+    const auto up = UpPriorFromCameras(poses, kTilt, kCorrelation, orientation).up_in_world;
     EXPECT_NEAR(std::acos(up.z()), 10.0 * kRadPerDeg, 1e-9);
   }
 }
@@ -186,11 +187,12 @@ TEST(WithVerticals, StaysNearThePrior) {
 constexpr int kTurnFrames = 40;
 constexpr double kDrift = 0.15 * kRadPerDeg;  // between two frames, all of it to one side
 
-LevelTrajectory LevelInRoom(const std::vector<SegmentView>& views, double odometry_sigma_deg) {
+TiltCorrectedTrajectory RemoveDriftInRoom(const std::vector<SegmentView>& views,
+                                          double odometry_sigma_deg) {
   PlanesOptions options;
   options.upright.view_correlation_deg = 0.0;
   options.odometry_rotation_sigma_deg = odometry_sigma_deg;
-  return Level(views, CameraHolding::kLevel, options);
+  return RemoveTiltDrift(views, CameraOrientation::kLevel, options);
 }
 
 // A walk once around, cameras looking outwards and a little down.
@@ -248,10 +250,10 @@ double WorstPosition(const std::vector<Rigid3d>& truth, const std::vector<Rigid3
 
 // Verticals that a camera sees ahead say how it rolls, hardly how it pitches: that is seen a
 // quarter of the walk later. So what is left is at most the drift of a quarter of the walk.
-TEST(Level, TakesDriftOutOfATrajectory) {
+TEST(RemoveTiltDrift, TakesDriftOutOfATrajectory) {
   const std::vector<Rigid3d> truth = TrueTrajectory();
   const std::vector<Rigid3d> drifted = Drifted(truth, kDrift);
-  const LevelTrajectory level = LevelInRoom(ViewsOf(truth, drifted), 0.2);
+  const TiltCorrectedTrajectory level = RemoveDriftInRoom(ViewsOf(truth, drifted), 0.2);
   ASSERT_EQ(level.world_from_camera.size(), truth.size());
   EXPECT_GT(WorstUp(truth, drifted, kZ), 5.0 * kRadPerDeg);
   EXPECT_LT(WorstUp(truth, level.world_from_camera, level.up_prior.up_in_world),
@@ -262,17 +264,17 @@ TEST(Level, TakesDriftOutOfATrajectory) {
 }
 
 // Nothing is to be taken out: what verticals say is what odometry says.
-TEST(Level, LeavesATrajectoryWithoutDrift) {
+TEST(RemoveTiltDrift, LeavesATrajectoryWithoutDrift) {
   const std::vector<Rigid3d> truth = TrueTrajectory();
-  const LevelTrajectory level = LevelInRoom(ViewsOf(truth, truth), 0.2);
+  const TiltCorrectedTrajectory level = RemoveDriftInRoom(ViewsOf(truth, truth), 0.2);
   EXPECT_LT(WorstUp(truth, level.world_from_camera, level.up_prior.up_in_world), 0.2 * kRadPerDeg);
   EXPECT_LT(WorstPosition(truth, level.world_from_camera), 0.02);
 }
 
-TEST(Level, TakesExactOdometryAsItIs) {
+TEST(RemoveTiltDrift, TakesExactOdometryAsItIs) {
   const std::vector<Rigid3d> truth = TrueTrajectory();
   const std::vector<Rigid3d> drifted = Drifted(truth, kDrift);
-  const LevelTrajectory level = LevelInRoom(ViewsOf(truth, drifted), 0.0);
+  const TiltCorrectedTrajectory level = RemoveDriftInRoom(ViewsOf(truth, drifted), 0.0);
   for (size_t i = 0; i < drifted.size(); ++i) {
     EXPECT_EQ(level.world_from_camera[i].translation, drifted[i].translation);
     EXPECT_EQ(level.world_from_camera[i].rotation.coeffs(), drifted[i].rotation.coeffs());

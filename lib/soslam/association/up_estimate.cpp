@@ -9,19 +9,20 @@
 #include "soslam/geometry/angles.h"
 #include "soslam/geometry/rigid3.h"
 #include "soslam/initialisation/object_evidence.h"
-#include "soslam/planes/camera_holding.h"
+#include "soslam/planes/camera_orientation.h"
 
 namespace soslam {
 namespace {
 
 // Boxes used per label, evenly spread.
 constexpr size_t kBoxesOfLabel = 48;
-// Threshold of ChooseHolding, high because level cameras are usual: they are assumed unless boxes
-// contradict.
+// Threshold of ChooseOrientation, high because level cameras are usual: they are assumed unless
+// boxes contradict.
 constexpr double kClear = 0.1;
-// Holdings that differ in the vertical axis. Its sign does not matter to the fit of a body.
-constexpr std::array kHoldings = {CameraHolding::kLevel, CameraHolding::kRolled90,
-                                  CameraHolding::kLookingDown, CameraHolding::kLookingDownRolled90};
+// Orientations that differ in the vertical axis. Its sign does not matter to the fit of a body.
+constexpr std::array kOrientations = {CameraOrientation::kLevel, CameraOrientation::kRolled90,
+                                      CameraOrientation::kLookingDown,
+                                      CameraOrientation::kLookingDownRolled90};
 
 // Standard deviation of the log height of an object whose label has no height.
 constexpr double kUnknownHeightLogSigma = 1.0;
@@ -42,17 +43,17 @@ using BoxesOfLabels = std::vector<std::vector<ObjectEvidence>>;
 UpEstimate EstimateUp(const Segment& segment, const BoxesOfLabels& boxes,
                       const AssociateOptions& options) {
   std::vector<UpPrior> up_priors;
-  std::vector<HoldingEvidence> evidence;
-  for (const CameraHolding holding : kHoldings) {
+  std::vector<OrientationEvidence> evidence;
+  for (const CameraOrientation orientation : kOrientations) {
     const UpPrior up_prior = UpPriorFromCameras(segment.world_from_camera, options.tilt,
-                                                options.upright.ViewCorrelation(), holding);
+                                                options.upright.ViewCorrelation(), orientation);
     const bool is_known = std::ranges::any_of(up_priors, [&](const UpPrior& other) {
       return IsSameUp(other.up_in_world, up_prior.up_in_world);
     });
     if (is_known) continue;
     up_priors.push_back(up_prior);
-    HoldingEvidence one{
-        .holding = holding, .up_in_world = up_prior.up_in_world, .object_costs = {}};
+    OrientationEvidence one{
+        .orientation = orientation, .up_in_world = up_prior.up_in_world, .object_costs = {}};
     for (const auto& of_label : boxes) {
       // Mean cost over a label's boxes, because those of the same object are correlated.
       double sum = 0.0;
@@ -68,15 +69,15 @@ UpEstimate EstimateUp(const Segment& segment, const BoxesOfLabels& boxes,
     evidence.push_back(std::move(one));
   }
   const double expected_cost = 0.5 * static_cast<double>(boxes.size());
-  const HoldingChoice choice = ChooseHolding(evidence, expected_cost, kClear);
+  const OrientationChoice choice = ChooseOrientation(evidence, expected_cost, kClear);
   UpEstimate up = UpEstimateOf(up_priors[choice.best], choice.tilt_variance);
-  up.holding = evidence[choice.best].holding;
-  up.holding_tilt_variance = choice.tilt_variance;
+  up.orientation = evidence[choice.best].orientation;
+  up.orientation_tilt_variance = choice.tilt_variance;
   for (size_t i = 0; i < evidence.size(); ++i) {
-    up.holdings.push_back({.holding = evidence[i].holding,
-                           .cost = choice.costs[i],
-                           .probability = choice.probabilities[i],
-                           .planes = {}});
+    up.orientations.push_back({.orientation = evidence[i].orientation,
+                               .cost = choice.costs[i],
+                               .probability = choice.probabilities[i],
+                               .planes = {}});
   }
   return up;
 }

@@ -21,10 +21,10 @@ struct UpEstimate {
   // Covariance (rad^2, world axes) of the rotation vector from the estimated to the true up; zero
   // about up itself.
   Eigen::Matrix3d covariance;
-  CameraHolding holding = CameraHolding::kLevel;  // most probable one
-  std::vector<TriedHolding> holdings = {};        // one per tried direction of up
+  CameraOrientation orientation = CameraOrientation::kLevel;  // most probable one
+  std::vector<TriedOrientation> orientations = {};            // one per tried direction of up
   // Variance of up over the alternatives (rad^2); 0 where the choice is clear.
-  double holding_tilt_variance = 0.0;
+  double orientation_tilt_variance = 0.0;
 };
 
 // `other_variance`: of up over alternatives (rad^2), which is added.

@@ -365,15 +365,16 @@ std::vector<Finding> CheckPoseCorrections(const Sequence& sequence,
        "exact; look at boxes and planes: soslam-inspect"}};
 }
 
-std::vector<Finding> CheckUp(CameraHolding holding, const std::vector<TriedHolding>& holdings,
+std::vector<Finding> CheckUp(CameraOrientation orientation,
+                             const std::vector<TriedOrientation>& orientations,
                              double tilt_variance) {
   if (tilt_variance == 0.0) return {};
   std::vector<std::string> ways;
-  for (const TriedHolding& tried : holdings) {
-    ways.push_back(fmt::format("{} {:.2g}", NameOf(tried.holding), tried.probability));
+  for (const TriedOrientation& tried : orientations) {
+    ways.push_back(fmt::format("{} {:.2g}", NameOf(tried.orientation), tried.probability));
   }
   return {{kUpDirectionCheck, Severity::kWarning,
-           fmt::format("cameras are taken to be held {}; probabilities: {}", NameOf(holding),
+           fmt::format("cameras are taken to be held {}; probabilities: {}", NameOf(orientation),
                        fmt::join(ways, ", ")),
            "one way to hold them that explains the boxes much better than others",
            "few objects, or cameras that were rolled or look down",

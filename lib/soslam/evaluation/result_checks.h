@@ -63,7 +63,8 @@ inline constexpr const char* kUpDirectionCheck = "up_direction";
 
 // The way in which cameras are held, and thus the up direction, if other ways are about as probable
 // and leave up uncertain by `tilt_variance`.
-std::vector<Finding> CheckUp(CameraHolding holding, const std::vector<TriedHolding>& holdings,
+std::vector<Finding> CheckUp(CameraOrientation orientation,
+                             const std::vector<TriedOrientation>& orientations,
                              double tilt_variance);
 
 // Why up may be wrong by more than its standard deviation, in words; empty where no finding says

@@ -133,7 +133,7 @@ GroundEstimate EstimateGround(const Sequence& sequence, const std::vector<MapPoi
   result.output_from_input = output * normalised_from_input;
   result.up_in_input = normalised_from_input.rigid.rotation.conjugate() * best.planes.up_in_world;
   result.tilt_covariance = best.planes.tilt_covariance;
-  result.tilt_covariance.diagonal().array() += 0.5 * result.up_of_cameras.holding_tilt_variance;
+  result.tilt_covariance.diagonal().array() += 0.5 * result.up_of_cameras.orientation_tilt_variance;
   result.tilt_sigma = std::sqrt(result.tilt_covariance.trace());
   result.cameras_tilt_sigma = std::sqrt(TiltCovariance(best.up_prior).trace());
   result.tilt_to_cameras = AngleBetween(best.up_prior.up_in_world, best.planes.up_in_world);

@@ -262,13 +262,13 @@ WorldReport ReportOf(const GroundEstimate& estimate, const Sequence& input,
   report.up = {estimate.up_in_input,
                kDegPerRad * estimate.tilt_sigma,
                estimate.planes.empty() ? "cameras" : "planes",
-               estimate.cameras_are_turned ? "turned" : NameOf(estimate.up_of_cameras.holding),
+               estimate.cameras_are_turned ? "turned" : NameOf(estimate.up_of_cameras.orientation),
                estimate.verticals,
                kDegPerRad * estimate.cameras_tilt_sigma,
                kDegPerRad * estimate.tilt_to_cameras};
   report.up.probability = estimate.up_probability;
-  for (const TriedHolding& tried : estimate.up_of_cameras.holdings) {
-    report.up.tried.push_back({tried.holding, tried.cost, tried.probability});
+  for (const TriedOrientation& tried : estimate.up_of_cameras.orientations) {
+    report.up.tried.push_back({tried.orientation, tried.cost, tried.probability});
   }
   report.scale = WorldScaleOf(estimate, findings);
   report.output_from_input = estimate.output_from_input;

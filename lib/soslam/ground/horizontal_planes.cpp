@@ -76,7 +76,7 @@ std::vector<GroundPoint> UsablePoints(std::vector<GroundPoint> points, const Eig
 }
 
 // Number of pairs of points at the same height.
-double Sharpness(const std::vector<GroundPoint>& points, const Eigen::Vector3d& up) {
+double CountPairsAtSameHeight(const std::vector<GroundPoint>& points, const Eigen::Vector3d& up) {
   constexpr double kReach = 10.0;  // farther points are in the outermost bins
   std::vector<double> bins(static_cast<size_t>(2.0 * kReach / kBin) + 2);
   for (const GroundPoint& point : points) {
@@ -313,7 +313,8 @@ HorizontalPlanes FindHorizontalPlanes(const std::vector<GroundPoint>& points,
   const std::vector<Eigen::Vector3d> directions = UpDirections(up_prior, kTiltStep);
   std::vector<double> costs;
   for (const Eigen::Vector3d& up : directions) {
-    costs.push_back(-Sharpness(usable, up) * std::exp(-0.5 * (up_prior.Cost(up) - lowest)));
+    costs.push_back(-CountPairsAtSameHeight(usable, up) *
+                    std::exp(-0.5 * (up_prior.Cost(up) - lowest)));
   }
   std::vector<Fit> fits;
   for (const Eigen::Vector3d& start : LowestApart(directions, costs, kBetweenStarts, kStarts)) {

@@ -9,7 +9,7 @@
 
 #include "soslam/base/upper_median.h"
 #include "soslam/geometry/angles.h"
-#include "soslam/planes/camera_holding.h"
+#include "soslam/planes/camera_orientation.h"
 #include "soslam/planes/turn_evidence.h"
 
 namespace soslam {
@@ -165,15 +165,15 @@ void FindObjects(const NormalisedInput& input, UpHypothesis* hypothesis) {
 }
 
 // Cameras that are held in this way. `cost_of_boxes`: negative log likelihood.
-UpHypothesis Held(const NormalisedInput& input, CameraHolding holding, double cost_of_boxes,
+UpHypothesis Held(const NormalisedInput& input, CameraOrientation orientation, double cost_of_boxes,
                   const std::vector<SegmentView>& views) {
   const GroundOptions& options = input.options;
   UpHypothesis hypothesis;
-  hypothesis.holding = holding;
+  hypothesis.orientation = orientation;
   hypothesis.verticals = !views.empty();
   const std::vector<Rigid3d> poses = PosesOf(input.sequence);
   const double correlation = options.upright.ViewCorrelation();
-  UpPrior up_prior = RobustUpPriorFromCameras(poses, options.tilt, correlation, holding);
+  UpPrior up_prior = RobustUpPriorFromCameras(poses, options.tilt, correlation, orientation);
   hypothesis.without_verticals = WithCommonError(up_prior);
   if (!views.empty()) {
     constexpr double kMaxTilt = 12.0 * kRadPerDeg;
@@ -234,19 +234,21 @@ ChosenUp ChooseUp(const NormalisedInput& input, const UpEstimate& of_boxes,
   constexpr double kClear = 0.1;  // high because level cameras are usual
   const double kWorthFollowing = std::log(1e4);
   std::vector<UpHypothesis> hypotheses;
-  for (const CameraHolding holding : kCameraHoldings) {
+  for (const CameraOrientation orientation : kCameraOrientations) {
     // Boxes do not tell up from down. A way that they do not tell from another one is not there.
-    const CameraHolding as_by_boxes = holding == CameraHolding::kRolled180 ? CameraHolding::kLevel
-                                      : holding == CameraHolding::kRolled270
-                                          ? CameraHolding::kRolled90
-                                          : holding;
-    const auto tried = std::ranges::find(of_boxes.holdings, as_by_boxes, &TriedHolding::holding);
-    if (tried == of_boxes.holdings.end()) continue;
-    const double prior = as_by_boxes == CameraHolding::kLevel ? 0.0 : kNotLevelCost;
-    hypotheses.push_back(Held(input, holding, tried->cost - prior, views));
+    const CameraOrientation as_by_boxes =
+        orientation == CameraOrientation::kRolled180   ? CameraOrientation::kLevel
+        : orientation == CameraOrientation::kRolled270 ? CameraOrientation::kRolled90
+                                                       : orientation;
+    const auto tried =
+        std::ranges::find(of_boxes.orientations, as_by_boxes, &TriedOrientation::orientation);
+    if (tried == of_boxes.orientations.end()) continue;
+    const double prior = as_by_boxes == CameraOrientation::kLevel ? 0.0 : kNotLevelCost;
+    hypotheses.push_back(Held(input, orientation, tried->cost - prior, views));
   }
   const auto with_prior = [](const UpHypothesis& hypothesis) {
-    return hypothesis.cost + (hypothesis.holding == CameraHolding::kLevel ? 0.0 : kNotLevelCost);
+    return hypothesis.cost +
+           (hypothesis.orientation == CameraOrientation::kLevel ? 0.0 : kNotLevelCost);
   };
   double least = std::numeric_limits<double>::infinity();
   for (const UpHypothesis& one : hypotheses) least = std::min(least, with_prior(one));
@@ -267,16 +269,16 @@ ChosenUp ChooseUp(const NormalisedInput& input, const UpEstimate& of_boxes,
   }
   for (UpHypothesis& hypothesis : followed) FindObjects(input, &hypothesis);
   const auto choose = [&] {
-    std::vector<HoldingEvidence> evidence;
+    std::vector<OrientationEvidence> evidence;
     for (const UpHypothesis& hypothesis : followed) {
-      HoldingEvidence& one = evidence.emplace_back();
-      one.holding = hypothesis.holding;
+      OrientationEvidence& one = evidence.emplace_back();
+      one.orientation = hypothesis.orientation;
       one.up_in_world = hypothesis.planes.up_in_world;
       one.other_cost = hypothesis.cost;
     }
-    return ChooseHolding(evidence, 0.0, kClear);
+    return ChooseOrientation(evidence, 0.0, kClear);
   };
-  HoldingChoice choice = choose();
+  OrientationChoice choice = choose();
   const UpHypothesis& held = followed[choice.best];
   if (2.0 * held.StandingObjects() < static_cast<double>(held.objects.size())) {
     if (auto turned = Turned(input, held.cost_of_boxes)) {
@@ -288,16 +290,16 @@ ChosenUp ChooseUp(const NormalisedInput& input, const UpEstimate& of_boxes,
   }
   ChosenUp chosen{followed[choice.best], of_boxes};
   const HorizontalPlanes& planes = chosen.hypothesis.planes;
-  chosen.of_cameras.holding = chosen.hypothesis.holding;
-  chosen.of_cameras.holding_tilt_variance = choice.tilt_variance;
-  chosen.of_cameras.holdings.clear();
+  chosen.of_cameras.orientation = chosen.hypothesis.orientation;
+  chosen.of_cameras.orientation_tilt_variance = choice.tilt_variance;
+  chosen.of_cameras.orientations.clear();
   double alike = 0.0;  // probability of the ways with that up
   for (size_t i = 0; i < followed.size(); ++i) {
     const double angle = AngleBetween(followed[i].planes.up_in_world, planes.up_in_world);
     alike += kDegPerRad * angle < kTrustedUpDeg ? choice.probabilities[i] : 0.0;
     if (followed[i].cameras_are_turned) continue;  // no way to hold them
-    chosen.of_cameras.holdings.push_back(
-        {.holding = followed[i].holding,
+    chosen.of_cameras.orientations.push_back(
+        {.orientation = followed[i].orientation,
          .verticals = followed[i].verticals,
          .cost = choice.costs[i],
          .probability = choice.probabilities[i],

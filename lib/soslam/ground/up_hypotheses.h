@@ -43,7 +43,7 @@ struct NormalisedInput {
 
 // A way in which the cameras may be held, and what follows from it in the normalised world.
 struct UpHypothesis {
-  CameraHolding holding = CameraHolding::kLevel;
+  CameraOrientation orientation = CameraOrientation::kLevel;
   // Negative log likelihoods: of boxes alone, and with turned images and objects on planes.
   double cost_of_boxes = 0.0, cost = 0.0;
   UpPrior up_prior;  // from cameras and vertical edges

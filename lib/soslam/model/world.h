@@ -15,8 +15,8 @@ namespace soslam {
 
 // The contents of planes.json and world.json. Planes, frames and objects are named by their ids.
 
-// Possible camera holdings: the camera axis nearest to up and the axis that is level.
-enum class CameraHolding {
+// Possible camera orientations: the camera axis nearest to up and the axis that is level.
+enum class CameraOrientation {
   kLevel,
   kRolled90,  // clockwise about the optical axis, seen from behind the camera
   kRolled180,
@@ -24,12 +24,13 @@ enum class CameraHolding {
   kLookingDown,
   kLookingDownRolled90,
 };
-inline constexpr std::array kCameraHoldings = {
-    CameraHolding::kLevel,     CameraHolding::kRolled90,    CameraHolding::kRolled180,
-    CameraHolding::kRolled270, CameraHolding::kLookingDown, CameraHolding::kLookingDownRolled90};
-inline constexpr std::array kCameraHoldingNames = {
+inline constexpr std::array kCameraOrientations = {
+    CameraOrientation::kLevel,       CameraOrientation::kRolled90,
+    CameraOrientation::kRolled180,   CameraOrientation::kRolled270,
+    CameraOrientation::kLookingDown, CameraOrientation::kLookingDownRolled90};
+inline constexpr std::array kCameraOrientationNames = {
     "level", "rolled_90", "rolled_180", "rolled_270", "looking_down", "looking_down_rolled_90"};
-inline constexpr const auto& NamesOf(CameraHolding) { return kCameraHoldingNames; }
+inline constexpr const auto& NamesOf(CameraOrientation) { return kCameraOrientationNames; }
 
 // Reason why an object is assigned to its plane.
 enum class SupportReason {
@@ -71,8 +72,8 @@ void Describe(Visitor& visit, PlaneRow& row) {
 }
 
 // One tried way to hold the cameras and its result.
-struct TriedHolding {
-  CameraHolding holding = CameraHolding::kLevel;
+struct TriedOrientation {
+  CameraOrientation orientation = CameraOrientation::kLevel;
   bool verticals = false;
   double cost = 0.0;
   double probability = 0.0;
@@ -96,17 +97,17 @@ struct PlanesReport {
     SupportReason reason = SupportReason::kNoViews;
     std::optional<double> height_m = {}, height_sigma_m = {}, cost = {};
   };
-  struct HoldingRow {
-    CameraHolding held = CameraHolding::kLevel;
+  struct OrientationRow {
+    CameraOrientation held = CameraOrientation::kLevel;
     bool verticals = false;
     bool is_clear = false;
-    std::vector<TriedHolding> tried = {};
+    std::vector<TriedOrientation> tried = {};
   };
   std::string dataset;
   std::vector<EstimatedPlaneRow> planes = {};
   std::vector<ObjectRow> objects = {};
   Eigen::Vector3d up_of_cameras_in_world = Eigen::Vector3d::UnitZ();
-  std::optional<HoldingRow> camera_holding = {};
+  std::optional<OrientationRow> camera_holding = {};
   std::optional<double> cost = {};
   int rounds = 0;
   bool settled = false;
@@ -145,8 +146,8 @@ void Describe(Visitor& visit, PlanesReport::ObjectRow& row) {
               "negative log likelihood of its boxes and ratio, on its plane; null without a body");
 }
 template <typename Visitor>
-void Describe(Visitor& visit, TriedHolding& row) {
-  visit.Field("held", &row.holding, "how the cameras are held");
+void Describe(Visitor& visit, TriedOrientation& row) {
+  visit.Field("held", &row.orientation, "how the cameras are held");
   visit.Field("verticals", &row.verticals, "vertical edges of the images are used");
   visit.Field("cost", &row.cost,
               "over that of the one taken, as a negative log likelihood; negative of one for which "
@@ -159,7 +160,7 @@ void Describe(Visitor& visit, TriedHolding& row) {
               kAtLeastOne);
 }
 template <typename Visitor>
-void Describe(Visitor& visit, PlanesReport::HoldingRow& row) {
+void Describe(Visitor& visit, PlanesReport::OrientationRow& row) {
   visit.Field("held", &row.held,
               "rolled: turned clockwise about the optical axis, seen from behind the camera; "
               "looking_down: by more than 45 degrees");
@@ -243,7 +244,7 @@ void Describe(Visitor& visit, Similarity& change) {
 
 struct WorldReport {
   struct TriedRow {
-    CameraHolding held = CameraHolding::kLevel;
+    CameraOrientation held = CameraOrientation::kLevel;
     double cost = 0.0;
     double probability = 0.0;
   };
@@ -305,7 +306,7 @@ void Describe(Visitor& visit, WorldReport::Up& up) {
   visit.Field("cameras_held", &up.cameras_held,
               "as held in planes.json; turned: in many ways, so that only planes tell up");
   visit.Check([&] {
-    std::vector<std::string> known(kCameraHoldingNames.begin(), kCameraHoldingNames.end());
+    std::vector<std::string> known(kCameraOrientationNames.begin(), kCameraOrientationNames.end());
     known.push_back("turned");
     return NotOneOf("cameras_held", up.cameras_held, known);
   });

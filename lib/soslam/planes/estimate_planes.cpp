@@ -114,13 +114,14 @@ StandingBodies OnSharedPlanes(const std::map<size_t, StandingBody>& own,
   standing.plane_of_height.assign(bodies_end, levels.level_of.end());
   const Eigen::Vector2d& tilt = levels.tilt;
   for (const double height : levels.heights) {
-    standing.planes.push_back(Moved(reference, pivot, {tilt.x(), tilt.y(), height}));
+    standing.planes.push_back(ApplyMotion(reference, pivot, {tilt.x(), tilt.y(), height}));
   }
   for (size_t i = 0; i < standing.bodies.size(); ++i) {
     StandingBody& body = standing.bodies[i];
     const auto level = static_cast<size_t>(levels.level_of[i]);
-    body.landmark = Moved(body.evidence.plane, pivot,
-                          {tilt.x(), tilt.y(), levels.heights[level] - heights[i]}, body.landmark);
+    body.landmark =
+        ApplyMotion(body.evidence.plane, pivot,
+                    {tilt.x(), tilt.y(), levels.heights[level] - heights[i]}, body.landmark);
     body.evidence.plane = standing.planes[level];
   }
   return standing;
@@ -214,7 +215,7 @@ std::optional<PlanesEstimate> EstimateFrom(const Eigen::Vector3d& up, const UpPr
       break;
     }
     standing = OnSharedPlanes(own, of_points, normal, up_prior, options);
-    refined = Refine(&standing, threads);
+    refined = RefinePlanes(&standing, threads);
     if (!refined) return std::nullopt;
     before = std::exchange(plane_of, {});
     size_t body_index = 0;

@@ -112,7 +112,7 @@ PlanesReport ReportOf(const PlanesEstimate& estimate, const Sequence& given) {
   report.dataset = given.name;
   for (int i = 0; i < std::ssize(estimate.planes); ++i) {
     PlanesReport::EstimatedPlaneRow row = {
-        RowOf(estimate.planes[i], i, estimate.holding_tilt_variance)};
+        RowOf(estimate.planes[i], i, estimate.orientation_tilt_variance)};
     if (const auto error = CompareWithGiven(given, estimate, i)) {
       row.error = {given.planes[error->given_plane_index].id, kDegPerRad * error->angle,
                    error->offset};
@@ -127,9 +127,9 @@ PlanesReport ReportOf(const PlanesEstimate& estimate, const Sequence& given) {
                               support.height, support.height_sigma, support.cost});
   }
   report.up_of_cameras_in_world = estimate.up_of_cameras;
-  if (!estimate.holdings.empty()) {
-    report.camera_holding = {estimate.holding, estimate.verticals,
-                             estimate.holding_tilt_variance == 0.0, estimate.holdings};
+  if (!estimate.orientations.empty()) {
+    report.camera_holding = {estimate.orientation, estimate.verticals,
+                             estimate.orientation_tilt_variance == 0.0, estimate.orientations};
   }
   report.cost = estimate.cost;
   report.rounds = estimate.rounds;

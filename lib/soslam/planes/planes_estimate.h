@@ -9,7 +9,7 @@
 #include "soslam/geometry/plane.h"
 #include "soslam/model/sequence.h"
 #include "soslam/model/world.h"
-#include "soslam/planes/camera_holding.h"
+#include "soslam/planes/camera_orientation.h"
 
 namespace soslam {
 
@@ -40,13 +40,14 @@ struct PlanesEstimate {
   // rad^2), so that a unit vector u costs 0.5 u^T information u.
   Eigen::Vector3d up_of_cameras = Eigen::Vector3d::UnitZ();
   std::optional<Eigen::Matrix3d> attitude_information;
-  // Tried holdings in the order of kCameraHoldings, and the chosen one; empty where the cameras'
-  // up prior was given.
-  std::vector<TriedHolding> holdings;
-  CameraHolding holding = CameraHolding::kLevel;
+  // Tried orientations in the order of kCameraOrientations, and the chosen one; empty where the
+  // cameras' up prior was given.
+  std::vector<TriedOrientation> orientations;
+  CameraOrientation orientation = CameraOrientation::kLevel;
   bool verticals = false;
-  // Variance of the normals (rad^2) over other possible holdings; zero where the choice is clear.
-  double holding_tilt_variance = 0.0;
+  // Variance of the normals (rad^2) over other possible orientations; zero where the choice is
+  // clear.
+  double orientation_tilt_variance = 0.0;
   std::optional<double> cost;  // total cost of all boxes, ratios and the up prior
   double expected_cost = 0.0;  // cost expected from the boxes' noise alone
   int rounds = 0;              // iterations of assigning objects to planes

@@ -67,13 +67,15 @@ std::optional<StandingBodies> Stepped(const StandingBodies& standing, const Eige
                                       const Eigen::VectorXd& step, int threads) {
   StandingBodies stepped = standing;
   for (size_t i = 0; i < standing.planes.size(); ++i) {
-    stepped.planes[i] = Moved(standing.planes[i], pivot, MotionOfPlane(step, static_cast<int>(i)));
+    stepped.planes[i] =
+        ApplyMotion(standing.planes[i], pivot, MotionOfPlane(step, static_cast<int>(i)));
   }
   std::vector<std::optional<StandingBody>> settled(standing.bodies.size());
   ParallelFor(standing.bodies.size(), threads, [&](size_t i) {
     const int plane = standing.plane_of[i];
     StandingBody body = standing.bodies[i];
-    body.landmark = Moved(standing.planes[plane], pivot, MotionOfPlane(step, plane), body.landmark);
+    body.landmark =
+        ApplyMotion(standing.planes[plane], pivot, MotionOfPlane(step, plane), body.landmark);
     body.evidence.plane = stepped.planes[plane];
     settled[i] = FitOnPlane(std::move(body));
   });
@@ -86,12 +88,12 @@ std::optional<StandingBodies> Stepped(const StandingBodies& standing, const Eige
 
 }  // namespace
 
-Plane Moved(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMotion& motion) {
+Plane ApplyMotion(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMotion& motion) {
   return Transform(MotionOf(plane, pivot, motion), plane);
 }
 
-Landmark Moved(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMotion& motion,
-               const Landmark& landmark) {
+Landmark ApplyMotion(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMotion& motion,
+                     const Landmark& landmark) {
   return Transform(MotionOf(plane, pivot, motion), landmark);
 }
 
@@ -177,7 +179,7 @@ Eigen::Vector3d MeanBasePoint(const std::vector<StandingBody>& bodies) {
   return sum / static_cast<double>(bodies.size());
 }
 
-std::optional<RefinedPlanes> Refine(StandingBodies* standing, int threads) {
+std::optional<RefinedPlanes> RefinePlanes(StandingBodies* standing, int threads) {
   const Eigen::Vector3d pivot = MeanBasePoint(standing->bodies);
   const auto start = Stepped(*standing, pivot, NoMotion(*standing), threads);
   if (!start) return std::nullopt;

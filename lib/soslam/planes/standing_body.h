@@ -18,9 +18,9 @@ namespace soslam {
 // and y axes of UprightRotation(normal, 0), through a point, then a translation along the new
 // normal (m).
 using PlaneMotion = Eigen::Vector3d;
-Plane Moved(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMotion& motion);
-Landmark Moved(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMotion& motion,
-               const Landmark& landmark);
+Plane ApplyMotion(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMotion& motion);
+Landmark ApplyMotion(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMotion& motion,
+                     const Landmark& landmark);
 
 // The cost of an object's boxes to second order in the plane's motion, minimised over the body on
 // the plane.
@@ -75,6 +75,6 @@ struct RefinedPlanes {
   Eigen::Vector3d pivot;       // centre of the covariance's motions
   Eigen::MatrixXd covariance;  // two rotations (rad), then the translation of each plane (m)
 };
-std::optional<RefinedPlanes> Refine(StandingBodies* standing, int threads);
+std::optional<RefinedPlanes> RefinePlanes(StandingBodies* standing, int threads);
 
 }  // namespace soslam

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "soslam/planes/camera_holding.h"
+#include "soslam/planes/camera_orientation.h"
 
 namespace soslam {
 

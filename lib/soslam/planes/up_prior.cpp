@@ -135,8 +135,8 @@ LevelDirections NormalsOf(const std::vector<SegmentView>& views, double sigma,
 
 // The axes of all cameras that are level when they are held so.
 LevelDirections AxesOfCameras(const std::vector<Rigid3d>& world_from_camera, const CameraTilt& tilt,
-                              double correlation_rad, CameraHolding holding) {
-  const HeldAxes held = AxesOf(holding);
+                              double correlation_rad, CameraOrientation orientation) {
+  const OrientationAxes held = AxesOf(orientation);
   const std::vector<double> shares = CameraWeights(world_from_camera, correlation_rad);
   std::vector<LevelDirection> axes;
   for (size_t i = 0; i < shares.size(); ++i) {
@@ -148,26 +148,27 @@ LevelDirections AxesOfCameras(const std::vector<Rigid3d>& world_from_camera, con
 }
 
 // Sum of the directions that are up in each camera.
-Eigen::Vector3d AboveCameras(const std::vector<Rigid3d>& world_from_camera, CameraHolding holding) {
+Eigen::Vector3d AboveCameras(const std::vector<Rigid3d>& world_from_camera,
+                             CameraOrientation orientation) {
   Eigen::Vector3d above = Eigen::Vector3d::Zero();
-  for (const Rigid3d& pose : world_from_camera) above += pose.rotation * AxesOf(holding).up;
+  for (const Rigid3d& pose : world_from_camera) above += pose.rotation * AxesOf(orientation).up;
   return above;
 }
 
 }  // namespace
 
 UpPrior UpPriorFromCameras(const std::vector<Rigid3d>& world_from_camera, const CameraTilt& tilt,
-                           double correlation_rad, CameraHolding holding) {
+                           double correlation_rad, CameraOrientation orientation) {
   const Eigen::Matrix3d information =
-      AxesOfCameras(world_from_camera, tilt, correlation_rad, holding)
+      AxesOfCameras(world_from_camera, tilt, correlation_rad, orientation)
           .Information(Eigen::Vector3d::Zero());
-  return {information, LowestCostUp(information, AboveCameras(world_from_camera, holding))};
+  return {information, LowestCostUp(information, AboveCameras(world_from_camera, orientation))};
 }
 
 UpPrior RobustUpPriorFromCameras(const std::vector<Rigid3d>& world_from_camera,
                                  const CameraTilt& tilt, double correlation_rad,
-                                 CameraHolding holding) {
-  const LevelDirections axes = AxesOfCameras(world_from_camera, tilt, correlation_rad, holding);
+                                 CameraOrientation orientation) {
+  const LevelDirections axes = AxesOfCameras(world_from_camera, tilt, correlation_rad, orientation);
   // Directions of a half of the sphere, about three degrees apart.
   constexpr int kDirections = 2400;
   constexpr double kGoldenAngle = 2.399963229728653;
@@ -179,7 +180,7 @@ UpPrior RobustUpPriorFromCameras(const std::vector<Rigid3d>& world_from_camera,
   }
   Eigen::Vector3d lowest =
       *std::ranges::min_element(half, {}, [&](const Eigen::Vector3d& up) { return axes.Cost(up); });
-  if (lowest.dot(AboveCameras(world_from_camera, holding)) < 0.0) lowest = -lowest;
+  if (lowest.dot(AboveCameras(world_from_camera, orientation)) < 0.0) lowest = -lowest;
   UpPrior prior = axes.Descend(Eigen::Matrix3d::Zero(), lowest);
   const std::vector<double> shares = CameraWeights(world_from_camera, correlation_rad);
   const double count = std::accumulate(shares.begin(), shares.end(), 0.0);

@@ -10,7 +10,7 @@
 #include "soslam/image/edge_maps.h"
 #include "soslam/initialisation/object_evidence.h"
 #include "soslam/model/sequence.h"
-#include "soslam/planes/camera_holding.h"
+#include "soslam/planes/camera_orientation.h"
 #include "soslam/planes/options.h"
 
 namespace soslam {
@@ -39,16 +39,17 @@ std::vector<double> CameraWeights(const std::vector<Rigid3d>& world_from_camera,
                                   double correlation_rad);
 
 // Prior on up from the way people and vehicles hold cameras. Level cameras have nearly level x
-// axes, and less exactly level optical axes; for other holdings see AxesOf. At least one pose.
+// axes, and less exactly level optical axes; for other orientations see AxesOf. At least one pose.
 // The sign of up is that of most cameras.
 UpPrior UpPriorFromCameras(const std::vector<Rigid3d>& world_from_camera, const CameraTilt& tilt,
-                           double correlation_rad, CameraHolding holding = CameraHolding::kLevel);
+                           double correlation_rad,
+                           CameraOrientation orientation = CameraOrientation::kLevel);
 
 // The same where some cameras may be turned in any way: their axes have a bounded loss
 // (Geman-McClure). Where most are held less evenly than the sigmas say, the information is smaller.
 UpPrior RobustUpPriorFromCameras(const std::vector<Rigid3d>& world_from_camera,
                                  const CameraTilt& tilt, double correlation_rad,
-                                 CameraHolding holding);
+                                 CameraOrientation orientation);
 
 // Straight edges in one image.
 struct SegmentView {

@@ -32,7 +32,7 @@
 #include "soslam/model/reasons.h"
 #include "soslam/planes/estimate_planes.h"
 #include "soslam/planes/options.h"
-#include "soslam/planes/planes_and_holding.h"
+#include "soslam/planes/planes_and_orientation.h"
 #include "soslam/planes/planes_estimate.h"
 #include "soslam/planes/scene_axis.h"
 #include "soslam/stage/read_evidence.h"
@@ -105,7 +105,7 @@ void RunAssociate(const AssociateOptions& settings, const StageFiles& files, int
   if (options.shared_points) info.inputs.push_back(files.at("matches"));
   if (files.contains("edits")) info.inputs.push_back(files.at("edits"));
   for (const auto& [segment, up] : association.up_of_segments) {
-    info.findings = CheckUp(up.holding, up.holdings, up.holding_tilt_variance);
+    info.findings = CheckUp(up.orientation, up.orientations, up.orientation_tilt_variance);
     if (!info.findings.empty()) break;  // the first segment whose up direction is ambiguous
   }
   if (!association.is_settled) {
@@ -215,14 +215,14 @@ Result FromBoxes(const Sequence& sequence, const PlanesOptions& options, const S
   const std::vector<SegmentView> views =
       ViewsOfSegments(sequence, options.verticals, files, threads, &result.inputs);
   const auto priors = ObjectPriors(sequence, table, RatioPrior::kTable);
-  PlanesAndHolding held;
+  PlanesAndOrientation held;
   if (sequence.ground) {  // up is known
     const UpPrior up_prior = {sequence.ground->up_information, sequence.ground->up_in_world};
     auto estimate = FindPlanes(sequence, priors, up_prior, options, threads);
     if (!estimate) ThrowNoPlane(sequence.name);
     held = {std::move(*estimate), sequence};
   } else {
-    held = EstimatePlanesAndHolding(sequence, views, priors, options, threads);
+    held = EstimatePlanesAndOrientation(sequence, views, priors, options, threads);
   }
   if (options.refine_poses) {
     RefineWithPoses(priors, options, threads, &held.estimate, &held.level);
@@ -287,8 +287,8 @@ void RunPlanes(const PlanesOptions& options, const StageFiles& files, int thread
   info.inputs.insert(info.inputs.end(), result.inputs.begin(), result.inputs.end());
   if (!has_planes && options.planes != PlaneSource::kCameraHeight) {
     info.findings = CheckPlaneCount(result.estimate.planes.size(), sequence.objects.size());
-    std::ranges::move(CheckUp(result.estimate.holding, result.estimate.holdings,
-                              result.estimate.holding_tilt_variance),
+    std::ranges::move(CheckUp(result.estimate.orientation, result.estimate.orientations,
+                              result.estimate.orientation_tilt_variance),
                       std::back_inserter(info.findings));
   }
   ReportFindings("planes", info.findings);
@@ -367,9 +367,10 @@ void RunGround(const GroundOptions& options, const StageFiles& files, int thread
       ReadSemanticTable(files.at("table")), options, threads);
   info.findings = CheckGround(estimate, options);
   if (!estimate.cameras_are_turned) {
-    std::ranges::move(CheckUp(estimate.up_of_cameras.holding, estimate.up_of_cameras.holdings,
-                              estimate.up_of_cameras.holding_tilt_variance),
-                      std::back_inserter(info.findings));
+    std::ranges::move(
+        CheckUp(estimate.up_of_cameras.orientation, estimate.up_of_cameras.orientations,
+                estimate.up_of_cameras.orientation_tilt_variance),
+        std::back_inserter(info.findings));
   }
   ReportFindings("ground", info.findings);
   WriteWorld(files.at("world"), ReportOf(estimate, sequence, info.findings), info);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "soslam/planes/camera_holding.h"
+#include "soslam/planes/camera_orientation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,13 +9,13 @@
 
 namespace soslam {
 
-HeldAxes AxesOf(CameraHolding holding) {
+OrientationAxes AxesOf(CameraOrientation orientation) {
   const Eigen::Vector3d x = Eigen::Vector3d::UnitX();
   const Eigen::Vector3d y = Eigen::Vector3d::UnitY();
   const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
-  const std::array<HeldAxes, 6> axes = {
-      {{x, -y}, {y, -x}, {x, y}, {y, x}, {x, -z}, {y, -z}}};  // in the order of CameraHolding
-  return axes.at(static_cast<size_t>(holding));
+  const std::array<OrientationAxes, 6> axes = {
+      {{x, -y}, {y, -x}, {x, y}, {y, x}, {x, -z}, {y, -z}}};  // in the order of CameraOrientation
+  return axes.at(static_cast<size_t>(orientation));
 }
 
 namespace {
@@ -34,12 +34,12 @@ bool IsSameUp(const Eigen::Vector3d& one, const Eigen::Vector3d& other) {
   return AngleBetween(one, other) < kSameUp;
 }
 
-HoldingChoice ChooseHolding(const std::vector<HoldingEvidence>& evidence, double expected_cost,
-                            double clear) {
+OrientationChoice ChooseOrientation(const std::vector<OrientationEvidence>& evidence,
+                                    double expected_cost, double clear) {
   // Per object, the lowest cost over all evidence; infinite for one that has no body in any.
   std::vector<double> lowest(evidence.front().object_costs.size(),
                              std::numeric_limits<double>::infinity());
-  for (const HoldingEvidence& one : evidence) {
+  for (const OrientationEvidence& one : evidence) {
     for (size_t i = 0; i < lowest.size(); ++i) {
       if (one.object_costs[i]) lowest[i] = std::min(lowest[i], *one.object_costs[i]);
     }
@@ -48,10 +48,10 @@ HoldingChoice ChooseHolding(const std::vector<HoldingEvidence>& evidence, double
   double sum_of_lowest = 0.0;
   for (const double cost : lowest) sum_of_lowest += std::isfinite(cost) ? cost : 0.0;
   const double misfit = expected_cost > 0.0 ? std::max(1.0, sum_of_lowest / expected_cost) : 1.0;
-  HoldingChoice choice;
-  for (const HoldingEvidence& one : evidence) {
+  OrientationChoice choice;
+  for (const OrientationEvidence& one : evidence) {
     double cost = one.other_cost / misfit + kFromBelow * one.share_from_below;
-    if (one.holding != CameraHolding::kLevel) cost += kNotLevelCost;
+    if (one.orientation != CameraOrientation::kLevel) cost += kNotLevelCost;
     if (one.ignores_verticals) cost += kWrongVerticals;
     for (size_t i = 0; i < lowest.size(); ++i) {
       if (!std::isfinite(lowest[i])) continue;
@@ -66,7 +66,7 @@ HoldingChoice ChooseHolding(const std::vector<HoldingEvidence>& evidence, double
     if (!evidence[choice.best].can_be_chosen || is_lower) choice.best = i;
   }
   const double best_cost = choice.costs[choice.best];
-  // It may be that of a holding that cannot be chosen.
+  // It may be that of an orientation that cannot be chosen.
   const double lowest_cost = std::ranges::min(choice.costs);
   double sum = 0.0;
   std::vector<double> weights;

@@ -8,7 +8,7 @@
 #include "soslam/geometry/rigid3.h"
 #include "soslam/model/sequence.h"
 #include "soslam/model/shape_prior.h"
-#include "soslam/planes/camera_holding.h"
+#include "soslam/planes/camera_orientation.h"
 #include "soslam/planes/options.h"
 #include "soslam/planes/planes_estimate.h"
 #include "soslam/planes/up_prior.h"
@@ -16,7 +16,7 @@
 namespace soslam {
 
 // Trajectory without drift about the horizontal axes.
-struct LevelTrajectory {
+struct TiltCorrectedTrajectory {
   std::vector<Rigid3d> world_from_camera;  // the first pose is unchanged
   UpPrior up_prior;                        // of the first camera's world
 };
@@ -26,11 +26,12 @@ struct LevelTrajectory {
 // with the frame before. Poses are rotated so that up is the same as in the first frame everywhere,
 // and the translations between frames, as measured in the camera, are concatenated again. At least
 // one view.
-LevelTrajectory Level(const std::vector<SegmentView>& views, CameraHolding holding,
-                      const PlanesOptions& options);
+TiltCorrectedTrajectory RemoveTiltDrift(const std::vector<SegmentView>& views,
+                                        CameraOrientation orientation,
+                                        const PlanesOptions& options);
 
-// Planes under the most probable camera holding.
-struct PlanesAndHolding {
+// Planes under the most probable camera orientation.
+struct PlanesAndOrientation {
   PlanesEstimate estimate;
   Sequence level;  // the sequence with poses that have the same up everywhere
 };
@@ -38,12 +39,12 @@ struct PlanesAndHolding {
 // Throws NothingUsableError: nothing tells where a plane is.
 [[noreturn]] void ThrowNoPlane(const std::string& sequence);
 
-// Finds the planes for each camera holding in kCameraHoldings; returns the most probable result.
-// `views`: per frame, with the segments among which vertical edges are searched; empty to not use
-// vertical edges.
-PlanesAndHolding EstimatePlanesAndHolding(const Sequence& sequence,
-                                          const std::vector<SegmentView>& views,
-                                          const std::vector<std::optional<ShapePrior>>& priors,
-                                          const PlanesOptions& options, int threads);
+// Finds the planes for each camera orientation in kCameraOrientations; returns the most probable
+// result. `views`: per frame, with the segments among which vertical edges are searched; empty to
+// not use vertical edges.
+PlanesAndOrientation EstimatePlanesAndOrientation(
+    const Sequence& sequence, const std::vector<SegmentView>& views,
+    const std::vector<std::optional<ShapePrior>>& priors, const PlanesOptions& options,
+    int threads);
 
 }  // namespace soslam

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "soslam/planes/planes_and_holding.h"
+#include "soslam/planes/planes_and_orientation.h"
 
 #include <fmt/format.h>
 
@@ -52,18 +52,20 @@ constexpr double kSameAxis = 1e-9;  // one minus a cosine
 const double kMaxHypothesisCost = std::log(1e4);
 
 struct Hypothesis {
-  HoldingEvidence evidence;
+  OrientationEvidence evidence;
   double expected_cost = 0.0;
-  LevelTrajectory trajectory;
-  std::optional<PlanesAndHolding> planes;
+  TiltCorrectedTrajectory trajectory;
+  std::optional<PlanesAndOrientation> planes;
 };
 
-LevelTrajectory LevelFrames(const Sequence& sequence, const std::vector<SegmentView>& views,
-                            const PlanesOptions& options, CameraHolding holding) {
-  if (!views.empty()) return Level(views, holding, options);
+TiltCorrectedTrajectory MakeTrajectory(const Sequence& sequence,
+                                       const std::vector<SegmentView>& views,
+                                       const PlanesOptions& options,
+                                       CameraOrientation orientation) {
+  if (!views.empty()) return RemoveTiltDrift(views, orientation, options);
   const std::vector<Rigid3d> poses = PosesOf(sequence);
   return {poses,
-          UpPriorFromCameras(poses, options.tilt, options.upright.ViewCorrelation(), holding)};
+          UpPriorFromCameras(poses, options.tilt, options.upright.ViewCorrelation(), orientation)};
 }
 
 Sequence WithPoses(Sequence sequence, const std::vector<Rigid3d>& world_from_camera) {
@@ -73,10 +75,10 @@ Sequence WithPoses(Sequence sequence, const std::vector<Rigid3d>& world_from_cam
   return sequence;
 }
 
-// Adds the hypothesis of one camera holding with the costs of upright bodies of free height, unless
-// an earlier hypothesis has the same up.
-void AddHypothesis(const Sequence& sequence, const LevelTrajectory& trajectory,
-                   const HoldingEvidence& holding,
+// Adds the hypothesis of one camera orientation with the costs of upright bodies of free height,
+// unless an earlier hypothesis has the same up.
+void AddHypothesis(const Sequence& sequence, const TiltCorrectedTrajectory& trajectory,
+                   const OrientationEvidence& orientation,
                    const std::vector<std::optional<ShapePrior>>& priors,
                    const PlanesOptions& options, int threads, std::vector<Hypothesis>* hypotheses) {
   const Eigen::Vector3d& up = trajectory.up_prior.up_in_world;
@@ -84,7 +86,7 @@ void AddHypothesis(const Sequence& sequence, const LevelTrajectory& trajectory,
     return IsSameUp(other.evidence.up_in_world, up);
   });
   if (is_known) return;
-  Hypothesis hypothesis{holding, 0.0, trajectory, std::nullopt};
+  Hypothesis hypothesis{orientation, 0.0, trajectory, std::nullopt};
   hypothesis.evidence.up_in_world = up;
   // Upright bodies have no up or down side: the costs of the opposite up direction are equal.
   const auto opposite = std::ranges::find_if(*hypotheses, [&](const Hypothesis& other) {
@@ -102,14 +104,14 @@ void AddHypothesis(const Sequence& sequence, const LevelTrajectory& trajectory,
   hypotheses->push_back(std::move(hypothesis));
 }
 
-HoldingChoice Choose(const std::vector<Hypothesis>& hypotheses) {
-  std::vector<HoldingEvidence> evidence;
+OrientationChoice Choose(const std::vector<Hypothesis>& hypotheses) {
+  std::vector<OrientationEvidence> evidence;
   for (const Hypothesis& hypothesis : hypotheses) evidence.push_back(hypothesis.evidence);
   double expected_cost = 0.0;
   for (const Hypothesis& hypothesis : hypotheses) {
     expected_cost = std::max(expected_cost, hypothesis.expected_cost);
   }
-  return ChooseHolding(evidence, expected_cost);
+  return ChooseOrientation(evidence, expected_cost);
 }
 
 // Estimates the planes of a hypothesis. If no object's views determine the height of its base, the
@@ -117,7 +119,7 @@ HoldingChoice Choose(const std::vector<Hypothesis>& hypotheses) {
 void FollowHypothesis(const Sequence& sequence,
                       const std::vector<std::optional<ShapePrior>>& priors,
                       const PlanesOptions& options, int threads, Hypothesis* hypothesis) {
-  PlanesAndHolding held;
+  PlanesAndOrientation held;
   held.level = WithPoses(sequence, hypothesis->trajectory.world_from_camera);
   auto estimate = FindPlanes(held.level, priors, hypothesis->trajectory.up_prior, options, threads);
   if (!estimate) {
@@ -126,7 +128,7 @@ void FollowHypothesis(const Sequence& sequence,
     return;
   }
   held.estimate = std::move(*estimate);
-  HoldingEvidence& evidence = hypothesis->evidence;
+  OrientationEvidence& evidence = hypothesis->evidence;
   evidence.up_in_world = held.estimate.planes.front().plane_in_world.normal;
   for (size_t i = 0; i < evidence.object_costs.size(); ++i) {
     // A body of free height may not be found again when it must stand on its plane.
@@ -151,15 +153,15 @@ void FollowHypothesis(const Sequence& sequence,
   hypothesis->planes = std::move(held);
 }
 
-// True if the same holding with its vertical edges leads to planes and fits bodies at no higher
+// True if the same orientation with its vertical edges leads to planes and fits bodies at no higher
 // cost.
-bool IsIgnoringVerticalsUseless(const std::vector<Hypothesis>& hypotheses, size_t doubting,
+bool IsNoBetterWithoutVerticals(const std::vector<Hypothesis>& hypotheses, size_t doubting,
                                 const std::vector<double>& costs_of_bodies) {
-  const HoldingEvidence& evidence = hypotheses[doubting].evidence;
+  const OrientationEvidence& evidence = hypotheses[doubting].evidence;
   if (!evidence.ignores_verticals) return false;
   for (size_t i = 0; i < doubting; ++i) {
-    const HoldingEvidence& other = hypotheses[i].evidence;
-    if (other.holding != evidence.holding || other.ignores_verticals) continue;
+    const OrientationEvidence& other = hypotheses[i].evidence;
+    if (other.orientation != evidence.orientation || other.ignores_verticals) continue;
     return hypotheses[i].planes && costs_of_bodies[i] <= costs_of_bodies[doubting];
   }
   return false;
@@ -174,14 +176,16 @@ void ThrowNoPlane(const std::string& sequence) {
       sequence));
 }
 
-LevelTrajectory Level(const std::vector<SegmentView>& views, CameraHolding holding,
-                      const PlanesOptions& options) {
+TiltCorrectedTrajectory RemoveTiltDrift(const std::vector<SegmentView>& views,
+                                        CameraOrientation orientation,
+                                        const PlanesOptions& options) {
   const double correlation = options.upright.ViewCorrelation();
   const double vertical_sigma = options.verticals.Sigma();
   const double odometry_sigma = options.odometry_rotation_sigma_deg * kRadPerDeg;
   const std::vector<Rigid3d> poses = PosesOf(views);
-  const UpPrior mean = WithVerticals(UpPriorFromCameras(poses, options.tilt, correlation, holding),
-                                     views, vertical_sigma, correlation, kMaxLevelTilt);
+  const UpPrior mean =
+      WithVerticals(UpPriorFromCameras(poses, options.tilt, correlation, orientation), views,
+                    vertical_sigma, correlation, kMaxLevelTilt);
   if (!(odometry_sigma > 0.0)) return {poses, mean};
 
   const std::vector<double> shares = CameraWeights(poses, correlation);
@@ -194,7 +198,7 @@ LevelTrajectory Level(const std::vector<SegmentView>& views, CameraHolding holdi
     std::vector<Eigen::Vector2d> right_side;
     for (size_t i = 0; i < views.size(); ++i) {
       const Eigen::Matrix3d all =
-          shares[i] * (UpPriorFromCameras({poses[i]}, options.tilt, 0.0, holding).information +
+          shares[i] * (UpPriorFromCameras({poses[i]}, options.tilt, 0.0, orientation).information +
                        InformationOfVerticals(views[i], vertical_sigma, ups[i]));
       information.push_back(level.transpose() * all * level);
       right_side.push_back(-level.transpose() * all * mean.up_in_world);
@@ -225,35 +229,35 @@ LevelTrajectory Level(const std::vector<SegmentView>& views, CameraHolding holdi
        ups.front()}};
 }
 
-PlanesAndHolding EstimatePlanesAndHolding(const Sequence& sequence,
-                                          const std::vector<SegmentView>& views,
-                                          const std::vector<std::optional<ShapePrior>>& priors,
-                                          const PlanesOptions& options, int threads) {
+PlanesAndOrientation EstimatePlanesAndOrientation(
+    const Sequence& sequence, const std::vector<SegmentView>& views,
+    const std::vector<std::optional<ShapePrior>>& priors, const PlanesOptions& options,
+    int threads) {
   std::vector<Hypothesis> hypotheses;
-  for (const CameraHolding holding : kCameraHoldings) {
-    HoldingEvidence evidence;
-    evidence.holding = holding;
-    AddHypothesis(sequence, LevelFrames(sequence, views, options, holding), evidence, priors,
+  for (const CameraOrientation orientation : kCameraOrientations) {
+    OrientationEvidence evidence;
+    evidence.orientation = orientation;
+    AddHypothesis(sequence, MakeTrajectory(sequence, views, options, orientation), evidence, priors,
                   options, threads, &hypotheses);
     if (views.empty()) continue;
     // Vertical edges are doubted because, when all cameras look the same way, the up direction
     // around which they are searched is uncertain.
     evidence.ignores_verticals = true;
-    AddHypothesis(sequence, LevelFrames(sequence, {}, options, holding), evidence, priors, options,
-                  threads, &hypotheses);
+    AddHypothesis(sequence, MakeTrajectory(sequence, {}, options, orientation), evidence, priors,
+                  options, threads, &hypotheses);
   }
-  const HoldingChoice by_bodies = Choose(hypotheses);
-  std::vector<TriedHolding> tried;  // also those dropped for the cost of their bodies
+  const OrientationChoice by_bodies = Choose(hypotheses);
+  std::vector<TriedOrientation> tried;  // also those dropped for the cost of their bodies
   std::vector<Hypothesis> followed;
   std::vector<size_t> place_in_tried;  // of each followed one
   for (size_t i = 0; i < hypotheses.size(); ++i) {
-    const HoldingEvidence& evidence = hypotheses[i].evidence;
-    tried.push_back({evidence.holding, !views.empty() && !evidence.ignores_verticals,
+    const OrientationEvidence& evidence = hypotheses[i].evidence;
+    tried.push_back({evidence.orientation, !views.empty() && !evidence.ignores_verticals,
                      by_bodies.costs[i], 0.0, std::nullopt});
     if (by_bodies.costs[i] > kMaxHypothesisCost) continue;
-    if (IsIgnoringVerticalsUseless(hypotheses, i, by_bodies.costs)) continue;
+    if (IsNoBetterWithoutVerticals(hypotheses, i, by_bodies.costs)) continue;
     FollowHypothesis(sequence, priors, options, threads, &hypotheses[i]);
-    // Different holdings may converge to one up.
+    // Different orientations may converge to one up.
     const bool is_known = std::ranges::any_of(followed, [&](const Hypothesis& other) {
       return other.planes && hypotheses[i].planes &&
              IsSameUp(other.evidence.up_in_world, hypotheses[i].evidence.up_in_world);
@@ -265,20 +269,20 @@ PlanesAndHolding EstimatePlanesAndHolding(const Sequence& sequence,
   const bool has_planes = std::ranges::any_of(
       followed, [](const Hypothesis& hypothesis) { return hypothesis.planes.has_value(); });
   if (!has_planes) ThrowNoPlane(sequence.name);
-  const HoldingChoice choice = Choose(followed);
+  const OrientationChoice choice = Choose(followed);
   for (size_t i = 0; i < followed.size(); ++i) {
-    TriedHolding& one = tried[place_in_tried[i]];
+    TriedOrientation& one = tried[place_in_tried[i]];
     one.cost = choice.costs[i];
     one.probability = choice.probabilities[i];
     if (const auto& held = followed[i].planes) {
       one.planes = static_cast<int>(held->estimate.planes.size());
     }
   }
-  PlanesAndHolding best = *followed[choice.best].planes;
-  best.estimate.holding = tried[place_in_tried[choice.best]].holding;
+  PlanesAndOrientation best = *followed[choice.best].planes;
+  best.estimate.orientation = tried[place_in_tried[choice.best]].orientation;
   best.estimate.verticals = tried[place_in_tried[choice.best]].verticals;
-  best.estimate.holding_tilt_variance = choice.tilt_variance;
-  best.estimate.holdings = std::move(tried);
+  best.estimate.orientation_tilt_variance = choice.tilt_variance;
+  best.estimate.orientations = std::move(tried);
   return best;
 }
 
