@@ -220,7 +220,7 @@ TEST(AssociateTest, TheOrderWithinAFrameDoesNotMatter) {
 
 TEST(AssociateTest, AMovedWorldChangesNoDecision) {
   const Sequence sequence = NoisySequence(3, {"thing"});
-  const Sequence moved = Moved(RandomRigid(), sequence);
+  const Sequence moved = TransformSequence(RandomRigid(), sequence);
   EXPECT_EQ(Partition(AssociateAll(sequence)), Partition(AssociateAll(moved)));
 }
 
@@ -288,7 +288,8 @@ TEST(AssociateWithoutPlanesTest, NoisyBoxesAreNearlyAllTheirObjects) {
   ExpectNearlyAllFound(2, 0.8, [](int seed) {
     const Sequence sequence = NoisySequence(seed, {"thing", "other"});
     // The axes of the world mean nothing.
-    return std::pair(sequence, Moved(RandomRigid(), WithoutPlanes(WithoutIds(sequence))));
+    return std::pair(sequence,
+                     TransformSequence(RandomRigid(), WithoutPlanes(WithoutIds(sequence))));
   });
 }
 

@@ -44,7 +44,7 @@ TEST(PointCostTest, GradientAgreesWithNumbers) {
   for (int i = 0; i < 20; ++i) {
     const Landmark body = BodyInCamera(RandomUniform(1.2, 2.0));
     const PointCost term(RandomPoints(body, 30), body, SizeForPoints(body), {}, 0.3);
-    ExpectCorrectGradient(term, Moved(body, 0.02 * LandmarkModel::Vector::Random()));
+    ExpectCorrectGradient(term, ApplyStep(body, 0.02 * LandmarkModel::Vector::Random()));
   }
 }
 
@@ -68,7 +68,7 @@ TEST(PointCostTest, CostsNothingWherePointsAreOnTheSurfaceAndElsewhereSomething)
   const PointCost term(PointsOnFaces(cuboid, 60), cuboid, SizeForPoints(cuboid), {}, 1.0);
   EXPECT_NEAR(term.Value(cuboid), 0.0, 1e-9);
   for (int i = 0; i < 50; ++i) {
-    const Landmark moved = Moved(cuboid, 0.05 * LandmarkModel::Vector::Random());
+    const Landmark moved = ApplyStep(cuboid, 0.05 * LandmarkModel::Vector::Random());
     EXPECT_GT(term.Value(moved), 0.01);
   }
 }

@@ -138,7 +138,7 @@ TEST(OutlineExcess, HasExactDerivatives) {
       OutlineExcess(edge, landmark, &jacobian);
       for (int k = 0; k < kLandmarkDof; ++k) {
         const auto at = [&](double step) {
-          return OutlineExcess(edge, Moved(landmark, step * LandmarkStep::Unit(k)), nullptr);
+          return OutlineExcess(edge, ApplyStep(landmark, step * LandmarkStep::Unit(k)), nullptr);
         };
         const double difference = (at(kStep) - at(-kStep)) / (2.0 * kStep);
         EXPECT_NEAR(jacobian[k], difference, 1e-4 * (1.0 + std::abs(difference))) << k;

@@ -30,7 +30,7 @@ class ObjectIdsTest : public testing::Test {
     testing::internal::CaptureStdout();
     findings_.clear();
     boxes_ =
-        WithoutIdsOfNoTrack(Boxes(frames), listed_, "a/detections.csv", &left_out_, &findings_);
+        SeparateUntrackedBoxes(Boxes(frames), listed_, "a/detections.csv", &left_out_, &findings_);
     printed_ = testing::internal::GetCapturedStdout();
     std::vector<int> ids;
     for (const LabelledBox& box : boxes_) {

@@ -10,8 +10,8 @@ namespace soslam {
 namespace {
 
 // Poses of a camera whose centres are these, and as another world and unit have them.
-std::vector<PosePair> Moved(const std::vector<Eigen::Vector3d>& centres,
-                            const Rigid3d& truth_from_scaled, double scale) {
+std::vector<PosePair> MovePath(const std::vector<Eigen::Vector3d>& centres,
+                               const Rigid3d& truth_from_scaled, double scale) {
   std::vector<PosePair> pairs;
   for (const Eigen::Vector3d& centre : centres) {
     const Rigid3d truth{RandomRotation(), centre};
@@ -39,10 +39,10 @@ void ExpectTrue(const Alignment& alignment, const std::vector<PosePair>& pairs) 
 
 TEST(AlignTest, UndoesAnyMotionAndScale) {
   for (int trial = 0; trial < 20; ++trial) {
-    const auto rigid = Moved(RandomCentres(6), RandomRigid(), 1.0);
+    const auto rigid = MovePath(RandomCentres(6), RandomRigid(), 1.0);
     ExpectTrue(Align(rigid, AlignmentKind::kRigid), rigid);
     const double scale = RandomUniform(0.1, 10.0);
-    const auto scaled = Moved(RandomCentres(6), RandomRigid(), scale);
+    const auto scaled = MovePath(RandomCentres(6), RandomRigid(), scale);
     const Alignment alignment = Align(scaled, AlignmentKind::kSimilarity);
     EXPECT_EQ(alignment.kind, AlignmentKind::kSimilarity);
     EXPECT_EQ(alignment.path, CameraPath::kGeneral);
@@ -61,7 +61,7 @@ TEST(AlignTest, CentresOnALineTakeTheRotationOfTheCameras) {
   for (const std::vector<double>& ways : {std::vector{0.0, 0.4}, std::vector{0.0, 0.4, 1.0, 1.7}}) {
     std::vector<Eigen::Vector3d> centres;
     for (const double way : ways) centres.emplace_back(way * direction);
-    const auto pairs = Moved(centres, RandomRigid(), 2.5);
+    const auto pairs = MovePath(centres, RandomRigid(), 2.5);
     const Alignment alignment = Align(pairs, AlignmentKind::kSimilarity);
     EXPECT_EQ(alignment.path, CameraPath::kLine);
     EXPECT_NEAR(alignment.scale, 2.5, 1e-9);
@@ -70,7 +70,7 @@ TEST(AlignTest, CentresOnALineTakeTheRotationOfTheCameras) {
 }
 
 TEST(AlignTest, ACameraThatStandsStillTellsNoScale) {
-  const auto pairs = Moved(std::vector<Eigen::Vector3d>(4, {1, 2, 3}), RandomRigid(), 1.0);
+  const auto pairs = MovePath(std::vector<Eigen::Vector3d>(4, {1, 2, 3}), RandomRigid(), 1.0);
   const Alignment alignment = Align(pairs, AlignmentKind::kSimilarity);
   EXPECT_EQ(alignment.kind, AlignmentKind::kRigid);
   EXPECT_EQ(alignment.path, CameraPath::kStill);
@@ -79,7 +79,7 @@ TEST(AlignTest, ACameraThatStandsStillTellsNoScale) {
 }
 
 TEST(AlignTest, AnEstimateThatStandsStillTellsNoScale) {
-  auto pairs = Moved(RandomCentres(9), RandomRigid(), 1.0);
+  auto pairs = MovePath(RandomCentres(9), RandomRigid(), 1.0);
   const Eigen::Vector3d place = pairs[0].estimated.translation;
   for (PosePair& pair : pairs) pair.estimated.translation = place + RandomVector(-1e-5, 1e-5);
   const Alignment alignment = Align(pairs, AlignmentKind::kSimilarity);
@@ -93,7 +93,7 @@ TEST(AlignTest, AShortPathTakesTheRotationOfTheCameras) {
   std::vector<Eigen::Vector3d> centres;
   for (int i = 0; i < 12; ++i) centres.emplace_back(0.01 * i, 0.004 * (i % 2), 0.0);
   const Rigid3d truth_from_scaled = RandomRigid();
-  auto pairs = Moved(centres, truth_from_scaled, 1.0);
+  auto pairs = MovePath(centres, truth_from_scaled, 1.0);
   for (PosePair& pair : pairs) pair.estimated.translation += RandomVector(-0.002, 0.002);
   const Alignment alignment = Align(pairs, AlignmentKind::kRigid);
   EXPECT_EQ(alignment.path, CameraPath::kLine);
@@ -103,7 +103,7 @@ TEST(AlignTest, AShortPathTakesTheRotationOfTheCameras) {
 TEST(AlignTest, FewPoses) {
   EXPECT_EQ(Align({}, AlignmentKind::kRigid).kind, AlignmentKind::kNone);
   EXPECT_FALSE(Align({}, AlignmentKind::kRigid).rmse_m);
-  const auto one = Moved(RandomCentres(1), RandomRigid(), 1.0);
+  const auto one = MovePath(RandomCentres(1), RandomRigid(), 1.0);
   const Alignment alignment = Align(one, AlignmentKind::kRigid);
   EXPECT_EQ(alignment.path, CameraPath::kFewPoses);
   ExpectTrue(alignment, one);
@@ -114,7 +114,7 @@ class AlignSegmentsTest : public testing::Test {
   // A sequence whose odometry is this motion of the truth away.
   static Sequence Make(const Rigid3d& truth_from_scaled, double scale) {
     Sequence sequence;
-    for (const auto& [estimated, truth] : Moved(RandomCentres(8), truth_from_scaled, scale)) {
+    for (const auto& [estimated, truth] : MovePath(RandomCentres(8), truth_from_scaled, scale)) {
       sequence.frames.push_back({0, 0.0, "", estimated, truth});
     }
     return sequence;

@@ -62,10 +62,10 @@ Landmark RandomStart(const ObjectEvidence& evidence) {
   std::optional<Landmark> solution;
   while (!solution) solution = SolveAtYaw(evidence, RandomYaw());
   const Landmark& at_yaw = *solution;
-  UprightVector parameters = UprightGround(evidence.plane).ParametersOf(at_yaw);
+  UprightVector parameters = UprightParametrisation(evidence.plane).ParametersOf(at_yaw);
   parameters.segment<2>(1) += 0.5 * at_yaw.half_axes.maxCoeff() * RandomVector(-1, 1).head<2>();
   parameters.segment<3>(3) += RandomVector(-0.3, 0.3);
-  return UprightGround(evidence.plane).LandmarkAt(parameters, at_yaw.shape_exponents);
+  return UprightParametrisation(evidence.plane).LandmarkAt(parameters, at_yaw.shape_exponents);
 }
 
 TEST(FitObject, NoneOfManyRandomStartsIsBetter) {

@@ -20,10 +20,10 @@ LandmarkCosts BoxAndRatio(const std::array<BoxEdge, 4>& edges, const ShapePrior&
 }
 
 Landmark DisturbedFootAndSize(const Landmark& landmark, const Plane& plane) {
-  UprightVector parameters = UprightGround(plane).ParametersOf(landmark);
+  UprightVector parameters = UprightParametrisation(plane).ParametersOf(landmark);
   parameters.segment<2>(1) += 0.2 * RandomVector(-1, 1).head<2>();
   parameters.segment<3>(3) += RandomVector(-0.2, 0.2);
-  return UprightGround(plane).LandmarkAt(parameters, landmark.shape_exponents);
+  return UprightParametrisation(plane).LandmarkAt(parameters, landmark.shape_exponents);
 }
 
 // The solver stops where a step would gain less than a millionth of a squared standard deviation.

@@ -53,7 +53,7 @@ std::vector<Rigid3d> RandomCameras(int count) {
 
 TEST(PictureCosts, AreLowestAtTheTrueYawInAnyWorld) {
   for (int i = 0; i < 20; ++i) {
-    Sequence sequence = Moved(
+    Sequence sequence = TransformSequence(
         RandomRigid(), ViewsOfBody(RoundBody(RandomUniform(-3, 3)), RandomCameras(1 + i % 4)));
     AddTruePictures(&sequence);
     const Plane& plane = sequence.planes[0].plane_in_world;

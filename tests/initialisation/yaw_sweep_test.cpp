@@ -100,7 +100,7 @@ TEST(InitialiseUpright, DoesNotDependOnWhereTheWorldIsNorOnItsQuarterTurns) {
   const LandmarkEstimates before = InitialiseUpright(sequence, priors, UprightOptions(), 2);
   const Rigid3d motion = {ExpRotation({0.0, 0.0, 0.5 * std::numbers::pi}), RandomVector(-5, 5)};
   const LandmarkEstimates after =
-      InitialiseUpright(Moved(motion, sequence), priors, UprightOptions(), 2);
+      InitialiseUpright(TransformSequence(motion, sequence), priors, UprightOptions(), 2);
   for (size_t i = 0; i < before.observations.size(); ++i) {
     const auto& expected = before.observations[i].hypotheses;
     const auto& found = after.observations[i].hypotheses;

@@ -270,7 +270,7 @@ TEST(TangencyBackEnd, AllSolvesTogetherKeepToTheLimitOfIterations) {
 // origin is.
 TEST(TangencyBackEnd, ViewsFromAboutOneSideShareTheirWeight) {
   constexpr double kCorrelationDeg = 20.0;
-  const Sequence sequence = Moved(RandomRigid(), CuboidSequence(2, 6));
+  const Sequence sequence = TransformSequence(RandomRigid(), CuboidSequence(2, 6));
   const auto line_of_sight = [&](const Detection& detection) {
     const Eigen::Vector3d line =
         sequence.ObjectOf(detection).ground_truth->landmark_in_world.Centre() -

@@ -154,7 +154,7 @@ TEST(EstimatePlanes, MovesWithTheWorld) {
   const Sequence sequence = SyntheticSequence(scene, true);
   const PlanesEstimate here = Estimate(sequence);
   const Rigid3d motion = RandomRigid();
-  const PlanesEstimate there = Estimate(Moved(motion, sequence));
+  const PlanesEstimate there = Estimate(TransformSequence(motion, sequence));
   ASSERT_EQ(here.planes.size(), 1u);
   ASSERT_EQ(there.planes.size(), 1u);
   const Plane expected = Transform(motion, here.planes[0].plane_in_world);

@@ -218,7 +218,7 @@ TEST(ApplyMotion, KeepsBodiesOnTheirPlanes) {
     const Plane plane = RandomPlane();
     UprightVector parameters;
     parameters << RandomUniform(-3, 3), RandomVector(-2, 2).head<2>(), RandomVector(-1, 1), 0.0;
-    const Landmark landmark = UprightGround(plane).LandmarkAt(parameters, kCuboidExponent);
+    const Landmark landmark = UprightParametrisation(plane).LandmarkAt(parameters, kCuboidExponent);
     const Eigen::Vector3d pivot = RandomVector(-3, 3);
     const PlaneMotion motion = RandomVector(-0.5, 0.5);
     const Plane moved = ApplyMotion(plane, pivot, motion);

@@ -67,7 +67,7 @@ inline void ExpectThatTheMapMovesWithTheWorld(const BackEndInput& input,
                                               double final_cost_share, double min_iou) {
   const MapEstimate before = OptimiseMap(input, options);
   const Rigid3d motion = RandomRigid();
-  const Sequence moved = Moved(motion, input.sequence);
+  const Sequence moved = TransformSequence(motion, input.sequence);
   BackEndInput moved_input{moved, input.initial_landmarks, input.priors, input.images};
   for (auto& start : moved_input.initial_landmarks) *start = Transform(motion, *start);
   const MapEstimate after = OptimiseMap(moved_input, options);

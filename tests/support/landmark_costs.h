@@ -15,7 +15,7 @@ void ExpectDerivative(const LandmarkJacobian1& derivative, const Landmark& landm
   constexpr double kStep = 1e-4;
   for (int i = 0; i < kLandmarkDof; ++i) {
     const auto moved = [&](double step) -> double {
-      return function(Moved(landmark, step * LandmarkStep::Unit(i)));
+      return function(ApplyStep(landmark, step * LandmarkStep::Unit(i)));
     };
     EXPECT_NEAR(derivative[i], DerivativeAtZero(moved, kStep), 1e-7 * (1.0 + derivative.norm()))
         << "parameter " << i;

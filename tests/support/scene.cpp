@@ -104,7 +104,7 @@ Sequence OnPlanesToEstimate(Sequence sequence) {
   return sequence;
 }
 
-Sequence Moved(const Rigid3d& new_from_old, Sequence sequence) {
+Sequence TransformSequence(const Rigid3d& new_from_old, Sequence sequence) {
   for (Frame& frame : sequence.frames) {
     frame.world_from_camera = new_from_old * frame.world_from_camera;
     if (frame.true_world_from_camera) {

@@ -47,7 +47,7 @@ Scene WithCeiling(Scene scene, double height);
 Sequence OnPlanesToEstimate(Sequence sequence);
 
 // The sequence in another world.
-Sequence Moved(const Rigid3d& new_from_old, Sequence sequence);
+Sequence TransformSequence(const Rigid3d& new_from_old, Sequence sequence);
 
 // Posts and mats, each label twice, whose boxes are no objects' yet.
 Sequence PostsAndMats();

@@ -305,7 +305,7 @@ void ComparePairs(int block, Clustering* all) {
 
 // Joins clusters in one block that each gain most by each other, until nothing is gained. Pairs are
 // tried that are among the `partners_each` most promising ones for one of the two.
-void Join(int block, size_t partners_each, Clustering* all) {
+void MergeClusters(int block, size_t partners_each, Clustering* all) {
   while (true) {
     ComparePairs(block, all);
     std::map<int, std::vector<std::pair<double, int>>> partners;
@@ -525,7 +525,8 @@ Clusters ClusterDetections(const AssociationModel& model, const PairEvidence& pa
     for (auto& [id, group] : all.groups) group.tried_until = 0;
     result.is_settled = false;
     for (int round = 0; round < kMaxRounds && !result.is_settled; ++round) {
-      for (const size_t partners : {size_t{1}, kMostPromising}) Join(block, partners, &all);
+      for (const size_t partners : {size_t{1}, kMostPromising})
+        MergeClusters(block, partners, &all);
       result.is_settled = !Divide(block, &all);
     }
     if (block >= frames) break;

@@ -36,7 +36,7 @@ Information WeakInformation(Eigen::Index parameters) {
 // and its other parameters adapt so that it still fits the boxes.
 FittedObject FittedAt(const ObjectEvidence& evidence, const Landmark& landmark,
                       const Eigen::Matrix3d& up_covariance) {
-  const ParameterJacobian d_parameters = UprightGround(evidence.plane)
+  const ParameterJacobian d_parameters = UprightParametrisation(evidence.plane)
                                              .ParameterJacobian(landmark)
                                              .leftCols(evidence.height_is_free ? 7 : 6);
   const LandmarkModel model = ModelOf(CostsAt(evidence, landmark), landmark);
@@ -151,8 +151,8 @@ double OverlapByBoxes(const Sequence& sequence, const std::vector<int>& detectio
       if (edge.is_one_sided) edge.sigma_px = std::numeric_limits<double>::infinity();
     }
   }
-  const UprightGround ground(evidence.plane);
-  const ParameterJacobian d_parameters = ground.ParameterJacobian(landmark).leftCols<6>();
+  const UprightParametrisation upright(evidence.plane);
+  const ParameterJacobian d_parameters = upright.ParameterJacobian(landmark).leftCols<6>();
   const Information information =
       WeakInformation(6) + d_parameters.transpose() *
                                ModelOf(CostsAt(evidence, landmark), landmark).information *
@@ -164,10 +164,10 @@ double OverlapByBoxes(const Sequence& sequence, const std::vector<int>& detectio
   for (int i = 0; i < kSamples; ++i) {
     Eigen::Matrix<double, 6, 1> draw;
     for (double& value : draw) value = normal(random);
-    UprightVector parameters = ground.ParametersOf(landmark);
+    UprightVector parameters = upright.ParametersOf(landmark);
     parameters.head<6>() += root.matrixU().solve(draw);
     sum += BoxIou(landmark,
-                  ground.LandmarkAt(parameters, landmark.shape_exponents, landmark.rests_on));
+                  upright.LandmarkAt(parameters, landmark.shape_exponents, landmark.rests_on));
   }
   return sum / kSamples;
 }

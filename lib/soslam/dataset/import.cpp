@@ -41,9 +41,9 @@ DatasetContent ReadContent(const std::filesystem::path& folder, const ImportOpti
 using FrameSlot = std::variant<int, RejectReason>;
 
 // Creates the detections of a sequence whose frames, planes and objects are known.
-class Importer {
+class DetectionImporter {
  public:
-  Importer(const DatasetContent& content, const ImportOptions& options, Sequence* sequence)
+  DetectionImporter(const DatasetContent& content, const ImportOptions& options, Sequence* sequence)
       : content_(content),
         options_(options),
         sequence_(sequence),
@@ -233,7 +233,7 @@ Sequence ImportDataset(const std::filesystem::path& folder, const ImportOptions&
   sequence.odometry_world = options.folder.odometry_has_own_scale ? OdometryWorld::kOwnWithScale
                             : options.folder.align_odometry       ? OdometryWorld::kOwn
                                                                   : OdometryWorld::kOfTruth;
-  Importer(content, options, &sequence).Import();
+  DetectionImporter(content, options, &sequence).Import();
   sequence.findings = CheckDataset({folder, options, content, sequence});
   std::vector<std::string> errors;
   for (const Finding& finding : sequence.findings) {

@@ -13,11 +13,11 @@
 #include "soslam/dataset/soslam_folder.h"
 
 namespace soslam {
-std::vector<LabelledBox> WithoutIdsOfNoTrack(std::vector<LabelledBox> boxes,
-                                             const std::vector<ListedObject>& objects,
-                                             const std::filesystem::path& file,
-                                             std::vector<LabelledBox>* left_out,
-                                             std::vector<Finding>* findings) {
+std::vector<LabelledBox> SeparateUntrackedBoxes(std::vector<LabelledBox> boxes,
+                                                const std::vector<ListedObject>& objects,
+                                                const std::filesystem::path& file,
+                                                std::vector<LabelledBox>* left_out,
+                                                std::vector<Finding>* findings) {
   if (!HaveObjectIds(boxes)) return boxes;
   std::set<int> listed;
   for (const ListedObject& object : objects) listed.insert(object.id);

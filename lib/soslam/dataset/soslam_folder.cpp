@@ -78,7 +78,7 @@ const Finding kRelabelled = {
 
 // Rejects boxes without a track. All are counted; rows are kept for boxes of listed images that
 // have an undistorted counterpart.
-void RejectBoxesOfNoTrack(const std::vector<LabelledBox>& boxes,
+void RejectUntrackedBoxes(const std::vector<LabelledBox>& boxes,
                           const std::vector<ListedImage>& images, const LensCamera& camera,
                           Rejections* rejected) {
   if (boxes.empty()) return;
@@ -93,8 +93,8 @@ void RejectBoxesOfNoTrack(const std::vector<LabelledBox>& boxes,
 
 // Reports that `count` boxes were changed on reading: on stdout, and as a finding when more than a
 // third.
-void ReportMended(const DatasetFiles& files, int count, size_t boxes, Finding finding,
-                  std::vector<Finding>* findings) {
+void ReportCorrections(const DatasetFiles& files, int count, size_t boxes, Finding finding,
+                       std::vector<Finding>* findings) {
   constexpr size_t kFewest = 10;
   if (count == 0) return;
   finding.found = fmt::format("{}: {} of {} boxes {}", files.detections.filename().string(), count,
@@ -123,9 +123,10 @@ DatasetContent ReadSoslamFolder(const std::filesystem::path& folder, const Impor
   FolderBoxes read = ReadFolderBoxes(folder, options, camera.camera, &files);
   std::ranges::move(read.findings, std::back_inserter(content.findings));
   content.rejected.counts = std::move(read.left_out);
-  ReportMended(files, read.corrected["cut_to_image"], read.boxes.size(), kCut, &content.findings);
+  ReportCorrections(files, read.corrected["cut_to_image"], read.boxes.size(), kCut,
+                    &content.findings);
   std::vector<LabelledBox> of_no_track;
-  const std::vector<LabelledBox> boxes = WithoutIdsOfNoTrack(
+  const std::vector<LabelledBox> boxes = SeparateUntrackedBoxes(
       std::move(read.boxes), listed, files.detections, &of_no_track, &content.findings);
   const auto images = ListImages(folder, files, options, boxes);
   content.class_names = std::move(read.class_names);
@@ -140,14 +141,14 @@ DatasetContent ReadSoslamFolder(const std::filesystem::path& folder, const Impor
   content.rows = RowsOfBoxes(boxes, files, images, first_free_id, &content.rejected.counts);
   content.has_object_ids = HaveObjectIds(boxes);
   if (content.has_object_ids) {
-    ReportMended(files, UnifyLabels(listed, &content.rows), boxes.size(), kRelabelled,
-                 &content.findings);
+    ReportCorrections(files, UnifyLabels(listed, &content.rows), boxes.size(), kRelabelled,
+                      &content.findings);
   }
   if (camera.distortion) {
     content.rows = Undistorted(std::move(content.rows), camera.camera, *camera.distortion,
                                &content.rejected.counts);
   }
-  RejectBoxesOfNoTrack(of_no_track, images, camera, &content.rejected);
+  RejectUntrackedBoxes(of_no_track, images, camera, &content.rejected);
   for (const auto& [id, label, plane_id, truth] : listed) {
     if (truth) content.sequence.true_objects.push_back({id, label, *truth});
   }

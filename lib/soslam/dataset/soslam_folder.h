@@ -75,11 +75,11 @@ std::vector<DetectionRow> Undistorted(std::vector<DetectionRow> rows, const Came
 // Returns the boxes with ids. Boxes without a track become `left_out`; their number is printed to
 // stdout with the name of the `file`. When no box has an id, all are returned without ids, which is
 // a finding.
-std::vector<LabelledBox> WithoutIdsOfNoTrack(std::vector<LabelledBox> boxes,
-                                             const std::vector<ListedObject>& objects,
-                                             const std::filesystem::path& file,
-                                             std::vector<LabelledBox>* left_out,
-                                             std::vector<Finding>* findings);
+std::vector<LabelledBox> SeparateUntrackedBoxes(std::vector<LabelledBox> boxes,
+                                                const std::vector<ListedObject>& objects,
+                                                const std::filesystem::path& file,
+                                                std::vector<LabelledBox>* left_out,
+                                                std::vector<Finding>* findings);
 
 // True if any box has an object id.
 bool HaveObjectIds(const std::vector<LabelledBox>& boxes);

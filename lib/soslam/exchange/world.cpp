@@ -156,7 +156,7 @@ namespace {
 using nlohmann::json;
 
 // Covariance of rotation, centre and log half axes in the moved world.
-Covariance9 Moved(const Covariance9& covariance, const Alignment& alignment) {
+Covariance9 TransformCovariance(const Covariance9& covariance, const Alignment& alignment) {
   const Eigen::Matrix3d rotation = alignment.truth_from_scaled.rotation.toRotationMatrix();
   Covariance9 jacobian = Covariance9::Identity();
   jacobian.block<3, 3>(0, 0) = rotation;
@@ -202,7 +202,8 @@ void AlignWorlds(const json& quality, std::vector<World>* worlds) {
       if (estimate.landmark_in_world) {
         estimate.landmark_in_world = alignment.Apply(*estimate.landmark_in_world);
       }
-      if (estimate.covariance) estimate.covariance = Moved(*estimate.covariance, alignment);
+      if (estimate.covariance)
+        estimate.covariance = TransformCovariance(*estimate.covariance, alignment);
     }
   }
 }

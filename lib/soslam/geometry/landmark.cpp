@@ -206,7 +206,7 @@ double YawDifferenceModuloPi(double yaw, double other) {
   return (difference < 0.0 ? difference + kPi : difference) - 0.5 * kPi;
 }
 
-Landmark Moved(const Landmark& landmark, const LandmarkStep& step) {
+Landmark ApplyStep(const Landmark& landmark, const LandmarkStep& step) {
   Landmark moved = landmark;
   moved.frame_from_object.rotation =
       (ExpRotation(step.head<3>()) * landmark.frame_from_object.rotation).normalized();

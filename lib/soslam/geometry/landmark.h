@@ -164,6 +164,6 @@ using LandmarkStep = Eigen::Matrix<double, kLandmarkDof, 1>;
 using LandmarkJacobian1 = Eigen::Matrix<double, 1, kLandmarkDof>;
 
 // The landmark to which a step leads.
-Landmark Moved(const Landmark& landmark, const LandmarkStep& step);
+Landmark ApplyStep(const Landmark& landmark, const LandmarkStep& step);
 
 }  // namespace soslam

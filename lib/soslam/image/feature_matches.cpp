@@ -42,7 +42,7 @@ Lines EpipolarLines(const Eigen::Matrix3d& fundamental, const Eigen::Matrix2Xd& 
 }
 
 // Pixels moved by the homography of a rotation; infinite where that is behind the camera.
-Coordinates Moved(const Eigen::Matrix3d& homography, const Eigen::Matrix2Xd& pixels) {
+Coordinates ApplyHomography(const Eigen::Matrix3d& homography, const Eigen::Matrix2Xd& pixels) {
   Coordinates moved = Coordinates::Constant(pixels.cols(), 2, kInfinity);
   for (Eigen::Index i = 0; i < pixels.cols(); ++i) {
     const Eigen::Vector3d target = homography * pixels.col(i).homogeneous();
@@ -64,9 +64,9 @@ class TwoViewGeometry {
     const Eigen::Matrix3d homography = second.camera.Intrinsics() * rotation * first_ray_from_pixel;
     translation_ = second_from_first.translation;
     only_turns_ = translation_.norm() <= BoundRounding(first.world_from_camera.translation);
-    at_infinity_ = Moved(homography, first.features.pixels);
+    at_infinity_ = ApplyHomography(homography, first.features.pixels);
     if (only_turns_) {
-      back_at_infinity_ = Moved(homography.inverse(), second.features.pixels);
+      back_at_infinity_ = ApplyHomography(homography.inverse(), second.features.pixels);
       return;
     }
     const Eigen::Matrix3d fundamental =

@@ -54,12 +54,12 @@ struct BodyAtYaw::LinearSystem {
 };
 
 BodyAtYaw::BodyAtYaw(const ObjectEvidence& evidence)
-    : evidence_(evidence), ground_(evidence.plane), loss_(evidence.huber_delta) {
+    : evidence_(evidence), upright_(evidence.plane), loss_(evidence.huber_delta) {
   if (evidence.HasRatio()) ratio_.emplace(*evidence.prior);
   // Initial guess at the point nearest to all rays, as high as the boxes.
   const Eigen::Vector3d point = NearestToAllRays(evidence);
-  const Eigen::Vector3d from_origin = point - ground_.origin;
-  start_.foot = {from_origin.dot(ground_.x), from_origin.dot(ground_.y)};
+  const Eigen::Vector3d from_origin = point - upright_.origin;
+  start_.foot = {from_origin.dot(upright_.x), from_origin.dot(upright_.y)};
   start_.half_axes.setOnes();
   if (evidence.prior) start_.half_axes.head<2>() = evidence.prior->ratio;
   double sum = 0.0;
@@ -69,7 +69,7 @@ BodyAtYaw::BodyAtYaw(const ObjectEvidence& evidence)
   }
   start_.half_axes *= sum / static_cast<double>(evidence.views.size());
   if (evidence.height_is_free) {
-    start_.height_m = from_origin.dot(ground_.normal) - start_.half_axes.z();
+    start_.height_m = from_origin.dot(upright_.normal) - start_.half_axes.z();
   }
 }
 
@@ -97,7 +97,7 @@ std::optional<Landmark> BodyAtYaw::Solve(double yaw) const {
 Landmark BodyAtYaw::LandmarkOf(const Body& body) const {
   UprightVector parameters;
   parameters << body.yaw, body.foot, body.half_axes.array().log().matrix(), body.height_m;
-  return ground_.LandmarkAt(parameters, evidence_.Exponents(), evidence_.RestsOn());
+  return upright_.LandmarkAt(parameters, evidence_.Exponents(), evidence_.RestsOn());
 }
 
 bool BodyAtYaw::Step(int round, Body* body) const {
@@ -164,9 +164,9 @@ void BodyAtYaw::AddView(const BoxView& view, const Landmark& landmark_in_referen
     if (!residual) continue;
     const double robust = is_first ? 1.0 : EvaluateLoss(loss_, *residual).weight;
     const Eigen::Vector3d d_centre = reference_from_camera * d_landmark.segment<3>(3).transpose();
-    const double d_height = d_centre.dot(ground_.normal);
+    const double d_height = d_centre.dot(upright_.normal);
     LinearSystem::Row row;
-    row.head<2>() << d_centre.dot(ground_.x), d_centre.dot(ground_.y);
+    row.head<2>() << d_centre.dot(upright_.x), d_centre.dot(upright_.y);
     row.segment<3>(2) = d_landmark.tail<3>().transpose().cwiseQuotient(body.half_axes);
     row(4) += d_height;
     row(5) = evidence_.height_is_free ? d_height : 0.0;

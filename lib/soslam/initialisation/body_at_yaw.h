@@ -44,7 +44,7 @@ class BodyAtYaw {
                LinearSystem* system) const;
 
   const ObjectEvidence& evidence_;
-  UprightGround ground_;
+  UprightParametrisation upright_;
   std::optional<RatioRows> ratio_;
   ceres::HuberLoss loss_;
   Body start_;

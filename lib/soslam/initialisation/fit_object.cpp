@@ -234,7 +234,7 @@ std::vector<ObjectFit> FitObject(const ObjectEvidence& evidence, double yaw_step
     on_faces.push_back(
         FitObject(on_face, profile.Minima(max_hypotheses), {max_hypotheses, profile.Step()}));
   }
-  return Joined(std::move(on_faces), max_hypotheses);
+  return MergeFits(std::move(on_faces), max_hypotheses);
 }
 
 std::vector<ObjectEvidence> OnEachFace(const ObjectEvidence& evidence) {
@@ -246,7 +246,8 @@ std::vector<ObjectEvidence> OnEachFace(const ObjectEvidence& evidence) {
   return on_faces;
 }
 
-std::vector<ObjectFit> Joined(std::vector<std::vector<ObjectFit>> on_faces, size_t max_hypotheses) {
+std::vector<ObjectFit> MergeFits(std::vector<std::vector<ObjectFit>> on_faces,
+                                 size_t max_hypotheses) {
   std::vector<ObjectFit> joined;
   for (std::vector<ObjectFit>& fits : on_faces) std::ranges::move(fits, std::back_inserter(joined));
   SortByRank(&joined, max_hypotheses);

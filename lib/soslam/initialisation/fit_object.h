@@ -73,6 +73,7 @@ std::vector<ObjectFit> FitObject(const ObjectEvidence& evidence, double yaw_step
 std::vector<ObjectEvidence> OnEachFace(const ObjectEvidence& evidence);
 
 // Joins the hypotheses of several faces as FitObject orders them.
-std::vector<ObjectFit> Joined(std::vector<std::vector<ObjectFit>> on_faces, size_t max_hypotheses);
+std::vector<ObjectFit> MergeFits(std::vector<std::vector<ObjectFit>> on_faces,
+                                 size_t max_hypotheses);
 
 }  // namespace soslam

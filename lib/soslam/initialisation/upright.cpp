@@ -16,16 +16,16 @@ constexpr int kMaxIterations = 100;
 
 }  // namespace
 
-UprightGround::UprightGround(const Plane& plane)
+UprightParametrisation::UprightParametrisation(const Plane& plane)
     : rotation(UprightRotation(plane.normal, 0.0)),
       x(rotation * Eigen::Vector3d::UnitX()),
       y(plane.normal.cross(x)),
       normal(plane.normal),
       origin(-plane.offset * plane.normal) {}
 
-Landmark UprightGround::LandmarkAt(const UprightVector& parameters,
-                                   const ShapeExponents& shape_exponents,
-                                   RestingFace rests_on) const {
+Landmark UprightParametrisation::LandmarkAt(const UprightVector& parameters,
+                                            const ShapeExponents& shape_exponents,
+                                            RestingFace rests_on) const {
   Landmark landmark;
   landmark.half_axes = parameters.segment<3>(3).array().exp();
   landmark.shape_exponents = shape_exponents;
@@ -38,7 +38,7 @@ Landmark UprightGround::LandmarkAt(const UprightVector& parameters,
   return landmark;
 }
 
-UprightVector UprightGround::ParametersOf(const Landmark& landmark) const {
+UprightVector UprightParametrisation::ParametersOf(const Landmark& landmark) const {
   const Eigen::Vector3d from_origin = landmark.Centre() - origin;
   UprightVector parameters;
   parameters << Yaw(normal, landmark.frame_from_object.rotation), from_origin.dot(x),
@@ -47,7 +47,7 @@ UprightVector UprightGround::ParametersOf(const Landmark& landmark) const {
   return parameters;
 }
 
-UprightJacobian UprightGround::ParameterJacobian(const Landmark& landmark) const {
+UprightJacobian UprightParametrisation::ParameterJacobian(const Landmark& landmark) const {
   UprightJacobian jacobian = UprightJacobian::Zero();
   jacobian.block<3, 1>(0, 0) = normal;
   jacobian.block<3, 1>(3, 1) = x;
@@ -61,18 +61,18 @@ UprightJacobian UprightGround::ParameterJacobian(const Landmark& landmark) const
 std::optional<UprightSolution> FitUpright(const Plane& plane, const Landmark& start,
                                           const LandmarkCosts& costs, const UprightFreedom& is_free,
                                           double negligible_decrease) {
-  const UprightGround ground(plane);
+  const UprightParametrisation upright(plane);
   const auto landmark_at = [&](const UprightVector& at) {
-    return ground.LandmarkAt(at, start.shape_exponents, start.rests_on);
+    return upright.LandmarkAt(at, start.shape_exponents, start.rests_on);
   };
   const auto evaluate = [&](const UprightVector& at) {
     const Landmark landmark = landmark_at(at);
-    QuadraticModel<7> sum = ModelOf(costs, landmark).Chained(ground.ParameterJacobian(landmark));
+    QuadraticModel<7> sum = ModelOf(costs, landmark).Chained(upright.ParameterJacobian(landmark));
     if (!is_free.yaw) sum.Hold(0);
     if (!is_free.height) sum.Hold(6);
     return sum;
   };
-  UprightVector parameters = ground.ParametersOf(start);
+  UprightVector parameters = upright.ParametersOf(start);
   if (!is_free.height) parameters[6] = 0.0;
   const double negligible = std::max(negligible_decrease, NegligibleDecrease(costs));
   const double cost = MinimiseSquares(evaluate, {kMaxIterations, negligible}, &parameters).cost;
@@ -84,7 +84,7 @@ std::optional<UprightSolution> FitLeaning(const Plane& plane, const Landmark& up
                                           const LandmarkCosts& costs) {
   const auto linearise = [&](const Landmark& at) { return ModelOf(costs, at); };
   const auto plus = [](const Landmark& at, const LandmarkStep& step) {
-    return std::optional(Moved(at, step));
+    return std::optional(ApplyStep(at, step));
   };
   const double tilt = StandingSigmas().angle_rad;
   const Eigen::Vector3d x = tilt * (upright.frame_from_object.rotation * Eigen::Vector3d::UnitX());

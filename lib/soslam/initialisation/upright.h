@@ -16,10 +16,9 @@ namespace soslam {
 using UprightVector = Eigen::Matrix<double, 7, 1>;
 using UprightJacobian = Eigen::Matrix<double, kLandmarkDof, 7>;  // d landmark / d UprightVector
 
-// Ground frame of the upright objects on a support plane: frame_from_ground, with the frame of the
-// plane.
-struct UprightGround {
-  explicit UprightGround(const Plane& plane);
+// Parametrisation of the upright objects on a support plane, in the frame of the plane.
+struct UprightParametrisation {
+  explicit UprightParametrisation(const Plane& plane);
 
   Landmark LandmarkAt(const UprightVector& parameters, const ShapeExponents& shape_exponents,
                       RestingFace rests_on = RestingFace::kBottom) const;

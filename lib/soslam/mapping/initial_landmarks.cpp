@@ -127,7 +127,7 @@ std::optional<Landmark> ChooseLandmark(const BackEndInput& input, size_t object_
     std::swap(renamed.half_axes.x(), renamed.half_axes.y());
     fits.push_back(FitObject(on_face, {turned, renamed}, {}));
   }
-  const auto best = Joined(std::move(fits), 1);
+  const auto best = MergeFits(std::move(fits), 1);
   return best.empty() ? std::nullopt : std::optional(best.front().landmark);
 }
 

@@ -113,7 +113,7 @@ PlaneEvidence EvidenceOf(const StandingBody& body, const Eigen::Vector3d& pivot)
   d_motion.block<3, 2>(3, 0) = -Skew(body.landmark.Centre() - pivot) * level.leftCols<2>();
   d_motion.block<3, 1>(3, 2) = plane.normal;
   const Eigen::Matrix<double, kLandmarkDof, 6> d_upright =  // at a fixed height
-      UprightGround(plane).ParameterJacobian(body.landmark).leftCols<6>();
+      UprightParametrisation(plane).ParameterJacobian(body.landmark).leftCols<6>();
   const LandmarkCosts outlines = OutlineCosts(body.evidence);
   const LandmarkModel model = ModelOf(outlines, body.landmark);
   QuadraticModel<6> of_body = model.Chained(d_upright);

@@ -75,9 +75,9 @@ std::string AndMore(size_t more) {
 }
 
 // The map of a variant with the pictures of its objects.
-class MapOfVariant {
+class MapSectionBuilder {
  public:
-  MapOfVariant(const fs::path& folder, const Sequence& sequence, const ImageSource& images)
+  MapSectionBuilder(const fs::path& folder, const Sequence& sequence, const ImageSource& images)
       : folder_(folder), sequence_(sequence), images_(images) {
     map_ = ReadMap(folder / "map.json", sequence);
     std::optional<Artefact<WorldReport>> world;
@@ -96,7 +96,7 @@ class MapOfVariant {
   std::string Html(const std::string& title, size_t max_bytes, int threads) {
     std::vector<Entry> placed = PlacedEntries();
     NotPlacedEntries not_placed;
-    for (const NotPlaced& thing : ThingsNotPlaced(folder_, map_, sequence_)) {
+    for (const NotPlaced& thing : CollectUnplaced(folder_, map_, sequence_)) {
       if (thing.boxes.size() < 2) {
         ++not_placed.single;
       } else if (not_placed.entries.size() == kMaxNotPlaced) {
@@ -290,7 +290,7 @@ class MapOfVariant {
 
 std::string MapSection(const std::string& title, const fs::path& folder, const Sequence& sequence,
                        const ImageSource& images, size_t max_bytes, int threads) {
-  return MapOfVariant(folder, sequence, images).Html(title, max_bytes, threads);
+  return MapSectionBuilder(folder, sequence, images).Html(title, max_bytes, threads);
 }
 
 }  // namespace soslam

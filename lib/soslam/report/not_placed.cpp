@@ -101,7 +101,7 @@ std::map<int, std::string> InitialFailures(const fs::path& folder, const Sequenc
 
 }  // namespace
 
-std::vector<NotPlaced> ThingsNotPlaced(const fs::path& folder, const MapEstimate& map,
+std::vector<NotPlaced> CollectUnplaced(const fs::path& folder, const MapEstimate& map,
                                        const Sequence& sequence) {
   constexpr const char* kNoStart = "no_start";  // the stages before know more
   std::map<int, std::string> failures = InitialFailures(folder, sequence);

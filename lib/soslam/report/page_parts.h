@@ -128,7 +128,7 @@ std::vector<NotPlaced> TracksLeftOut(const Associations& associations, const Seq
 
 // What a variant's folder has no landmark for, with the most boxes first: tracks that association
 // left out, and objects without a landmark in the map.
-std::vector<NotPlaced> ThingsNotPlaced(const std::filesystem::path& folder, const MapEstimate& map,
+std::vector<NotPlaced> CollectUnplaced(const std::filesystem::path& folder, const MapEstimate& map,
                                        const Sequence& sequence);
 
 // The part of a sequence that is on a page, which must stay small however long the sequence is.
