@@ -94,7 +94,7 @@ void AddArguments(CLI::App* app, Arguments* arguments) {
 int main(int argc, char** argv) {
   CLI::App app("Shows an artefact of the pipeline to a person: in words, as a table, as a picture.",
                "soslam-inspect");
-  return soslam::internal::ExitCodeOf(&app, [&] {
+  return soslam::internal::RunForExitCode(&app, [&] {
     Arguments arguments;
     app.get_formatter()->column_width(34);
     soslam::internal::AddOutsidePaths(&app);

@@ -61,7 +61,7 @@ Box BoxOfCone(const Camera& camera, const Rigid3d& world_from_camera, const Eige
   return box;
 }
 
-TEST(CropOf, IsTheEnlargedBoxInTheMiddleOfALevelImage) {
+TEST(RenderCrop, IsTheEnlargedBoxInTheMiddleOfALevelImage) {
   const Camera camera{640, 480, 500.0, 500.0, 319.5, 239.5};
   cv::Mat image(480, 640, CV_8UC3);
   for (int v = 0; v < 480; ++v) {
@@ -71,7 +71,7 @@ TEST(CropOf, IsTheEnlargedBoxInTheMiddleOfALevelImage) {
   }
   for (const Eigen::Vector2d& half : {Eigen::Vector2d(60, 40), Eigen::Vector2d(35, 70)}) {
     const Box box{319.5 - half.x(), 239.5 - half.y(), 319.5 + half.x(), 239.5 + half.y()};
-    const Crop crop = CropOf(image, camera, box, -Eigen::Vector3d::UnitY(), kSide);
+    const Crop crop = RenderCrop(image, camera, box, -Eigen::Vector3d::UnitY(), kSide);
     const double pixel = kMarginOfCrops * 2.0 * half.maxCoeff() / kSide;
     for (const int y : {5, 40, 90}) {
       for (const int x : {5, 48, 90}) {
@@ -87,7 +87,7 @@ TEST(CropOf, IsTheEnlargedBoxInTheMiddleOfALevelImage) {
   }
 }
 
-TEST(CropOf, HasTheMiddleOfTheBoxInItsMiddle) {
+TEST(RenderCrop, HasTheMiddleOfTheBoxInItsMiddle) {
   const Camera camera = TestCamera();
   for (int i = 0; i < 20; ++i) {
     const Eigen::Vector2d centre(std::round(RandomUniform(100, 540)),
@@ -100,7 +100,7 @@ TEST(CropOf, HasTheMiddleOfTheBoxInItsMiddle) {
                   centre.y() + half.y()};
     const Rigid3d pose =
         Rolled(LookingAt({0, 0, 1.5}, {3, 0, RandomUniform(-1, 2)}), RandomUniform(-3, 3));
-    const Crop crop = CropOf(image, camera, box, UpIn(pose), kSide);
+    const Crop crop = RenderCrop(image, camera, box, UpIn(pose), kSide);
     cv::Mat grey;
     cv::extractChannel(crop.image, grey, 0);
     cv::Point brightest;
@@ -110,14 +110,14 @@ TEST(CropOf, HasTheMiddleOfTheBoxInItsMiddle) {
   }
 }
 
-TEST(CropOf, IsTheSameHoweverTheCameraIsRolled) {
+TEST(RenderCrop, IsTheSameHoweverTheCameraIsRolled) {
   const Camera camera{640, 640, 520.0, 530.0, 318.0, 322.0};
   const Rigid3d level = LookingAt({0, 0, 1.5}, {3, 0.2, 0.6});
   const Eigen::Vector3d axis = Eigen::Vector3d(3, 0.5, -1.0).normalized();
   const auto crop_at = [&](double roll) {
     const Rigid3d pose = Rolled(level, roll);
-    return CropOf(Panorama(camera, pose), camera, BoxOfCone(camera, pose, axis, 0.12), UpIn(pose),
-                  kSide);
+    return RenderCrop(Panorama(camera, pose), camera, BoxOfCone(camera, pose, axis, 0.12),
+                      UpIn(pose), kSide);
   };
   const Crop upright = crop_at(0.0);
   for (const double roll : {0.2, -0.7, 0.8, 1.5708, 2.5, 3.1416}) {
@@ -129,44 +129,45 @@ TEST(CropOf, IsTheSameHoweverTheCameraIsRolled) {
   }
 }
 
-TEST(CropOf, ElevationIsPositiveFromAbove) {
+TEST(RenderCrop, ElevationIsPositiveFromAbove) {
   for (const double height : {2.5, 0.4, -1.0}) {
     const Eigen::Vector3d position(-2.0, 0.5, height), target(1.0, -0.2, 0.4);
     const Rigid3d pose = LookingAt(position, target);
     const Box box{300, 220, 336, 264};  // about the principal point
-    const Crop crop = CropOf(cv::Mat(480, 640, CV_8UC3, cv::Scalar::all(0)), TestCamera(), box,
-                             UpIn(pose), kSide);
+    const Crop crop = RenderCrop(cv::Mat(480, 640, CV_8UC3, cv::Scalar::all(0)), TestCamera(), box,
+                                 UpIn(pose), kSide);
     EXPECT_NEAR(crop.direction.elevation, std::asin((height - 0.4) / (position - target).norm()),
                 1e-9);
   }
 }
 
-TEST(CropOf, WhatLiesOutsideTheImageIsGrey) {
+TEST(RenderCrop, WhatLiesOutsideTheImageIsGrey) {
   const cv::Mat image(480, 640, CV_8UC3, cv::Scalar::all(250));
   const Box box{-60, 200, 60, 300};  // half of it left of the image
-  const Crop crop = CropOf(image, TestCamera(), box, -Eigen::Vector3d::UnitY(), kSide);
+  const Crop crop = RenderCrop(image, TestCamera(), box, -Eigen::Vector3d::UnitY(), kSide);
   EXPECT_EQ(crop.image.size(), cv::Size(kSide, kSide));
   EXPECT_EQ(crop.image.at<cv::Vec3b>(48, 5), cv::Vec3b::all(114));
   EXPECT_EQ(crop.image.at<cv::Vec3b>(48, 90), cv::Vec3b::all(250));
 }
 
-TEST(CropOf, LooksStraightDownToo) {
+TEST(RenderCrop, LooksStraightDownToo) {
   const cv::Mat image(480, 640, CV_8UC3, cv::Scalar::all(250));
   const Crop crop =
-      CropOf(image, TestCamera(), {308, 232, 328, 252}, -Eigen::Vector3d::UnitZ(), kSide);
+      RenderCrop(image, TestCamera(), {308, 232, 328, 252}, -Eigen::Vector3d::UnitZ(), kSide);
   EXPECT_NEAR(crop.direction.elevation, std::numbers::pi / 2.0, 1e-6);
   EXPECT_EQ(crop.image.at<cv::Vec3b>(48, 48), cv::Vec3b::all(250));
 }
 
 // A pattern as fine as pixels, of which a small crop has the mean.
-TEST(CropOf, DoesNotAlias) {
+TEST(RenderCrop, DoesNotAlias) {
   cv::Mat image(480, 640, CV_8UC3);
   for (int v = 0; v < 480; ++v) {
     for (int u = 0; u < 640; ++u) {
       image.at<cv::Vec3b>(v, u) = cv::Vec3b::all((u + v) % 2 == 0 ? 200 : 100);
     }
   }
-  const Crop crop = CropOf(image, TestCamera(), {168, 92, 468, 392}, -Eigen::Vector3d::UnitY(), 64);
+  const Crop crop =
+      RenderCrop(image, TestCamera(), {168, 92, 468, 392}, -Eigen::Vector3d::UnitY(), 64);
   cv::Scalar mean, deviation;
   cv::meanStdDev(crop.image, mean, deviation);
   EXPECT_NEAR(mean[0], 150.0, 2.0);

@@ -68,9 +68,9 @@ TEST_F(HeadTest, TellsWhatItsWeightsSayOfAnImageAndItsMirrorImage) {
   EXPECT_FALSE(head.IsRgb());
   EXPECT_EQ(head.NetworkSha256(), "of the network");
   EXPECT_EQ(head.Layers(), (std::vector<std::string>{"Mul 0", "last"}));
-  EXPECT_EQ(head.GroupOf("stool"), 0);
-  EXPECT_EQ(head.GroupOf("bed"), 1);
-  EXPECT_EQ(head.GroupOf("beds"), std::nullopt);
+  EXPECT_EQ(head.FindGroup("stool"), 0);
+  EXPECT_EQ(head.FindGroup("bed"), 1);
+  EXPECT_EQ(head.FindGroup("beds"), std::nullopt);
 
   for (const int group : {0, 1}) {
     const cv::Mat features = 5.0 * HeadFile::RandomMatrix(kChannels, kCellCount);

@@ -107,9 +107,9 @@ TEST_F(JsonFileTest, AnOlderFileThatLacksAFieldIsSaidToBeOlder) {
 
 TEST_F(JsonFileTest, FindingsOfWhatIsNoArtefactAreRefused) {
   for (const json& document : {json(), json::array(), json("text")}) {
-    ExpectError<InputError>([&] { FindingsOf(document); }, {"is no object"});
+    ExpectError<InputError>([&] { ReadFindings(document); }, {"is no object"});
   }
-  EXPECT_TRUE(FindingsOf(json::object()).empty());
+  EXPECT_TRUE(ReadFindings(json::object()).empty());
 }
 
 TEST_F(JsonFileTest, WritingWhatTheSchemaForbidsIsOurBug) {

@@ -110,7 +110,7 @@ std::vector<Pair> PairsOf(const Sequence& given, const ImageMatches& matches,
       const Detection &one = sequence.detections[i], &other = sequence.detections[j];
       if (one.frame_index == other.frame_index) continue;
       const int first = static_cast<int>(i), second = static_cast<int>(j);
-      const double points = LogRatioOfSharedPoints(evidence.CountsOf(first, second));
+      const double points = LogRatioOfSharedPoints(evidence.CountPoints(first, second));
       const double product = matches.colours[i].cast<double>().normalized().dot(
           matches.colours[j].cast<double>().normalized());
       const double colours = LogRatioOfColours(product);

@@ -43,7 +43,7 @@ TEST(PairEvidenceTest, CountsThePointsThatBothFramesShow) {
       {{PointAt({10.0, 20.0, 30.0}), PointAt({20.0, 30.0, unseen}), PointAt({30.0, 130.0, unseen}),
         PointAt({40.0, 80.0, 40.0}), PointAt({80.0, 80.0, 80.0})}});
   const auto expect = [&](int one, int other, int in_both, int in_any) {
-    for (const auto& counts : {points.CountsOf(one, other), points.CountsOf(other, one)}) {
+    for (const auto& counts : {points.CountPoints(one, other), points.CountPoints(other, one)}) {
       EXPECT_EQ(counts.in_both, in_both) << one << " " << other;
       EXPECT_EQ(counts.in_any, in_any) << one << " " << other;
     }

@@ -165,7 +165,7 @@ TEST(LandmarksCsvTest, RowsHoldWhatTheMapKnows) {
     EXPECT_EQ(number("qw"), landmark.frame_from_object.rotation.w());
     EXPECT_EQ(number("half_axis_a"), landmark.half_axes.x());
     EXPECT_EQ(number("half_axis_c"), landmark.half_axes.z());
-    EXPECT_NEAR(number("yaw_deg"), YawOf(object) * kDegPerRad, 1e-9);
+    EXPECT_NEAR(number("yaw_deg"), ComputeYaw(object) * kDegPerRad, 1e-9);
     EXPECT_EQ(number("shape_exponent"), landmark.shape_exponents.horizontal);
     EXPECT_EQ(number("vertical_exponent"), landmark.shape_exponents.vertical);
     EXPECT_EQ(table[i].at("failure"), "");

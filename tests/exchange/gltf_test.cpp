@@ -104,7 +104,7 @@ TEST_F(GltfTest, ExtrasSayWhatTheMapKnows) {
   EXPECT_EQ(extras.at("shape_exponent"), 1.0);
   EXPECT_EQ(extras.at("vertical_exponent"), 1.0);
   EXPECT_EQ(extras.at("half_axes").at(1), object.estimate.landmark_in_world->half_axes.y());
-  EXPECT_NEAR(extras.at("yaw_deg").get<double>(), YawOf(object) * kDegPerRad, 1e-9);
+  EXPECT_NEAR(extras.at("yaw_deg").get<double>(), ComputeYaw(object) * kDegPerRad, 1e-9);
   EXPECT_EQ(extras.at("covariance").size(), 9u);
   EXPECT_EQ(extras.at("covariance").at(3).at(8), (*object.estimate.covariance)(3, 8));
   EXPECT_EQ(extras.at("front_probability"), 0.75);

@@ -100,7 +100,7 @@ TEST_F(WorldTest, TruthHasWhatIsKnown) {
 
 TEST_F(WorldTest, UpIsTheNormalThatMostShare) {
   World world;
-  EXPECT_EQ(UpOf(world), Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(EstimateCommonUp(world), Eigen::Vector3d::UnitZ());
   const auto add = [&](const Eigen::Vector3d& normal, bool has_landmark) {
     world.objects.push_back({0, "", {}, normal, 1.0, {}});
     if (has_landmark) world.objects.back().estimate.landmark_in_world = RandomLandmark();
@@ -111,7 +111,7 @@ TEST_F(WorldTest, UpIsTheNormalThatMostShare) {
   add(floor, true);
   add(-floor, true);
   add(Eigen::Vector3d(0.1, -1.0, 0.0).normalized(), true);
-  EXPECT_EQ(UpOf(world), floor);
+  EXPECT_EQ(EstimateCommonUp(world), floor);
 }
 
 using nlohmann::json;

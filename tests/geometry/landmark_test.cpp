@@ -136,10 +136,10 @@ TEST(YawDifferenceModuloPi, WrapsAtQuarterTurns) {
 }
 
 // Its lowest point is on the plane, and the rest of it above.
-TEST(SupportPlaneOf, TouchesTheLowestPoint) {
+TEST(ComputeSupportPlane, TouchesTheLowestPoint) {
   for (int i = 0; i < 20; ++i) {
     const Landmark landmark = Transform(RandomRigid(), RandomLandmarkInCamera());
-    const Plane under = SupportPlaneOf(landmark);
+    const Plane under = ComputeSupportPlane(landmark);
     EXPECT_NEAR(under.SignedDistance(FindSupportPoint(landmark, -under.normal).point), 0.0, 1e-12);
     EXPECT_GT(under.SignedDistance(landmark.Centre()), 0.0);
   }

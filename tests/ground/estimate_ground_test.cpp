@@ -174,7 +174,8 @@ TEST(EstimateGroundTest, TheSizeOfOneThingTellsTheScale) {
   EXPECT_TRUE(std::ranges::max_element(with.objects, {}, pull)->is_measured);
   const auto findings = CheckGround(with, {});
   EXPECT_EQ(CountOf(kObjectsAgainstSettingsCheck, findings), 0);
-  EXPECT_THAT(WorldScaleOf(with, findings)->found_by, testing::ElementsAre("objects", "edits"));
+  EXPECT_THAT(EstimateWorldScale(with, findings)->found_by,
+              testing::ElementsAre("objects", "edits"));
   // Boxes determine widths less than heights.
   const GroundEstimate width = Estimate(scene.sequence, scene.points, {}, KnownSizeOf(scene, true));
   EXPECT_NEAR(width.scale->log_scale, std::log(scene.metres_per_unit),
@@ -196,7 +197,7 @@ TEST(EstimateGroundTest, AKnownValueThatObjectsContradictIsAFinding) {
       const GroundEstimate estimate = Estimate(scene.sequence, scene.points, options);
       const auto findings = CheckGround(estimate, options);
       EXPECT_EQ(CountOf(kObjectsAgainstSettingsCheck, findings), 1) << factor << " " << log_sigma;
-      const auto scale = WorldScaleOf(estimate, findings);
+      const auto scale = EstimateWorldScale(estimate, findings);
       EXPECT_THAT(scale->contradicted_by, Contains(kObjectsAgainstSettingsCheck));
       EXPECT_THAT(ContradictionsInWords(*scale), HasSubstr("the camera's height given"));
     }
@@ -213,7 +214,7 @@ TEST(CheckGroundTest, SettingsThatContradictEachOtherAreAFindingWithAndWithoutOb
   EXPECT_THAT(findings, Contains(AllOf(Field(&Finding::check, kSettingsAgainstEachOtherCheck),
                                        Field(&Finding::found, HasSubstr("is 1 m by scale, and "
                                                                         "1.377 m by camera")))));
-  const auto scale = WorldScaleOf(estimate, findings);
+  const auto scale = EstimateWorldScale(estimate, findings);
   EXPECT_EQ(SourcesInWords(*scale), "the scale given and the camera's height given");
   EXPECT_EQ(ContradictionsInWords(*scale),
             "the scale given and the camera's height given contradict each other");
@@ -225,14 +226,14 @@ TEST(WorldScaleOfTest, ObjectsThatContradictOneAnotherCountWhereTheScaleRestsOnT
       {kObjectsAgainstOneAnotherCheck, Severity::kWarning, "", "", "", ""}};
   GroundEstimate estimate;
   estimate.scale = ScalePosterior();
-  EXPECT_EQ(SourcesInWords(*WorldScaleOf(estimate, findings)),
+  EXPECT_EQ(SourcesInWords(*EstimateWorldScale(estimate, findings)),
             "objects that contradict one another");
-  EXPECT_EQ(WorldScaleOf(estimate, findings)->contradicted_by.size(), 1u);
+  EXPECT_EQ(EstimateWorldScale(estimate, findings)->contradicted_by.size(), 1u);
   estimate.known_scales = {{0.0, 0.1, "camera_height_m"}};
-  EXPECT_THAT(WorldScaleOf(estimate, findings)->contradicted_by, IsEmpty());
+  EXPECT_THAT(EstimateWorldScale(estimate, findings)->contradicted_by, IsEmpty());
   estimate.objects.resize(1);
   estimate.objects[0].agreement = 0.9;
-  EXPECT_EQ(WorldScaleOf(estimate, findings)->contradicted_by.size(), 1u);
+  EXPECT_EQ(EstimateWorldScale(estimate, findings)->contradicted_by.size(), 1u);
 }
 
 TEST(CheckGroundTest, AnUncertainScaleSaysWhatItRestsOn) {

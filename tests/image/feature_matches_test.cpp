@@ -265,7 +265,7 @@ TEST(FindFeaturesTest, DescriptorsAreUnitVectorsAndPixelsInOrder) {
 
 TEST(OutsideOfTest, MasksThePixelsWhoseCentresAreInBoxes) {
   const auto masked = [](const Box& box) {
-    return 12 * 10 - cv::countNonZero(OutsideOf({box}, {12, 10}));
+    return 12 * 10 - cv::countNonZero(MaskOutBoxes({box}, {12, 10}));
   };
   EXPECT_EQ(masked({2.0, 3.0, 4.0, 4.0}), 3 * 2);
   EXPECT_EQ(masked({1.9, 2.9, 4.1, 4.1}), 3 * 2);

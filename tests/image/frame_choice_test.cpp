@@ -11,11 +11,11 @@ namespace {
 
 using Reasons = std::vector<std::optional<FrameRejection>>;
 
-FrameView DrawnFrame(int shift) { return ViewOf(GreyOf(DrawnView(shift))); }
+FrameView DrawnFrame(int shift) { return MakeFrameView(GreyOf(DrawnView(shift))); }
 
 Reasons ReasonsFor(const std::vector<cv::Mat>& images, const FrameOptions& options = {}) {
   FrameSelector selector(options);
-  for (const cv::Mat& image : images) selector.Add(ViewOf(GreyOf(image)));
+  for (const cv::Mat& image : images) selector.Add(MakeFrameView(GreyOf(image)));
   return selector.Choose();
 }
 

@@ -62,7 +62,7 @@ Landmark RandomStart(const ObjectEvidence& evidence) {
   std::optional<Landmark> solution;
   while (!solution) solution = SolveAtYaw(evidence, RandomYaw());
   const Landmark& at_yaw = *solution;
-  UprightVector parameters = UprightParametrisation(evidence.plane).ParametersOf(at_yaw);
+  UprightVector parameters = UprightParametrisation(evidence.plane).ComputeParameters(at_yaw);
   parameters.segment<2>(1) += 0.5 * at_yaw.half_axes.maxCoeff() * RandomVector(-1, 1).head<2>();
   parameters.segment<3>(3) += RandomVector(-0.3, 0.3);
   return UprightParametrisation(evidence.plane).LandmarkAt(parameters, at_yaw.shape_exponents);
@@ -84,10 +84,10 @@ TEST(FitObject, NoneOfManyRandomStartsIsBetter) {
           if (solution && !IsInFront(solution->landmark)) solution.reset();
         }
         if (solution) {
-          lowest = std::min(lowest, CostOf(evidence, solution->landmark).total);
+          lowest = std::min(lowest, EvaluateCost(evidence, solution->landmark).total);
         }
       }
-      const double found = CostOf(evidence, optima.front().landmark).total;
+      const double found = EvaluateCost(evidence, optima.front().landmark).total;
       EXPECT_LE(found, lowest + 0.01 + 0.02 * lowest) << "body " << i << ", " << axes_weight;
     }
   }

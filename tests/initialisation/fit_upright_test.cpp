@@ -20,7 +20,7 @@ LandmarkCosts BoxAndRatio(const std::array<BoxEdge, 4>& edges, const ShapePrior&
 }
 
 Landmark DisturbedFootAndSize(const Landmark& landmark, const Plane& plane) {
-  UprightVector parameters = UprightParametrisation(plane).ParametersOf(landmark);
+  UprightVector parameters = UprightParametrisation(plane).ComputeParameters(landmark);
   parameters.segment<2>(1) += 0.2 * RandomVector(-1, 1).head<2>();
   parameters.segment<3>(3) += RandomVector(-0.2, 0.2);
   return UprightParametrisation(plane).LandmarkAt(parameters, landmark.shape_exponents);

@@ -60,7 +60,7 @@ void ExpectTruth(const World& world, const ObjectEvidence& evidence, double tole
   const auto found = BodyAtYaw(evidence).Solve(world.TrueYaw());
   ASSERT_TRUE(found);
   ExpectSame(*found, world.truth, tolerance);
-  EXPECT_LT(CostOf(evidence, *found).total, tolerance);
+  EXPECT_LT(EvaluateCost(evidence, *found).total, tolerance);
 }
 
 // The plane is given one metre too low.

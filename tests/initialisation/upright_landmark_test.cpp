@@ -23,7 +23,8 @@ TEST(UprightLandmark, HasTheGivenYawFootAndHalfAxesAndTellsThem) {
     const Eigen::Vector3d along_axes =
         UprightRotation(plane.normal, 0.0).conjugate() * from_nearest;
     EXPECT_LT((along_axes - Eigen::Vector3d(parameters(1), parameters(2), 0.0)).norm(), 1e-12);
-    EXPECT_LT((UprightParametrisation(plane).ParametersOf(landmark) - parameters).norm(), 1e-12);
+    EXPECT_LT((UprightParametrisation(plane).ComputeParameters(landmark) - parameters).norm(),
+              1e-12);
   }
 }
 

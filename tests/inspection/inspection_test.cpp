@@ -39,7 +39,7 @@ class InspectionTest : public testing::Test {
   }
   static Value At(const Inspection& inspection, const std::string& name, size_t row,
                   const std::string& column) {
-    const ValueTable& table = TableOf(inspection, name);
+    const ValueTable& table = FindTable(inspection, name);
     const auto found = std::ranges::find(table.columns, column, &ValueColumn::name);
     if (found == table.columns.end()) throw std::out_of_range(column);
     return table.rows.at(row).at(found - table.columns.begin());
@@ -65,13 +65,13 @@ TEST_F(InspectionTest, FieldsOfADescriptionAreFactsAndListsOfRecordsTables) {
   EXPECT_EQ(Said(inspection, "name"), sequence_.name);
   EXPECT_EQ(Said(inspection, "rejected_detections"), "duplicate 2, near_border 17");
   EXPECT_EQ(Said(inspection, "camera/width"), std::to_string(sequence_.camera.width));
-  EXPECT_EQ(TableOf(inspection, "frames").rows.size(), 5u);
-  EXPECT_EQ(TableOf(inspection, "detections").rows.size(), 10u);
+  EXPECT_EQ(FindTable(inspection, "frames").rows.size(), 5u);
+  EXPECT_EQ(FindTable(inspection, "detections").rows.size(), 10u);
   ExpectRow(inspection, "objects", 1, {{"object", 4}, {"plane", 3}, {"is_static", true}});
   const std::string text = FormatInspection(inspection, false);
   EXPECT_THAT(text, HasSubstr("\n  camera\n    width"));
   EXPECT_THAT(text, HasSubstr("frames, 5 rows: images that are used, by ascending id\n"));
-  ExpectError<SettingsError>([&] { TableOf(inspection, "sheep"); }, {"sheep", "frames, planes"});
+  ExpectError<SettingsError>([&] { FindTable(inspection, "sheep"); }, {"sheep", "frames, planes"});
 }
 
 // A record of a kind of its own, with all that descriptions have.
@@ -111,21 +111,21 @@ void Describe(Visitor& visit, Outer& outer) {
   visit.Field("rows", &outer.rows, "with parts");
 }
 
-TEST(ContentsOf, FollowTheDescription) {
+TEST(InspectContents, FollowTheDescription) {
   Outer outer;
   outer.share = 0.12345;
   outer.part = {7, {1.5, 2.25}};
   outer.parts = {{1, {}}, {2, {1, 2, 3, 4, 5, 6, 7, 8}}};
   outer.by_name = {{"a", {3, {}}}};
   outer.rows = {{"x", outer.parts}, {"y", {}}};
-  const Inspection contents = ContentsOf(SchemaWriter::Of<Outer>(), DescribedToJson(outer));
+  const Inspection contents = InspectContents(SchemaWriter::Of<Outer>(), DescribedToJson(outer));
   std::vector<std::string> facts;
   for (const Fact& fact : contents.facts)
     facts.push_back(fact.name + ": " + fact.text + ", " + fact.doc);
   EXPECT_THAT(facts,
               testing::ElementsAre("missing: -, nothing", "share: 0.123, of all",
                                    "part/id: 7, number", "part/weights: 1.500, 2.250, kilograms"));
-  const auto text = [&](const char* name) { return FormatTable(TableOf(contents, name), false); };
+  const auto text = [&](const char* name) { return FormatTable(FindTable(contents, name), false); };
   EXPECT_EQ(text("parts"),
             "id                                              weights\n"
             " 1                                                 none\n"
@@ -138,7 +138,7 @@ TEST(ContentsOf, FollowTheDescription) {
             "x         2       1     none\n"
             "y      none       -        -\n");
   EXPECT_THAT(
-      FormatWholeTable(TableOf(contents, "rows"), false),
+      FormatWholeTable(FindTable(contents, "rows"), false),
       testing::AllOf(testing::StartsWith("\nrows, 2 rows: with parts\n"), HasSubstr("best first")));
 }
 

@@ -37,7 +37,7 @@ struct Views {
   unsigned seed = 0;  // of the boxes' noise
 };
 
-Landmark LandmarkOf(const Body& body) {
+Landmark MakeLandmark(const Body& body) {
   Landmark landmark;
   landmark.shape_exponents = kCuboidExponent;
   landmark.rests_on = body.rests_on;
@@ -104,7 +104,7 @@ TEST(SlowAnyFace, SameShapesHoweverTheyAreLaid) {
     const Eigen::Vector3d half_axes = RandomHalfAxes();
     const double yaw = RandomUniform(-3.0, 3.0);
     for (const RestingFace face : kRestingFaces) {
-      const Landmark truth = LandmarkOf({half_axes, face, yaw});
+      const Landmark truth = MakeLandmark({half_axes, face, yaw});
       const Landmark estimate =
           Estimate(Observe(truth, Views()), PriorOf(half_axes, 0.1, Attitude::kAnyFace));
       EXPECT_EQ(estimate.rests_on, face);
@@ -118,7 +118,7 @@ TEST(SlowAnyFace, SeveralViewsAloneTellTheFace) {
   for (int i = 0; i < 6; ++i) {
     const Eigen::Vector3d half_axes = RandomHalfAxes();
     const RestingFace face = kRestingFaces[static_cast<size_t>(i) % 3];
-    const Landmark truth = LandmarkOf({half_axes, face, RandomUniform(-3.0, 3.0)});
+    const Landmark truth = MakeLandmark({half_axes, face, RandomUniform(-3.0, 3.0)});
     const Sequence sequence = Observe(truth, Views());
     ShapePrior prior = PriorOf(half_axes, 0.1, Attitude::kAnyFace);
     prior.height_m = LogNormal{2.0 * half_axes.z(), 0.1};
@@ -136,9 +136,9 @@ TEST(SlowAnyFace, SeveralViewsAloneTellTheFace) {
 TEST(SlowAnyFace, LeaningBodiesAreFound) {
   for (int i = 0; i < 10; ++i) {
     const Eigen::Vector3d half_axes = RandomHalfAxes();
-    const Landmark truth =
-        LandmarkOf({half_axes, kRestingFaces[static_cast<size_t>(i) % 3], RandomUniform(-3.0, 3.0),
-                    Eigen::Vector3d(RandomUniform(-0.35, 0.35), RandomUniform(-0.35, 0.35), 0.0)});
+    const Landmark truth = MakeLandmark(
+        {half_axes, kRestingFaces[static_cast<size_t>(i) % 3], RandomUniform(-3.0, 3.0),
+         Eigen::Vector3d(RandomUniform(-0.35, 0.35), RandomUniform(-0.35, 0.35), 0.0)});
     const Landmark estimate =
         Estimate(Observe(truth, {.arc_rad = 5.0}), PriorOf(half_axes, 0.05, Attitude::kFree));
     EXPECT_GT(CompareLandmarks(estimate, GroundTruth{truth}, truth).iou, 0.9);
@@ -163,7 +163,7 @@ FaceScore ScoreOf(int scenes, double log_sigma) {
     }
     const Views views{.box_sigma_fraction = 0.015, .seed = static_cast<unsigned>(i)};
     const auto iou_of = [&](Attitude attitude) {
-      const Landmark truth = LandmarkOf(body);
+      const Landmark truth = MakeLandmark(body);
       const Landmark estimate =
           Estimate(Observe(truth, views), PriorOf(of_label, log_sigma, attitude));
       if (attitude == Attitude::kAnyFace) right.push_back(estimate.rests_on == truth.rests_on);

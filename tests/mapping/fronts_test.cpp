@@ -23,7 +23,7 @@ Landmark BodyAt(double yaw) {
   return body;
 }
 
-double YawOf(const Landmark& landmark) {
+double ComputeYaw(const Landmark& landmark) {
   return Yaw(Eigen::Vector3d::UnitZ(), landmark.frame_from_object.rotation);
 }
 
@@ -45,7 +45,7 @@ class FaceFrontTest : public testing::Test {
   void ExpectUntouched() const {
     const ObjectEstimate faced = Faced();
     EXPECT_FALSE(faced.front_probability);
-    EXPECT_EQ(YawOf(*faced.landmark_in_world), YawOf(*object_.landmark_in_world));
+    EXPECT_EQ(ComputeYaw(*faced.landmark_in_world), ComputeYaw(*object_.landmark_in_world));
   }
 
   Landmark truth_ = BodyAt(0.7);
@@ -57,7 +57,7 @@ class FaceFrontTest : public testing::Test {
 TEST_F(FaceFrontTest, KeepsAFrontThatPicturesAgreeWith) {
   const ObjectEstimate faced = Faced();
   EXPECT_GT(faced.front_probability.value(), 0.99);
-  EXPECT_EQ(YawOf(*faced.landmark_in_world), YawOf(truth_));
+  EXPECT_EQ(ComputeYaw(*faced.landmark_in_world), ComputeYaw(truth_));
 }
 
 TEST_F(FaceFrontTest, TurnsABodyThatShowsItsBack) {
@@ -65,7 +65,7 @@ TEST_F(FaceFrontTest, TurnsABodyThatShowsItsBack) {
   object_.landmark_in_world = RotatedAboutZ(truth_, std::numbers::pi);
   const ObjectEstimate faced = Faced();
   EXPECT_NEAR(faced.front_probability.value(), probability, 1e-9);
-  EXPECT_NEAR(YawOf(*faced.landmark_in_world), YawOf(truth_), 1e-9);
+  EXPECT_NEAR(ComputeYaw(*faced.landmark_in_world), ComputeYaw(truth_), 1e-9);
   EXPECT_EQ(faced.landmark_in_world->half_axes, truth_.half_axes);
   EXPECT_LT((faced.landmark_in_world->Centre() - truth_.Centre()).norm(), 1e-12);
   EXPECT_NEAR(BoxIou(*faced.landmark_in_world, *object_.landmark_in_world), 1.0, 1e-6);
@@ -103,7 +103,7 @@ TEST(OptimiseMap, PicturesTurnABodyThatBoxesLeaveFree) {
     OptimiseOptions options = TangencyOptions();
     options.hold_poses = true;
     const MapEstimate map = OptimiseMap(input, options);
-    const double yaw = YawOf(*map.objects[0].landmark_in_world);
+    const double yaw = ComputeYaw(*map.objects[0].landmark_in_world);
     EXPECT_LT(std::abs(YawDifferenceModuloPi(yaw, 0.7)), 2.5 * kRadPerDeg) << start;
   }
 }

@@ -59,10 +59,12 @@ SeenCuboid LargeInView() {
 
 // Whether the truth costs less than all proposals that overlap it little.
 bool IsPreferred(const SeenCuboid& seen, const CuboidEvidence& evidence) {
-  std::vector<CuboidErrors> errors = {ErrorsOf(seen.view, seen.truth, evidence, WithoutShape())};
+  std::vector<CuboidErrors> errors = {
+      ComputeErrors(seen.view, seen.truth, evidence, WithoutShape())};
   for (const CuboidProposal& proposal : ProposeCuboids(seen.view, 15, 10)) {
     if (BoxIou(proposal.landmark_in_camera, seen.truth) > 0.8) continue;
-    errors.push_back(ErrorsOf(seen.view, proposal.landmark_in_camera, evidence, WithoutShape()));
+    errors.push_back(
+        ComputeErrors(seen.view, proposal.landmark_in_camera, evidence, WithoutShape()));
   }
   const auto costs = CuboidCosts(errors, WithoutShape());
   return std::ranges::min_element(costs) == costs.begin();
@@ -87,10 +89,11 @@ TEST(CuboidErrors, HaveNoAngleForTheirOwnEdges) {
     CuboidEvidence evidence{cv::Mat::zeros(480, 640, CV_32FC1), seen.VisibleEdges()};
     // An axis that points along the view has no visible edge.
     const double hidden_axes = evidence.segments.size() == 4 ? 1.0 : 0.0;
-    EXPECT_NEAR(ErrorsOf(seen.view, seen.truth, evidence, {}).angle,
+    EXPECT_NEAR(ComputeErrors(seen.view, seen.truth, evidence, {}).angle,
                 hidden_axes * 30.0 * kRadPerDeg, 1e-6);
-    EXPECT_GT(ErrorsOf(seen.view, RotatedAboutZ(seen.truth, 0.4), evidence, CuboidOptions()).angle,
-              0.02);
+    EXPECT_GT(
+        ComputeErrors(seen.view, RotatedAboutZ(seen.truth, 0.4), evidence, CuboidOptions()).angle,
+        0.02);
   }
 }
 
@@ -101,7 +104,7 @@ TEST(CuboidErrors, HaveTheExcessOfTheFootprintsRatioAsShape) {
     CuboidOptions options;
     options.shape_threshold = threshold;
     seen.truth.half_axes = {a, b, 0.1};
-    return ErrorsOf(seen.view, seen.truth, evidence, options).shape;
+    return ComputeErrors(seen.view, seen.truth, evidence, options).shape;
   };
   EXPECT_NEAR(shape(0.2, 0.2, 1.0), 0.0, 1e-12);
   EXPECT_NEAR(shape(0.4, 0.2, 1.0), 1.0, 1e-12);

@@ -62,7 +62,7 @@ TEST(EdgeCost, IsLeastWhereTheEdgesOfTheBodyAreThoseOfTheImage) {
     // Edges are found to half a pixel, and none at the corners: (0.5 / 8)^2 and a few points.
     EXPECT_LT(at_truth, 0.05 * largest) << yaw;
     EXPECT_NEAR(term.Support(truth), 1.0 - at_truth / largest, 1e-12);
-    const UprightVector parameters = UprightParametrisation(kFloor).ParametersOf(truth);
+    const UprightVector parameters = UprightParametrisation(kFloor).ComputeParameters(truth);
     for (int i = 0; i < 6; ++i) {
       for (const double direction : {-1.0, 1.0}) {
         const auto moved = [&](double step) {

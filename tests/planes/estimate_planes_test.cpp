@@ -261,9 +261,10 @@ TEST(HeightPriorTest, ItsEvidenceIsItsCostInMovedPlanes) {
     const HeightPrior prior = {RandomVector(-2, 2), 0.1};
     const Plane plane = RandomPlane();
     const Eigen::Vector3d pivot = RandomVector(-1, 1);
-    const PlaneEvidence evidence = EvidenceOf(prior, plane, pivot);
+    const PlaneEvidence evidence = ComputePlaneEvidence(prior, plane, pivot);
     const PlaneMotion motion = 1e-5 * RandomVector(-1, 1);
-    const double at_moved = EvidenceOf(prior, ApplyMotion(plane, pivot, motion), pivot).cost;
+    const double at_moved =
+        ComputePlaneEvidence(prior, ApplyMotion(plane, pivot, motion), pivot).cost;
     EXPECT_NEAR(at_moved - evidence.cost,
                 evidence.gradient.dot(motion) + 0.5 * motion.dot(evidence.information * motion),
                 1e-6 * (1.0 + evidence.cost));

@@ -235,7 +235,7 @@ TEST(ApplyMotion, KeepsBodiesOnTheirPlanes) {
 // information leaves out second derivatives of the residuals, which count by their size: it is
 // exact where boxes are. A motion of 1e-3 rad or m changes noisy costs by about 1, and the gradient
 // by a few per cent of a standard deviation.
-TEST(EvidenceOf, IsHowTheBestCostChanges) {
+TEST(ComputePlaneEvidence, IsHowTheBestCostChanges) {
   const Eigen::Vector3d pivot(0.5, -0.5, 0.0);
   constexpr double kMotion = 1e-3;
   for (int trial = 0; trial < 10; ++trial) {
@@ -248,7 +248,7 @@ TEST(EvidenceOf, IsHowTheBestCostChanges) {
     const auto at = [&](const PlaneMotion& motion) {
       StandingBody body{evidence, ApplyMotion(Plane(), pivot, motion, start.front().landmark)};
       body.evidence.plane = ApplyMotion(Plane(), pivot, motion);
-      return EvidenceOf(*FitOnPlane(body), pivot);
+      return ComputePlaneEvidence(*FitOnPlane(body), pivot);
     };
     const PlaneEvidence here = at(PlaneMotion::Zero());
     for (int i = 0; i < 3; ++i) {
@@ -271,7 +271,7 @@ TEST(FitBodyAtFreeHeight, FindsHeightAndBodyFromExactBoxes) {
         FitBodyAtFreeHeight(RandomEvidence(seed, false), Eigen::Vector3d::UnitZ(), kStep);
     ASSERT_TRUE(body);
     EXPECT_NEAR(body->evidence.plane.offset, 0.0, 0.005);
-    EXPECT_LT(EvidenceOf(*body, body->landmark.Centre()).cost, 0.01);
+    EXPECT_LT(ComputePlaneEvidence(*body, body->landmark.Centre()).cost, 0.01);
   }
 }
 

@@ -142,25 +142,25 @@ TEST(SourceOfSequence, TakesThingsWithGroundTruthOffTheWall) {
   EXPECT_TRUE(source.facts.at("cup").shape_exponents.empty());  // no boxes
 }
 
-TEST(WithoutObjectsOf, DropsTheModelsThatAreInTheScene) {
+TEST(ExcludeObjects, DropsTheModelsThatAreInTheScene) {
   const std::vector<CatalogueModel> models = {{"a", "", {0.1, 0.05, 0.2}},
                                               {"rounded", "", {0.1003, 0.0498, 0.2}},
                                               {"other", "", {0.102, 0.05, 0.2}}};
-  const auto left = WithoutObjectsOf(OneTrueCup(), {}, models);
+  const auto left = ExcludeObjects(OneTrueCup(), {}, models);
   ASSERT_EQ(left.size(), 1u);
   EXPECT_EQ(left[0].name, "other");
 }
 
-TEST(WithoutObjectsOf, DropsTheModelsThatLieInTheScene) {
+TEST(ExcludeObjects, DropsTheModelsThatLieInTheScene) {
   Sequence sequence = OneTrueCup();
   sequence.objects[0].ground_truth->landmark_in_world.rests_on = RestingFace::kBack;
   const Landmark own = InOwnAxes(sequence.objects[0].ground_truth->landmark_in_world);
-  EXPECT_TRUE(WithoutObjectsOf(sequence, {}, {{"lying", "", own.half_axes}}).empty());
+  EXPECT_TRUE(ExcludeObjects(sequence, {}, {{"lying", "", own.half_axes}}).empty());
 }
 
-TEST(WithoutObjectsOf, DropsTheModelsThatHangInTheScene) {
+TEST(ExcludeObjects, DropsTheModelsThatHangInTheScene) {
   const SemanticTable table{{{"cup", {.mount = Mount::kOnWall}}}, {}};
-  EXPECT_TRUE(WithoutObjectsOf(OneTrueCup(), table, {{"on wall", "", {0.2, 0.05, 0.1}}}).empty());
+  EXPECT_TRUE(ExcludeObjects(OneTrueCup(), table, {{"on wall", "", {0.2, 0.05, 0.1}}}).empty());
 }
 
 TEST(PriorErrors, CountLogarithmsAndSigmas) {

@@ -14,9 +14,9 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(UrlOf, IsTheSameBytes) {
-  EXPECT_EQ(UrlOf("room_a-2"), "room_a-2");
-  EXPECT_EQ(UrlOf("a b%.\xe9"), "a%20b%25%2E%E9");
+TEST(EncodeUrl, IsTheSameBytes) {
+  EXPECT_EQ(EncodeUrl("room_a-2"), "room_a-2");
+  EXPECT_EQ(EncodeUrl("a b%.\xe9"), "a%20b%25%2E%E9");
 }
 
 TEST(HtmlText, IsTextWithinElementsAndQuotes) {

@@ -290,14 +290,14 @@ DatasetPage Fitted(size_t max_bytes) {
     page.variants.push_back(variant);
   }
   FitPage(
-      max_bytes, [](const DatasetPage& all) { return PageText(DataOf(all)).size(); }, &page);
+      max_bytes, [](const DatasetPage& all) { return PageText(MakePageData(all)).size(); }, &page);
   for (const PageVariant& variant : page.variants) EXPECT_EQ(variant.metrics.summary.objects, 7);
   return page;
 }
 
 TEST(FitPage, ReducesSingleFramesFirstAndKeepsNumbersWhateverHappens) {
   const DatasetPage some = Fitted(35'000);
-  EXPECT_LE(PageText(DataOf(some)).size(), 35'000 + 200u);  // the notes
+  EXPECT_LE(PageText(MakePageData(some)).size(), 35'000 + 200u);  // the notes
   EXPECT_TRUE(some.variants[0].data.contains("outlines"));
   EXPECT_TRUE(some.variants[1].data.contains("outlines"));
   EXPECT_TRUE(some.variants[2].numbers_only);

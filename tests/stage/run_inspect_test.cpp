@@ -139,7 +139,7 @@ TEST_F(RunInspectTest, TheHeadlineOfAMapIsALine) {
   ground.known_scales = {{0.0, 0.1, "camera_height_m"}};
   const std::vector<Finding> findings = {
       {kObjectsAgainstSettingsCheck, Severity::kWarning, "", "", "", ""}};
-  WriteWorld(File("world.json"), ReportOf(ground, sequence_, findings),
+  WriteWorld(File("world.json"), MakeReport(ground, sequence_, findings),
              {OptionsToJson(GroundOptions()), {}, findings});
   EXPECT_EQ(RunInspect(request, true),
             "3 objects, scale +- 11 % (uncertain: the heights of objects contradict the camera's "

@@ -351,7 +351,7 @@ TEST_F(RunReconstructTest, FindingsAreReported) {
   EXPECT_THAT(printed_.output, HasSubstr("without a pose, and not used: rgb/more.png\n"));
   EXPECT_THAT(ReadReconstruction(Output("reconstruction.json")).body.images_without_pose,
               testing::ElementsAre("rgb/more.png"));
-  EXPECT_EQ(FindingsOf(ParseJsonFile(Output("reconstruction.json"))).size(), 3u);
+  EXPECT_EQ(ReadFindings(ParseJsonFile(Output("reconstruction.json"))).size(), 3u);
 }
 
 TEST_F(RunReconstructTest, AFinishedModelOfAPartOfTheImages) {

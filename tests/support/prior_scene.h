@@ -293,7 +293,7 @@ class PriorSceneBuilder {
       std::vector<PointView> views;
       for (PointObservation& observation : point.observations) {
         observation.pixel += kPixelSigma * Eigen::Vector2d(Normal(), Normal());
-        const Frame& frame = scene_.sequence.frames[*FrameIndexOf(scene_.sequence, observation)];
+        const Frame& frame = scene_.sequence.frames[*FindFrameIndex(scene_.sequence, observation)];
         views.push_back(
             {scene_.sequence.camera, frame.world_from_camera.Inverse(), observation.pixel});
       }

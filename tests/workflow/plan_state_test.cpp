@@ -62,11 +62,11 @@ class PlanStateTest : public FolderTest {
     return "results/" + InstancePath(InstanceOf(stage).Id(), file);
   }
   std::vector<std::string> Reasons(const std::string& stage) const {
-    return StatesOf(plan_, folders_).at(InstanceOf(stage).Id()).reasons;
+    return DetermineStates(plan_, folders_).at(InstanceOf(stage).Id()).reasons;
   }
   // States of import, initialise and evaluate.
   std::vector<std::string> States() const {
-    const auto states = StatesOf(plan_, folders_);
+    const auto states = DetermineStates(plan_, folders_);
     const std::vector<std::string> stages = {"import", "initialise", "evaluate"};
     return Fields(stages, [&](const std::string& stage) {
       return std::string(NameOf(states.at(InstanceOf(stage).Id()).state));
@@ -141,7 +141,7 @@ TEST_F(PlanStateTest, WhatIsQueuedOrRunsSaysSoUnlessItIsDone) {
   Write("under_way", import + " queued\n" + initialise + " running\n" + initialise + " queued\n" +
                          evaluate + " queued\n" + other + " running\n");
   auto under_way = ReadStagesUnderWay(folder_ / "under_way");
-  const auto states = StatesOf(plan_, folders_, under_way["room"]);
+  const auto states = DetermineStates(plan_, folders_, under_way["room"]);
   const auto state = [&](const std::string& stage) {
     return std::string(NameOf(states.at(InstanceOf(stage).Id()).state));
   };
@@ -181,7 +181,7 @@ std::vector<std::string> StagesOf(const Plan& plan, const std::vector<std::strin
 
 TEST(WorkUnitsTest, BranchesBeginWhereStagesTakeLong) {
   const Plan plan = MakePlan(kPipelines, "room", {"InitP", "InitPT", "OursP", "OursPT"});
-  const std::vector<WorkUnit> units = WorkUnitsOf(plan);
+  const std::vector<WorkUnit> units = SplitPlan(plan);
   ASSERT_EQ(units.size(), 3u);
   EXPECT_EQ(units[0].name, kTrunk);
   EXPECT_THAT(StagesOf(plan, units[0].instances),
@@ -208,7 +208,7 @@ TEST(WorkUnitsTest, BranchesReadOnlyTheTrunkAndThemselves) {
     const std::string folder = std::string(kPipelines) + pipelines;
     const Plan plan = MakePlan(folder, "room", VariantNames(folder));
     std::set<std::string> all;
-    const std::vector<WorkUnit> units = WorkUnitsOf(plan);
+    const std::vector<WorkUnit> units = SplitPlan(plan);
     for (const WorkUnit& unit : units) {
       std::set<std::string> known(unit.needs.begin(), unit.needs.end());
       for (const std::string& id : unit.needs) {

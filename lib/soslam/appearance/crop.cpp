@@ -25,8 +25,8 @@ Eigen::Matrix3d LevelFromCamera(const Eigen::Vector3d& ray, const Eigen::Vector3
 
 }  // namespace
 
-Crop CropOf(const cv::Mat& image, const Camera& camera, const Box& box,
-            const Eigen::Vector3d& up_in_camera, int side) {
+Crop RenderCrop(const cv::Mat& image, const Camera& camera, const Box& box,
+                const Eigen::Vector3d& up_in_camera, int side) {
   const Eigen::Vector3d ray = camera.Ray(box.Centre()).normalized();
   const Eigen::Matrix3d level_from_camera = LevelFromCamera(ray, up_in_camera);
 

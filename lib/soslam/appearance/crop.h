@@ -24,7 +24,7 @@ struct Crop {
 };
 
 // `up_in_camera` is a unit vector, `image` undistorted, of 8-bit blue, green, red.
-Crop CropOf(const cv::Mat& image, const Camera& camera, const Box& box,
-            const Eigen::Vector3d& up_in_camera, int side);
+Crop RenderCrop(const cv::Mat& image, const Camera& camera, const Box& box,
+                const Eigen::Vector3d& up_in_camera, int side);
 
 }  // namespace soslam

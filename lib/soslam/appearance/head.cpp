@@ -145,7 +145,7 @@ bool Head::KnowsFeatures(const cv::Mat& of_probe) const {
              kRounding * probe_.cwiseAbs().maxCoeff();
 }
 
-std::optional<int> Head::GroupOf(const std::string& label) const {
+std::optional<int> Head::FindGroup(const std::string& label) const {
   const auto group = group_of_label_.find(NormalisedLabel(label));
   const bool is_told =
       group != group_of_label_.end() &&

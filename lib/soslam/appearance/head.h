@@ -32,7 +32,7 @@ class Head {
 
   // Index of the group of things that a label belongs to; none: the head says nothing of it, as of
   // groups of which it learned neither azimuths nor ratios.
-  std::optional<int> GroupOf(const std::string& label) const;
+  std::optional<int> FindGroup(const std::string& label) const;
 
   // What the features (InnerLayers::Features) of a crop and of its mirror image say.
   BoxAppearance Appearance(const cv::Mat& features, const cv::Mat& mirrored,

@@ -52,7 +52,7 @@ void RefuseInWords(const Place& place, const std::string& violation) {
   throw InputError(pointer.empty() ? violation : fmt::format("{}: {}", pointer, violation));
 }
 
-const json& FieldOf(const json& object, const char* name, const Place& place) {
+const json& RequireField(const json& object, const char* name, const Place& place) {
   CheckIsObject(object, place);
   const auto field = object.find(name);
   if (field == object.end()) {

@@ -71,7 +71,8 @@ inline constexpr double kUnitTolerance = 1e-6;
                          const std::string& expected);
 [[noreturn]] void RefuseInWords(const Place& place, const std::string& violation);
 // Throws InputError unless `object` has this field, which is returned.
-const nlohmann::json& FieldOf(const nlohmann::json& object, const char* name, const Place& place);
+const nlohmann::json& RequireField(const nlohmann::json& object, const char* name,
+                                   const Place& place);
 // Throws InputError for a field that has none of these names.
 void RefuseUnknownFields(const nlohmann::json& object, const std::vector<std::string_view>& names,
                          const Place& place);
@@ -225,7 +226,7 @@ class JsonReader {
   void Field(const char* name, Value* value, const char* /*doc*/, const Limits& limits = {},
              const Describer& describe = {}) {
     names_.push_back(name);
-    Read(internal::FieldOf(json_, name, place_), Place(place_, name), limits, describe, value);
+    Read(internal::RequireField(json_, name, place_), Place(place_, name), limits, describe, value);
   }
   template <typename Value, typename Describer = ByDescribe>
   void OrNull(const char* name, Value* value, const char* doc, const Limits& limits = {},

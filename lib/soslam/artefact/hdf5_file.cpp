@@ -238,7 +238,7 @@ void Hdf5File::RequireWalkable() const {
   }
 }
 
-ArrayShape Hdf5File::ShapeOf(const std::string& name, const Hdf5Handle& data_set) const {
+ArrayShape Hdf5File::ReadShape(const std::string& name, const Hdf5Handle& data_set) const {
   const Hdf5Handle space{H5Dget_space(data_set.id()), &H5Sclose};
   const int rank = H5Sget_simple_extent_ndims(space.id());
   if (rank < 0) FailReading(name, kDamaged);
@@ -259,7 +259,7 @@ ArrayShape Hdf5File::CheckedShape(const std::string& name, const Hdf5Handle& dat
                                   const std::vector<int>& expected) const {
   const Hdf5Element element = Hdf5ElementOf(depth);
   const Hdf5Handle type{H5Dget_type(data_set.id()), &H5Tclose};
-  ArrayShape shape = ShapeOf(name, data_set);
+  ArrayShape shape = ReadShape(name, data_set);
   const bool same_type = H5Tequal(type.id(), element.type) > 0;
   const bool same_shape =
       std::equal(shape.begin(), shape.end(), expected.begin(), expected.end(),
@@ -310,7 +310,7 @@ Hdf5File::Numbers Hdf5File::ReadNumbers(const std::string& name) const {
   const Hdf5Handle data_set{H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), &H5Dclose};
   if (!data_set.valid()) FailReading(name, "is neither a group nor a data set; expected one");
   const Hdf5Handle type{H5Dget_type(data_set.id()), &H5Tclose};
-  Numbers numbers{ShapeOf(name, data_set), {}};
+  Numbers numbers{ReadShape(name, data_set), {}};
   for (const int depth : {CV_8U, CV_16S, CV_32S, CV_32F, CV_64F}) {
     if (H5Tequal(type.id(), Hdf5ElementOf(depth).type) <= 0) continue;
     cv::Mat stored;

@@ -129,8 +129,8 @@ class Hdf5File {
   Hdf5Handle OpenAttribute(const std::string& owner, const std::string& name) const;
   std::uint64_t Size() const;  // size of the file, bytes
   // Shape of a data set. Throws if it has too many values.
-  ArrayShape ShapeOf(const std::string& name, const Hdf5Handle& data_set) const;
-  // ShapeOf; also throws if shape or element type differ from the expected ones.
+  ArrayShape ReadShape(const std::string& name, const Hdf5Handle& data_set) const;
+  // ReadShape; also throws if shape or element type differ from the expected ones.
   ArrayShape CheckedShape(const std::string& name, const Hdf5Handle& data_set, int depth,
                           const std::vector<int>& expected) const;
 

@@ -114,7 +114,7 @@ std::string DigestViolation(const std::string& sha256) {
   return is_digest ? "" : fmt::format("sha256 is \"{}\"; expected 64 hexadecimal digits", sha256);
 }
 
-std::vector<Finding> FindingsOf(const json& artefact) {
+std::vector<Finding> ReadFindings(const json& artefact) {
   if (!artefact.is_object()) throw InputError("is no object; expected an artefact");
   return DescribedFromJson<std::vector<Finding>>(artefact.value("findings", json::array()));
 }

@@ -72,7 +72,7 @@ nlohmann::json ParseJsonText(std::istream& text, const std::string& name);
 std::string JsonText(const nlohmann::json& document, int indent = -1);
 
 // The list "findings" of an artefact of any kind, which is absent when empty. Throws InputError.
-std::vector<Finding> FindingsOf(const nlohmann::json& artefact);
+std::vector<Finding> ReadFindings(const nlohmann::json& artefact);
 
 // The header of an artefact, a FileHeader. JSON artefacts hold it as "artefact", HDF5 artefacts as
 // an attribute.

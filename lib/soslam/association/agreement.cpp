@@ -128,8 +128,8 @@ Associations::DetectionName NameOfDetection(const Sequence& sequence, int detect
   return {sequence.FrameOf(named).id, sequence.ObjectOf(named).id, named.box};
 }
 
-Associations ReportOf(const Sequence& sequence, const Association& association,
-                      const Agreement& agreement) {
+Associations MakeReport(const Sequence& sequence, const Association& association,
+                        const Agreement& agreement) {
   const auto if_any = [](int index, int first_id) {
     return index >= 0 ? std::optional(index + first_id) : std::nullopt;
   };

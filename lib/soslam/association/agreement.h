@@ -35,8 +35,8 @@ Associations::DetectionName NameOfDetection(const Sequence& sequence, int detect
 
 // The decision and its reason for each detection, track and object. Objects have the ids that
 // AssociatedSequence gives them.
-Associations ReportOf(const Sequence& sequence, const Association& association,
-                      const Agreement& agreement);
+Associations MakeReport(const Sequence& sequence, const Association& association,
+                        const Agreement& agreement);
 
 // The sequence with the estimated objects (ids from 1) in place of the given ones. Keeps the
 // detections of these objects; all others are counted as rejected. Each object takes the ground

@@ -78,7 +78,7 @@ AssociationModel::AssociationModel(const Sequence& sequence, const SemanticTable
       labels_(CollectLabels(sequence), options),
       moving_labels_(NormalisedLabels("moving_labels", options.moving_labels)) {}
 
-std::vector<Support> AssociationModel::SupportsOf(const Track& track) const {
+std::vector<Support> AssociationModel::ListSupports(const Track& track) const {
   if (sequence_.planes.empty()) return {{kNoPlane, up_of_segments_.at(SegmentOf(track))}};
   std::vector<Support> supports;
   for (int i = 0; i < static_cast<int>(sequence_.planes.size()); ++i) {
@@ -95,7 +95,7 @@ double AssociationModel::CostOfLabel(const Track& track, const std::string& labe
 
 void AssociationModel::Try(const Track& track, const std::string& label, const Support& support,
                            const std::vector<Landmark>& starts, Hypotheses* hypotheses) const {
-  const ShapePrior prior = PriorOf(track, label);
+  const ShapePrior prior = MakePrior(track, label);
   const double cost_of_plane =
       sequence_.planes.empty() || sequence_.HasSupports()
           ? 0.0
@@ -117,7 +117,7 @@ void AssociationModel::Try(const Track& track, const std::string& label, const S
 
 void AssociationModel::TryFreeHeight(const Track& track, const std::string& label,
                                      Hypotheses* hypotheses) const {
-  const ShapePrior prior = PriorOf(track, label);
+  const ShapePrior prior = MakePrior(track, label);
   if (sequence_.planes.empty() || prior.mount != Mount::kStanding) return;
   const UpEstimate up{UpOfPlanes(sequence_), Eigen::Matrix3d::Zero()};
   const auto free =
@@ -145,13 +145,13 @@ void AssociationModel::TryFreeHeight(const Track& track, const std::string& labe
 
 void AssociationModel::TryOwnLabels(const Track& track, Hypotheses* hypotheses) const {
   for (const std::string& label : OwnLabels(track)) {
-    for (const Support& support : SupportsOf(track)) Try(track, label, support, {}, hypotheses);
+    for (const Support& support : ListSupports(track)) Try(track, label, support, {}, hypotheses);
   }
 }
 
 void AssociationModel::TrySimilar(const Track& track, Hypotheses* hypotheses) const {
   if (track.by_hand && track.by_hand->label) return;
-  std::vector<Support> supports = SupportsOf(track);
+  std::vector<Support> supports = ListSupports(track);
   std::vector<Landmark> starts;
   if (hypotheses->fit) {
     std::erase_if(supports, [&](const Support& support) {
@@ -197,7 +197,7 @@ void AssociationModel::FitLike(const std::vector<const Track*>& parts, Track* tr
   }
   Hypotheses hypotheses;
   for (const auto& [label, plane_index] : ways) {
-    for (const Support& support : SupportsOf(*track)) {
+    for (const Support& support : ListSupports(*track)) {
       if (support.plane_index == plane_index) Try(*track, label, support, starts, &hypotheses);
     }
   }
@@ -220,7 +220,7 @@ void AssociationModel::Settle(const Hypotheses& hypotheses, Track* track) const 
   track->labels = ProbabilitiesOfLabels(cost_of_label);
 }
 
-ShapePrior AssociationModel::PriorOf(const Track& track, const std::string& label) const {
+ShapePrior AssociationModel::MakePrior(const Track& track, const std::string& label) const {
   ShapePrior prior = PriorOfLabel(table_, label, options_);
   if (track.by_hand) prior = WithKnownSize(prior, track.by_hand->size);
   return sequence_.planes.empty() ? prior : TurnedToSupport(prior);
@@ -281,7 +281,7 @@ std::vector<std::optional<BoxMatch>> AssociationModel::Explain(const Track& trac
 }
 
 double AssociationModel::OverlapByBoxes(const Track& track) const {
-  return soslam::OverlapByBoxes(sequence_, track.detections, PriorOf(track, track.fit_label),
+  return soslam::OverlapByBoxes(sequence_, track.detections, MakePrior(track, track.fit_label),
                                 options_, *track.fit);
 }
 

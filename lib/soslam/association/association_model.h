@@ -92,7 +92,7 @@ class AssociationModel {
     int plane_index = kNoPlane;
     std::string label;
   };
-  std::vector<Support> SupportsOf(const Track& track) const;
+  std::vector<Support> ListSupports(const Track& track) const;
   void Try(const Track& track, const std::string& label, const Support& support,
            const std::vector<Landmark>& starts, Hypotheses* hypotheses) const;
   // Labels that the track is detected with, or the one given by hand, on each support.
@@ -102,7 +102,7 @@ class AssociationModel {
   void TrySimilar(const Track& track, Hypotheses* hypotheses) const;
   void TryFreeHeight(const Track& track, const std::string& label, Hypotheses* hypotheses) const;
   double CostOfLabel(const Track& track, const std::string& label, const FittedObject& fit) const;
-  ShapePrior PriorOf(const Track& track, const std::string& label) const;
+  ShapePrior MakePrior(const Track& track, const std::string& label) const;
   void Settle(const Hypotheses& hypotheses, Track* track) const;
 
   const Sequence& sequence_;

@@ -61,8 +61,8 @@ struct NormalDensity {
   double distance;
 };
 
-NormalDensity DensityOf(const Eigen::Vector4d& all_residuals, const Eigen::Matrix4d& all_covariance,
-                        const std::vector<int>& edges) {
+NormalDensity ComputeDensity(const Eigen::Vector4d& all_residuals,
+                             const Eigen::Matrix4d& all_covariance, const std::vector<int>& edges) {
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 4, 4>;
   using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 4, 1>;
   const Matrix covariance = all_covariance(edges, edges);
@@ -138,7 +138,7 @@ std::optional<BoxMatch> BoxLikelihood::Match(const Prediction& prediction,
   const double p = options_.cut_edge_probability;
   BoxMatch best;
   best.overlap = BoxOverlap(prediction.outline, box);
-  const NormalDensity whole = DensityOf(residuals, covariance, {0, 1, 2, 3});
+  const NormalDensity whole = ComputeDensity(residuals, covariance, {0, 1, 2, 3});
   best.cost = whole.cost - 2.0 * std::log(1.0 - 4.0 * p);
   best.distance = whole.distance;
   for (int cut = 0; cut < 4; ++cut) {
@@ -146,7 +146,7 @@ std::optional<BoxMatch> BoxLikelihood::Match(const Prediction& prediction,
     if (p_cut == 0.0) continue;
     std::vector<int> others = {0, 1, 2, 3};
     std::erase(others, cut);
-    const NormalDensity rest = DensityOf(residuals, covariance, others);
+    const NormalDensity rest = ComputeDensity(residuals, covariance, others);
     const double extent_px =
         cut % 2 == 0 ? prediction.outline.Width() : prediction.outline.Height();
     const double cost = rest.cost - 2.0 * std::log(p_cut / extent_px);

@@ -250,7 +250,7 @@ void Remove(const std::set<int>& ids, Clustering* all) {
 }
 
 // Block of frames, of this number, that a cluster is in.
-int BlockOf(const Clustering& all, const Cluster& cluster, int frames) {
+int FindBlock(const Clustering& all, const Cluster& cluster, int frames) {
   return all.FrameOf(cluster.track.detections.front()) / frames;
 }
 
@@ -265,8 +265,8 @@ void ComparePairs(int block, Clustering* all) {
   }
   const auto is_new = [&](const Group& one, const Group& other) {
     const int known = std::min(one.block, other.block);
-    return BlockOf(*all, one, block) == BlockOf(*all, other, block) &&
-           (known == 0 || BlockOf(*all, one, known) != BlockOf(*all, other, known)) &&
+    return FindBlock(*all, one, block) == FindBlock(*all, other, block) &&
+           (known == 0 || FindBlock(*all, one, known) != FindBlock(*all, other, known)) &&
            model.MayShareSupport(one.track, other.track);
   };
   // OddsOfBoxes above zero by the body of each group, by the place of the group of the boxes.
@@ -429,7 +429,7 @@ Division BestDivision(int block, int id, const Clustering& all) {
     if (!is_single) return;
     for (const auto& [other, into] : all.groups) {
       if (other == id || other < cluster.tried_until || into.track.detections.size() < 2 ||
-          BlockOf(all, into, block) != BlockOf(all, cluster, block)) {
+          FindBlock(all, into, block) != FindBlock(all, cluster, block)) {
         continue;
       }
       const auto by_body = [&](const Cluster& body, const Cluster& boxes) {

@@ -25,7 +25,7 @@ using KeptOutRow = Associations::KeptOutRow;
 
 constexpr size_t kRows = 3;  // of each list, for each object
 
-double NearnessOf(const KeptOutRow& row) {
+double SumEvidence(const KeptOutRow& row) {
   const Evidence& evidence = row.evidence;
   return evidence.points + evidence.colours + evidence.body + evidence.labels;
 }
@@ -113,7 +113,7 @@ class EvidenceOfTracks {
       }
       if (std::isfinite(row.evidence.labels)) rows.push_back(row);
     }
-    std::ranges::stable_sort(rows, std::greater<>(), NearnessOf);
+    std::ranges::stable_sort(rows, std::greater<>(), SumEvidence);
     rows.resize(std::min(rows.size(), kRows));
     return rows;
   }
@@ -123,7 +123,7 @@ class EvidenceOfTracks {
 
   void AddPictures(int one, int other, Evidence* evidence) const {
     if (!pairs_.AreLinked(one, other)) return;
-    const PairEvidence::Counts counts = pairs_.CountsOf(one, other);
+    const PairEvidence::Counts counts = pairs_.CountPoints(one, other);
     evidence->points_in_both += counts.in_both;
     evidence->points_in_any += counts.in_any;
     evidence->points += pairs_.LogRatioOfPoints(one, other);
@@ -171,7 +171,7 @@ void AddDecisiveEvidence(const AssociationModel& model, const PairEvidence& pair
   };
   std::ranges::stable_sort(association->held_least, std::less<>(), strength);
   std::ranges::stable_sort(association->held_most, std::greater<>(), strength);
-  std::ranges::stable_sort(association->kept_out, std::greater<>(), NearnessOf);
+  std::ranges::stable_sort(association->kept_out, std::greater<>(), SumEvidence);
 }
 
 }  // namespace soslam

@@ -19,7 +19,7 @@ constexpr double kHiddenShare = 0.5;
 
 }  // namespace
 
-std::vector<Miss> MissesOf(const AssociationModel& model, const Track& track) {
+std::vector<Miss> FindMisses(const AssociationModel& model, const Track& track) {
   const Sequence& sequence = model.sequence();
   std::vector<bool> is_detected(sequence.frames.size(), false);
   for (const int index : track.detections) {
@@ -38,7 +38,7 @@ std::vector<Miss> MissesOf(const AssociationModel& model, const Track& track) {
     expected.frame_index = frame;
     expected.object_index = kNoObject;
     expected.box = box;
-    expected.plane_in_camera = SupportPlaneOf(prediction->landmark_in_camera);
+    expected.plane_in_camera = ComputeSupportPlane(prediction->landmark_in_camera);
     const std::vector<Box> nearer = NearerBoxes(sequence, expected);
     const bool is_hidden = std::ranges::any_of(
         nearer, [&](const Box& by) { return CommonArea(box, by) / box.Area() >= kHiddenShare; });
@@ -66,7 +66,7 @@ void DropFalseTracks(const AssociationModel& model, int threads, Association* as
       if (!is_whole && !track.by_hand) track.overlap_by_boxes = model.OverlapByBoxes(track);
       track.frames_in_sight = static_cast<int>(
           track.detections.size() +
-          std::ranges::count_if(MissesOf(model, track), [&](const Miss& miss) {
+          std::ranges::count_if(FindMisses(model, track), [&](const Miss& miss) {
             return miss.border_px >= border_px && miss.outline.Height() >= smallest_height;
           }));
     }

@@ -39,7 +39,7 @@ FittedObject FittedAt(const ObjectEvidence& evidence, const Landmark& landmark,
   const ParameterJacobian d_parameters = UprightParametrisation(evidence.plane)
                                              .ParameterJacobian(landmark)
                                              .leftCols(evidence.height_is_free ? 7 : 6);
-  const LandmarkModel model = ModelOf(CostsAt(evidence, landmark), landmark);
+  const LandmarkModel model = LineariseCosts(CostsAt(evidence, landmark), landmark);
   const Information information = WeakInformation(d_parameters.cols()) +
                                   d_parameters.transpose() * model.information * d_parameters;
   const Eigen::Matrix<double, Eigen::Dynamic, 3, 0, kMaxParameters, 3> mixed =
@@ -143,7 +143,7 @@ double OverlapByBoxes(const Sequence& sequence, const std::vector<int>& detectio
       EvidenceInWorld(sequence, SpreadOver(detections, static_cast<size_t>(options.max_views)),
                       prior, options.upright);
   evidence.prior.reset();
-  evidence.plane = SupportPlaneOf(landmark);
+  evidence.plane = ComputeSupportPlane(landmark);
   WeighViews(options.upright.ViewCorrelation(), &evidence);
   for (BoxView& view : evidence.views) {
     if (object.feet_are_hidden) view.edges[3].is_one_sided = true;
@@ -155,7 +155,7 @@ double OverlapByBoxes(const Sequence& sequence, const std::vector<int>& detectio
   const ParameterJacobian d_parameters = upright.ParameterJacobian(landmark).leftCols<6>();
   const Information information =
       WeakInformation(6) + d_parameters.transpose() *
-                               ModelOf(CostsAt(evidence, landmark), landmark).information *
+                               LineariseCosts(CostsAt(evidence, landmark), landmark).information *
                                d_parameters;
   const Eigen::LLT<Information> root(information);
   std::mt19937 random;
@@ -164,7 +164,7 @@ double OverlapByBoxes(const Sequence& sequence, const std::vector<int>& detectio
   for (int i = 0; i < kSamples; ++i) {
     Eigen::Matrix<double, 6, 1> draw;
     for (double& value : draw) value = normal(random);
-    UprightVector parameters = upright.ParametersOf(landmark);
+    UprightVector parameters = upright.ComputeParameters(landmark);
     parameters.head<6>() += root.matrixU().solve(draw);
     sum += BoxIou(landmark,
                   upright.LandmarkAt(parameters, landmark.shape_exponents, landmark.rests_on));

@@ -66,7 +66,7 @@ std::vector<MovedThing> FindMovedThings(const AssociationModel& model,
     for (const int box : track.boxes) frames.push_back(model.DetectionAt(box).frame_index);
     const auto [first, last] = std::ranges::minmax(frames);
     seen.push_back({first, last, {}});
-    for (const Miss& miss : MissesOf(model, track)) {
+    for (const Miss& miss : FindMisses(model, track)) {
       // A box of the frame, also one that is not used, may be of what stands at the outline.
       constexpr double kLeastOverlap = 0.2;
       const auto is_at_outline = [&](const auto& detection) {

@@ -15,7 +15,7 @@ struct Miss {
 };
 
 // The misses of a track: all frames that show its whole body, and no nearer detection before it.
-std::vector<Miss> MissesOf(const AssociationModel& model, const Track& track);
+std::vector<Miss> FindMisses(const AssociationModel& model, const Track& track);
 
 // Pairs of objects of one label of which the second is seen only after the first was seen for the
 // last time, and that are more probably one thing that was moved than two that the detector

@@ -55,7 +55,7 @@ PairEvidence::PairEvidence(const Sequence& sequence, const ImageMatches& matches
   for (const PointTrack& track : matches.tracks) {
     std::vector<Sight> sights;
     for (const PointObservation& observation : track.observations) {
-      const auto frame = FrameIndexOf(sequence, observation);
+      const auto frame = FindFrameIndex(sequence, observation);
       const auto pixel = UndistortedPixel(sequence, observation);
       if (!frame || !pixel) continue;
       sights.push_back({static_cast<int>(*frame), {}});
@@ -81,7 +81,7 @@ PairEvidence::PairEvidence(const Sequence& sequence, const ImageMatches& matches
   }
 }
 
-PairEvidence::Counts PairEvidence::CountsOf(int detection, int other) const {
+PairEvidence::Counts PairEvidence::CountPoints(int detection, int other) const {
   if (detections_.empty()) return {};
   const auto count_in = [](const std::map<int, int>& counts, int index) {
     const auto found = counts.find(index);
@@ -99,7 +99,7 @@ bool PairEvidence::AreLinked(int detection, int other) const {
 }
 
 double PairEvidence::LogRatioOfPoints(int detection, int other) const {
-  const Counts counts = CountsOf(detection, other);
+  const Counts counts = CountPoints(detection, other);
   if (counts.in_any == 0) return 0.0;
   const double frames = std::sqrt(static_cast<double>(detections_[detection].in_frame.size()) *
                                   static_cast<double>(detections_[other].in_frame.size()));

@@ -30,7 +30,7 @@ class PairEvidence {
     int in_any = 0;
   };
   // The same for either order. The detections are of different frames.
-  Counts CountsOf(int detection, int other) const;
+  Counts CountPoints(int detection, int other) const;
 
   // True if the detections are of two frames that share a point; others tell nothing of each other.
   bool AreLinked(int detection, int other) const;

@@ -70,7 +70,7 @@ UpEstimate EstimateUp(const Segment& segment, const BoxesOfLabels& boxes,
   }
   const double expected_cost = 0.5 * static_cast<double>(boxes.size());
   const OrientationChoice choice = ChooseOrientation(evidence, expected_cost, kClear);
-  UpEstimate up = UpEstimateOf(up_priors[choice.best], choice.tilt_variance);
+  UpEstimate up = MakeUpEstimate(up_priors[choice.best], choice.tilt_variance);
   up.orientation = evidence[choice.best].orientation;
   up.orientation_tilt_variance = choice.tilt_variance;
   for (size_t i = 0; i < evidence.size(); ++i) {
@@ -84,7 +84,7 @@ UpEstimate EstimateUp(const Segment& segment, const BoxesOfLabels& boxes,
 
 }  // namespace
 
-UpEstimate UpEstimateOf(const UpPrior& prior, double other_variance) {
+UpEstimate MakeUpEstimate(const UpPrior& prior, double other_variance) {
   const Eigen::Matrix3d level = UprightRotation(prior.up_in_world, 0.0).toRotationMatrix();
   Eigen::Matrix2d covariance = TiltCovariance(prior);
   covariance.diagonal().array() += 0.5 * other_variance;
@@ -113,7 +113,7 @@ std::map<int, UpEstimate> UpOfSegments(const Sequence& sequence, const SemanticT
   std::map<int, UpEstimate> up;
   for (const auto& [id, segment] : segments) {
     if (sequence.ground) {
-      up[id] = UpEstimateOf({sequence.ground->up_information, sequence.ground->up_in_world});
+      up[id] = MakeUpEstimate({sequence.ground->up_information, sequence.ground->up_in_world});
       continue;
     }
     BoxesOfLabels boxes;

@@ -28,7 +28,7 @@ struct UpEstimate {
 };
 
 // `other_variance`: of up over alternatives (rad^2), which is added.
-UpEstimate UpEstimateOf(const UpPrior& prior, double other_variance = 0.0);
+UpEstimate MakeUpEstimate(const UpPrior& prior, double other_variance = 0.0);
 
 // Shape prior of a label's objects; it always has a height, also where the table has none.
 ShapePrior PriorOfLabel(const SemanticTable& table, const std::string& label,

@@ -83,12 +83,13 @@ std::string ToMarkdown(const Table& table) {
   for (const auto& row : table.rows) lines.push_back(Formatted(row, format));
   std::vector<size_t> widths(lines.front().size(), 0);
   for (const auto& line : lines) {
-    for (size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], WidthOf(line[i]));
+    for (size_t i = 0; i < line.size(); ++i)
+      widths[i] = std::max(widths[i], CountCharacters(line[i]));
   }
   const auto format_line = [&](const std::vector<std::string>& line) {
     std::string text = "|";
     for (size_t i = 0; i < line.size(); ++i) {
-      const std::string padding(widths[i] - WidthOf(line[i]), ' ');
+      const std::string padding(widths[i] - CountCharacters(line[i]), ' ');
       text += i < table.left_columns ? " " + line[i] + padding : " " + padding + line[i];
       text += " |";
     }

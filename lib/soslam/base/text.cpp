@@ -85,7 +85,7 @@ std::vector<std::string_view> SplitFields(std::string_view text, char separator)
   return fields;
 }
 
-size_t WidthOf(const std::string& text) {
+size_t CountCharacters(const std::string& text) {
   // Continuation bytes do not count.
   return static_cast<size_t>(
       std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
@@ -98,8 +98,8 @@ std::string Wrapped(const std::string& text, size_t width, size_t indent) {
     if (!wrapped.empty()) wrapped += '\n' + std::string(indent, ' ');
     std::istringstream words(line);
     size_t length = 0;
-    for (std::string word; words >> word; length += WidthOf(word)) {
-      if (length > 0 && length + 1 + WidthOf(word) > width) {
+    for (std::string word; words >> word; length += CountCharacters(word)) {
+      if (length > 0 && length + 1 + CountCharacters(word) > width) {
         wrapped += '\n' + std::string(indent, ' ');
         length = 0;
       } else if (length > 0) {

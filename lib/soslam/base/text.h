@@ -27,7 +27,7 @@ std::vector<std::string_view> SplitWords(std::string_view text);
 std::vector<std::string_view> SplitFields(std::string_view text, char separator = ',');
 
 // Number of characters of a text in UTF-8.
-size_t WidthOf(const std::string& text);
+size_t CountCharacters(const std::string& text);
 
 // The text with each of its lines broken at spaces to at most `width` characters, except for longer
 // words; lines after the first are indented.

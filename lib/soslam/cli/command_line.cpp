@@ -292,7 +292,7 @@ void AddOutsidePaths(CLI::App* app) {
       ->group("Common");
 }
 
-int ExitCodeOf(CLI::App* app, const std::function<int()>& run) {
+int RunForExitCode(CLI::App* app, const std::function<int()>& run) {
   try {
     return run();
   } catch (const CLI::Success& answered) {  // --help and its like
@@ -318,7 +318,7 @@ int RunStageMain(int argc, const char* const* argv, const StageInfo& info,
   FLAGS_minloglevel = google::GLOG_FATAL;
   cv::setNumThreads(1);  // stages have threads of their own, on top of which OpenCV's would come
   CLI::App app(info.purpose, info.name);
-  return ExitCodeOf(&app, [&] {
+  return RunForExitCode(&app, [&] {
     ParsedArguments parsed;
     app.formatter(std::make_shared<HelpFormatter>());
     // Wrapped such that a shell reads it as one command.

@@ -111,7 +111,7 @@ void AddOutsidePaths(CLI::App* app);
 
 // Calls `run`, which parses the command line first, and returns its exit code. Errors that it
 // throws become one line on stderr and their exit codes; --help and --version are answered.
-int ExitCodeOf(CLI::App* app, const std::function<int()>& run);
+int RunForExitCode(CLI::App* app, const std::function<int()>& run);
 
 int RunStageMain(int argc, const char* const* argv, const StageInfo& info,
                  const std::vector<OptionRow>& options, const StageBody& body);

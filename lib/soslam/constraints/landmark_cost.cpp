@@ -44,7 +44,7 @@ double TotalCost(const LandmarkCosts& costs, const Landmark& landmark) {
   return sum;
 }
 
-LandmarkModel ModelOf(const LandmarkCosts& costs, const Landmark& landmark) {
+LandmarkModel LineariseCosts(const LandmarkCosts& costs, const Landmark& landmark) {
   LandmarkModel sum;
   for (const auto& cost : costs) cost->AddTo(landmark, &sum);
   return sum;

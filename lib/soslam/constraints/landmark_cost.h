@@ -54,7 +54,7 @@ double ConstantCost(const LandmarkCosts& costs);
 // Sum of all values and constant costs.
 double TotalCost(const LandmarkCosts& costs, const Landmark& landmark);
 // Sum of all costs, without their constant parts, to second order.
-LandmarkModel ModelOf(const LandmarkCosts& costs, const Landmark& landmark);
+LandmarkModel LineariseCosts(const LandmarkCosts& costs, const Landmark& landmark);
 // Convergence tolerance of MinimiseSquares for these costs, relative to 1 + cost.
 double NegligibleDecrease(const LandmarkCosts& costs);
 

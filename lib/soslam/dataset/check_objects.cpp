@@ -57,7 +57,7 @@ std::vector<BoxAndTruth> BoxesAndTruth(const ImportView& view, int shift) {
 
 // Median angle (deg) between boxes and centres; none when there are too few.
 std::optional<double> MedianAngleDeg(const std::vector<BoxAndTruth>& pairs) {
-  const auto angles = ValuesOf(pairs, [](const BoxAndTruth& pair) {
+  const auto angles = CollectValues(pairs, [](const BoxAndTruth& pair) {
     return AngleBetweenDeg(pair.camera.Ray(pair.box.Centre()), pair.landmark_in_camera.Centre());
   });
   return angles.size() < kFewestBoxes ? std::nullopt : MedianOf(angles);
@@ -207,12 +207,12 @@ std::vector<Finding> CheckPlanes(const ImportView& view) {
   const int index = view.sequence.ObjectOf(*detections.front()).plane_index;
   const SupportPlane& plane = view.sequence.planes.at(index);
   const std::vector<Eigen::Vector3d> points_in_world = PointsOnPlane(view, index);
-  const std::vector<double> heights = ValuesOf(points_in_world, [&](const auto& point) {
+  const std::vector<double> heights = CollectValues(points_in_world, [&](const auto& point) {
     return plane.plane_in_world.SignedDistance(point);
   });
   // Median angle between the normal and the images' up, which is about the world's as cameras are
   // held.
-  const double angle_deg = *MedianOf(ValuesOf(detections, [](const Detection* detection) {
+  const double angle_deg = *MedianOf(CollectValues(detections, [](const Detection* detection) {
     return AngleBetweenDeg(detection->plane_in_camera.normal, -Eigen::Vector3d::UnitY());
   }));
   const bool is_upright = angle_deg > 60.0 && angle_deg < 120.0;

@@ -255,13 +255,13 @@ std::vector<PosePair> AlignedAtFirst(std::vector<PosePair> pairs) {
 
 Advice AdviceOnTrajectory(const std::vector<PosePair>& pairs, double extent_m) {
   const auto fits = [&](const std::vector<PosePair>& read) {
-    return IsDrift(GapOf(read), extent_m) && HaveSameScale(read);
+    return IsDrift(ComputeGap(read), extent_m) && HaveSameScale(read);
   };
   for (const PoseReading& reading : kReadings) {
     const auto read = ReadAs(reading, pairs);
     if (!fits(read)) continue;
     return {fmt::format("{} (the gap is {} if the poses are {})", reading.cause,
-                        InWords(GapOf(read)), reading.name),
+                        InWords(ComputeGap(read)), reading.name),
             reading.remedy};
   }
   if (fits(AlignedAtFirst(pairs))) {
@@ -336,14 +336,14 @@ std::vector<Finding> CheckTruth(const ImportView& view) {
     if (listed.has_pose && truth) pairs.push_back({listed.frame.world_from_camera, *truth});
   }
   if (pairs.size() < kFewest) return {};
-  const TrajectoryGap gap = GapOf(pairs);
-  const double extent_m = ExtentOf(pairs, &PosePair::truth);
+  const TrajectoryGap gap = ComputeGap(pairs);
+  const double extent_m = ComputeExtent(pairs, &PosePair::truth);
   if (AreInOneWorld(pairs)) return {};
   const Advice advice = AdviceOnTrajectory(pairs, extent_m);
   return {{"trajectory_against_truth", Severity::kWarning,
            fmt::format("estimated and true poses are {} apart (median of {} frames; {} at the "
                        "first one), of a camera that moves by {:.2f} m",
-                       InWords(gap), pairs.size(), InWords(GapOf({pairs.front()})), extent_m),
+                       InWords(gap), pairs.size(), InWords(ComputeGap({pairs.front()})), extent_m),
            "two trajectories of one world, apart by no more than drift", advice.cause,
            advice.remedy}};
 }

@@ -37,7 +37,7 @@ std::optional<cv::Mat> SmallImage(const ImportView& view, const Frame& frame) {
     const auto path = ImagePath(view.folder, frame.image, view.folder.string());
     const cv::Mat image = ReadImage(path, cv::IMREAD_GRAYSCALE, view.options.image_orientation);
     cv::Mat grey, mean, deviation, even;
-    ViewOf(image).small.convertTo(grey, CV_32F);
+    MakeFrameView(image).small.convertTo(grey, CV_32F);
     cv::blur(grey, mean, window);
     grey -= mean;
     cv::sqrBoxFilter(grey, deviation, -1, window);

@@ -84,7 +84,7 @@ std::string PlainImageName(const std::string& name) {
 constexpr size_t kMaxName = 255;  // bytes of a file's name; regular expressions are recursive
 
 // Folder name without the part that distinguishes the cameras of a rig.
-std::string RigOf(const std::string& plain_name) {
+std::string ExtractRigName(const std::string& plain_name) {
   static const std::regex kCamera("(left|right|[0-9])+");
   return std::regex_replace(plain_name, kCamera, "0");
 }
@@ -93,7 +93,7 @@ bool AreOfTwoCameras(const fs::path& folder, const fs::path& other) {
   const auto names = Difference(folder, other);
   if (std::max(names.first.size(), names.second.size()) > kMaxName) return false;
   const std::string name = PlainImageName(names.first), other_name = PlainImageName(names.second);
-  return name != other_name && RigOf(name) == RigOf(other_name);
+  return name != other_name && ExtractRigName(name) == ExtractRigName(other_name);
 }
 
 }  // namespace

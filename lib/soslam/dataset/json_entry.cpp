@@ -25,7 +25,7 @@ std::string Quoted(const json& value) {
 
 }  // namespace
 
-std::vector<JsonEntry> EntriesOf(const json& list, const std::string& place) {
+std::vector<JsonEntry> ListEntries(const json& list, const std::string& place) {
   std::vector<JsonEntry> entries;
   for (size_t i = 0; i < list.size(); ++i) {
     entries.emplace_back(list[i], fmt::format("{}/{}", place, i));

@@ -27,7 +27,7 @@ struct KnownKeys {
 
 class JsonEntry;
 // The objects of a list, with places "<place>/<index>". They refer to the list.
-std::vector<JsonEntry> EntriesOf(const nlohmann::json& list, const std::string& place);
+std::vector<JsonEntry> ListEntries(const nlohmann::json& list, const std::string& place);
 
 // The vector or matrix of a list of as many numbers or rows as it has; none for anything else.
 template <typename Matrix>

@@ -259,7 +259,7 @@ Landmark LandmarkInCamera(const KittiLabel& label, const KittiCalibration& calib
 void AddLabelledObject(Object object, int segment, Sequence* sequence) {
   const GroundTruth& truth = *object.ground_truth;
   object.plane_index = static_cast<int>(sequence->planes.size());
-  sequence->planes.push_back({object.id, SupportPlaneOf(truth.landmark_in_world)});
+  sequence->planes.push_back({object.id, ComputeSupportPlane(truth.landmark_in_world)});
   sequence->true_objects.push_back({object.id, object.label, truth, segment, object.is_static});
   sequence->objects.push_back(std::move(object));
 }
@@ -274,7 +274,7 @@ DetectionRow RowOfLabel(const KittiLabel& label, const Box& box, double score,
              std::clamp(box.x_max, -0.5, right), std::clamp(box.y_max, -0.5, bottom)};
   row.truncation = label.truncated;
   row.occlusion = label.occluded;
-  row.plane_in_camera = SupportPlaneOf(landmark);
+  row.plane_in_camera = ComputeSupportPlane(landmark);
   row.true_landmark_in_camera = landmark;
   return row;
 }

@@ -26,7 +26,7 @@ Eigen::Vector3d Median(const std::vector<Landmark>& landmarks, const Vector& vec
   Eigen::Vector3d median;
   for (int i = 0; i < 3; ++i) {
     const auto value = [&](const Landmark& landmark) { return std::invoke(vector, landmark)[i]; };
-    median[i] = UpperMedian(ValuesOf(landmarks, value));
+    median[i] = UpperMedian(CollectValues(landmarks, value));
   }
   return median;
 }

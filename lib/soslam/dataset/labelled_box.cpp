@@ -141,7 +141,7 @@ std::map<int, std::string> ReadNames(const JsonEntry& document, const char* list
                                      const char* text_name) {
   const std::string place = fmt::format("{}#/{}", document.place(), list_name);
   std::map<int, std::string> names;
-  for (const JsonEntry& entry : EntriesOf(document.List(list_name), place)) {
+  for (const JsonEntry& entry : ListEntries(document.List(list_name), place)) {
     if (!HasValue(entry, text_name) || entry.Field(text_name) == "") continue;
     if (!names.emplace(entry.Integer("id"), entry.Text(text_name)).second) {
       entry.Refuse("id", "one that no other entry has");
@@ -155,7 +155,7 @@ CocoNames ReadCocoNames(const json& document, const fs::path& path) {
   CocoNames names;
   if (HasValue(entry, "images")) {
     names.images = ReadNames(entry, "images", "file_name");
-    for (const JsonEntry& image : EntriesOf(entry.List("images"), entry.place())) {
+    for (const JsonEntry& image : ListEntries(entry.List("images"), entry.place())) {
       // Programs write 0 or null if they do not know a size.
       const auto number = [&](const char* name) {
         return image.Has(name) && image.Field(name).is_number() ? image.Real(name) : 0.0;
@@ -365,7 +365,7 @@ CocoBoxes ReadCocoResults(const fs::path& results, const std::optional<fs::path>
   const json& list = is_list ? document : JsonEntry(document, results.string()).List("annotations");
   read.has_categories = names.has_value();
   for (const JsonEntry& entry :
-       EntriesOf(list, results.string() + (is_list ? "#" : "#/annotations"))) {
+       ListEntries(list, results.string() + (is_list ? "#" : "#/annotations"))) {
     ReadEntry(entry, names, &read);
   }
   return read;
@@ -377,10 +377,10 @@ std::vector<LabelledBox> ReadOaSlamBoxes(const std::filesystem::path& path,
   const json images = ParseJsonFile(path);
   if (!images.is_array()) throw InputError(path.string() + ": is not a list of images");
   std::vector<LabelledBox> boxes;
-  for (const JsonEntry& image : EntriesOf(images, path.string() + "#")) {
+  for (const JsonEntry& image : ListEntries(images, path.string() + "#")) {
     const std::string name = image.Text("file_name");
     for (const JsonEntry& entry :
-         EntriesOf(image.List("detections"), image.place() + "/detections")) {
+         ListEntries(image.List("detections"), image.place() + "/detections")) {
       const int category = entry.Integer("category_id");
       if (category < 0 || category >= static_cast<int>(labels.size())) {
         entry.Refuse("category_id", fmt::format("0 to {}", labels.size() - 1));

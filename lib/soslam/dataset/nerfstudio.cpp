@@ -31,7 +31,7 @@ double RealOr(const JsonEntry& entry, const char* name, double value) {
 }
 
 std::vector<JsonEntry> ListFrames(const JsonEntry& all) {
-  return EntriesOf(all.List("frames"), all.place() + "#/frames");
+  return ListEntries(all.List("frames"), all.place() + "#/frames");
 }
 
 // The path of a frame's image, with the extension that Blender's scenes leave out: that of a file

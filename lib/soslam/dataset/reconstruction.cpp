@@ -14,7 +14,8 @@
 #include "soslam/model/sequence.h"
 
 namespace soslam {
-Reconstruction ReconstructionOf(const ColmapModel& model, const std::vector<ListedImage>& images) {
+Reconstruction BuildReconstruction(const ColmapModel& model,
+                                   const std::vector<ListedImage>& images) {
   Reconstruction reconstruction;
   reconstruction.world_from_camera.resize(images.size());
   std::vector<NamedPose> poses;

@@ -23,7 +23,8 @@ struct Reconstruction {
 // listed are left out with their observations, and points with them that no listed image sees.
 // Observations are sorted by frame. Throws InputError when an image has two poses, and when none is
 // listed.
-Reconstruction ReconstructionOf(const ColmapModel& model, const std::vector<ListedImage>& images);
+Reconstruction BuildReconstruction(const ColmapModel& model,
+                                   const std::vector<ListedImage>& images);
 
 // Numbers of images and points, images without a pose, and medians; the rest is left as it is.
 void Summarise(const Reconstruction& reconstruction, const std::vector<ListedImage>& images,

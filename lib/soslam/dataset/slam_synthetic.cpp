@@ -95,7 +95,7 @@ class Problem {
     if (!(length > 0.0)) entry_.Refuse("support_plane_world", "nx, ny, nz, d");
     const int plane_index = static_cast<int>(content_->sequence.planes.size());
     content_->sequence.planes.push_back({number_, {plane.head<3>() / length, plane[3] / length}});
-    for (const JsonEntry& entry : EntriesOf(ShortList("objects"), Place("objects"))) {
+    for (const JsonEntry& entry : ListEntries(ShortList("objects"), Place("objects"))) {
       Landmark landmark;
       landmark.frame_from_object = {
           Eigen::Quaterniond(Eigen::AngleAxisd(entry.Real("yaw"), Eigen::Vector3d::UnitZ())),
@@ -121,7 +121,7 @@ class Problem {
   }
 
   void AddRows() {
-    for (const JsonEntry& entry : EntriesOf(entry_.List("boxes"), Place("boxes"))) {
+    for (const JsonEntry& entry : ListEntries(entry_.List("boxes"), Place("boxes"))) {
       const Eigen::Vector4d box = entry.Vector<4>("box");
       content_->rows.push_back({entry.place(), Id(Index(entry, "frame", frames_)),
                                 Id(Index(entry, "object", objects_)), kLabel, 1.0,

@@ -31,8 +31,8 @@ struct Centres {
   Eigen::Vector3d mean_estimated, mean_truth;
 
   explicit Centres(const std::vector<PosePair>& pairs)
-      : estimated(CentresOf(pairs, &PosePair::estimated)),
-        truth(CentresOf(pairs, &PosePair::truth)),
+      : estimated(CollectCentres(pairs, &PosePair::estimated)),
+        truth(CollectCentres(pairs, &PosePair::truth)),
         mean_estimated(estimated.rowwise().mean()),
         mean_truth(truth.rowwise().mean()) {}
 

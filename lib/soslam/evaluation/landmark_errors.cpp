@@ -75,7 +75,7 @@ double AttitudeError(const Landmark& estimate, const Landmark& truth_in_frame) {
 namespace {
 
 // The landmark, rotated about its z axis until its x axis points as that of `other` does.
-Landmark WithYawOf(const Landmark& other, const Landmark& landmark) {
+Landmark AlignYaw(const Landmark& other, const Landmark& landmark) {
   const Eigen::Vector3d front = landmark.frame_from_object.rotation.conjugate() *
                                 (other.frame_from_object.rotation * Eigen::Vector3d::UnitX());
   return RotatedAboutZ(landmark, std::atan2(front.y(), front.x()));
@@ -88,7 +88,7 @@ LandmarkErrors CompareLandmarks(const Landmark& estimate, const GroundTruth& tru
   LandmarkErrors errors;
   errors.centre_m = (estimate.Centre() - truth_in_frame.Centre()).norm();
   if (truth.rotationally_symmetric) {
-    errors.iou = BoxIou(estimate, WithYawOf(estimate, truth_in_frame));
+    errors.iou = BoxIou(estimate, AlignYaw(estimate, truth_in_frame));
     return errors;
   }
   const Eigen::Quaterniond& estimated = estimate.frame_from_object.rotation;
@@ -165,7 +165,7 @@ LandmarkErrors CompareInCamera(const Landmark& estimate, const GroundTruth& trut
   errors.what_if = {errors.iou, errors.iou, iou(placed), iou(sized)};
   if (truth.rotationally_symmetric) return errors;
   errors.what_if->yaw =
-      std::max(iou(WithYawOf(truth_in_camera, estimate)), iou(WithYawOf(truth_in_camera, named)));
+      std::max(iou(AlignYaw(truth_in_camera, estimate)), iou(AlignYaw(truth_in_camera, named)));
   // Boxes are symmetric to half turns, which leaves two of the four.
   errors.what_if->quarter_turn =
       std::max(errors.iou, iou(RotatedAboutZ(named, 0.5 * std::numbers::pi)));
@@ -181,7 +181,7 @@ FrontError CompareFronts(const ObjectEstimate& estimate, const Landmark& aligned
 }
 
 std::optional<FrontSummary> SummariseFronts(const std::vector<FrontError>& fronts) {
-  const std::vector<double> errors = ValuesOf(fronts, &FrontError::deg);
+  const std::vector<double> errors = CollectValues(fronts, &FrontError::deg);
   if (errors.empty()) return std::nullopt;
   const auto is_right = [](double deg) { return deg < 30.0; };
   const auto is_wrong = [](const FrontError& front) { return front.is_known && front.deg > 45.0; };
@@ -214,7 +214,7 @@ std::optional<WrongPart> FindDominantError(const Landmark& estimate, const Groun
   };
   const Eigen::Vector3d foot = Foot(named), up = Up(truth_in_frame);
   // Upright, and moved onto the true plane: straight, or along the line of sight if that meets it.
-  const Plane plane = SupportPlaneOf(truth_in_frame);
+  const Plane plane = ComputeSupportPlane(truth_in_frame);
   Landmark upright = named;
   upright.frame_from_object.rotation =
       (RotationBetween(Up(named), up) * named.frame_from_object.rotation).normalized();
@@ -232,7 +232,7 @@ std::optional<WrongPart> FindDominantError(const Landmark& estimate, const Groun
   const std::array candidates = {
       WrongPart{BodyPart::kPlane, on_plane},
       WrongPart{BodyPart::kSize, iou(WithFootAt(sized, foot))},
-      WrongPart{BodyPart::kYaw, iou(WithYawOf(truth_in_frame, named))},
+      WrongPart{BodyPart::kYaw, iou(AlignYaw(truth_in_frame, named))},
       WrongPart{BodyPart::kPlace, iou(WithFootAt(named, foot + shift - up.dot(shift) * up))}};
   const WrongPart& best = *std::ranges::max_element(candidates, {}, &WrongPart::iou);
   return best.iou > iou(named) + kLeastGain ? std::optional(best) : std::nullopt;

@@ -53,7 +53,7 @@ template <typename Items, typename WhatIfOf>
 std::optional<WhatIf> MeanWhatIf(const Items& items, const WhatIfOf& what_if_of) {
   WhatIf mean;
   for (const auto iou : {&WhatIf::yaw, &WhatIf::quarter_turn, &WhatIf::place, &WhatIf::size}) {
-    const auto value = MeanOf(ValuesOf(items, [&](const auto& item) {
+    const auto value = MeanOf(CollectValues(items, [&](const auto& item) {
       const std::optional<WhatIf> what_if = std::invoke(what_if_of, item);
       return what_if ? std::optional((*what_if).*iou) : std::nullopt;
     }));

@@ -30,8 +30,9 @@ std::optional<InFrames> CompareInFrames(const ReasonInput& input, const TrueView
         input.sequence.true_objects[true_index].truth, *truth_in_camera));
   }
   if (errors.empty()) return std::nullopt;
-  return InFrames{static_cast<int>(errors.size()), *MeanOf(ValuesOf(errors, &LandmarkErrors::iou)),
-                  *MeanOf(ValuesOf(errors, &LandmarkErrors::centre_m)),
+  return InFrames{static_cast<int>(errors.size()),
+                  *MeanOf(CollectValues(errors, &LandmarkErrors::iou)),
+                  *MeanOf(CollectValues(errors, &LandmarkErrors::centre_m)),
                   *MeanWhatIf(errors, &LandmarkErrors::what_if)};
 }
 
@@ -108,11 +109,11 @@ std::vector<TrueObjectRow> ObjectRows(const Sequence& sequence, const AlignedMap
 FoundSummary Summarise(std::vector<LandmarkRow> rows) {
   std::erase_if(rows, [](const LandmarkRow& row) { return row.fate != Fate::kFound; });
   const auto mean = [&](const auto& of_errors) {
-    return MeanOf(ValuesOf(
+    return MeanOf(CollectValues(
         rows, [&](const LandmarkRow& row) { return std::invoke(of_errors, *row.errors); }));
   };
   const auto plane_mean = [&](const auto& of_errors) {
-    return MeanOf(ValuesOf(rows, [&](const LandmarkRow& row) {
+    return MeanOf(CollectValues(rows, [&](const LandmarkRow& row) {
       return row.plane ? std::optional(of_errors(*row.plane)) : std::nullopt;
     }));
   };
@@ -243,10 +244,10 @@ std::optional<MapQuality> EvaluateMapQuality(const Sequence& sequence,
     in_world.push_back(*row.errors);
   }
   quality.in_frames = {static_cast<int>(in_frames.size()),
-                       MeanOf(ValuesOf(in_frames, &InFrames::iou_mean)),
-                       MeanOf(ValuesOf(in_world, &BodyErrors::iou)),
-                       MedianOf(ValuesOf(in_frames, &InFrames::centre_m_mean)),
-                       MedianOf(ValuesOf(in_world, &BodyErrors::centre_m)),
+                       MeanOf(CollectValues(in_frames, &InFrames::iou_mean)),
+                       MeanOf(CollectValues(in_world, &BodyErrors::iou)),
+                       MedianOf(CollectValues(in_frames, &InFrames::centre_m_mean)),
+                       MedianOf(CollectValues(in_world, &BodyErrors::centre_m)),
                        MeanWhatIf(in_frames, &InFrames::what_if)};
   return quality;
 }

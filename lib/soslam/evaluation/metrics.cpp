@@ -20,14 +20,14 @@ ObjectMetrics Average(int object_index, int observations,
   }
   metrics.estimates = static_cast<int>(known.size());
   const auto iou = [](const auto& error) { return error ? error->iou : 0.0; };
-  metrics.iou = MeanOf(ValuesOf(errors, iou)).value_or(0.0);
+  metrics.iou = MeanOf(CollectValues(errors, iou)).value_or(0.0);
   metrics.what_if = MeanWhatIf(errors, [](const auto& error) {
     return error ? error->what_if : std::optional<WhatIf>(WhatIf());
   });
-  metrics.centre_m = MeanOf(ValuesOf(known, &LandmarkErrors::centre_m));
-  metrics.rotation_deg = MeanOf(ValuesOf(known, &LandmarkErrors::rotation_deg));
-  metrics.yaw_deg = MeanOf(ValuesOf(known, &LandmarkErrors::yaw_deg));
-  metrics.attitude_deg = MeanOf(ValuesOf(known, &LandmarkErrors::attitude_deg));
+  metrics.centre_m = MeanOf(CollectValues(known, &LandmarkErrors::centre_m));
+  metrics.rotation_deg = MeanOf(CollectValues(known, &LandmarkErrors::rotation_deg));
+  metrics.yaw_deg = MeanOf(CollectValues(known, &LandmarkErrors::yaw_deg));
+  metrics.attitude_deg = MeanOf(CollectValues(known, &LandmarkErrors::attitude_deg));
   return metrics;
 }
 
@@ -36,9 +36,9 @@ MetricsSummary Summarise(std::vector<ObjectMetrics> objects) {
   MetricsSummary summary;
   summary.objects = static_cast<int>(objects.size());
   for (const ObjectMetrics& object : objects) summary.observations += object.observations;
-  const std::vector<double> ious = ValuesOf(objects, &ObjectMetrics::iou);
-  const std::vector<double> rotations = ValuesOf(objects, &ObjectMetrics::rotation_deg);
-  const std::vector<double> yaws = ValuesOf(objects, &ObjectMetrics::yaw_deg);
+  const std::vector<double> ious = CollectValues(objects, &ObjectMetrics::iou);
+  const std::vector<double> rotations = CollectValues(objects, &ObjectMetrics::rotation_deg);
+  const std::vector<double> yaws = CollectValues(objects, &ObjectMetrics::yaw_deg);
   summary.iou_mean = MeanOf(ious);
   summary.iou_median = MedianOf(ious);
   summary.rotation_deg_mean = MeanOf(rotations);

@@ -36,8 +36,9 @@ std::vector<Finding> CheckScale(const std::vector<RelativeHeight>& relative) {
   // The standard deviation of the median of n normal values is this times sigma / sqrt(n).
   constexpr double kMedianSigma = 1.25;
   if (relative.size() < kFewest) return {};
-  const double log_factor = *MedianOf(ValuesOf(relative, &RelativeHeight::log_ratio));
-  const double sigma = kMedianSigma * *MedianOf(ValuesOf(relative, &RelativeHeight::log_sigma)) /
+  const double log_factor = *MedianOf(CollectValues(relative, &RelativeHeight::log_ratio));
+  const double sigma = kMedianSigma *
+                       *MedianOf(CollectValues(relative, &RelativeHeight::log_sigma)) /
                        std::sqrt(static_cast<double>(relative.size()));
   const double least = std::max(std::log(kSmallestFactor), kSigmas * sigma);
   if (std::abs(log_factor) <= least) return {};

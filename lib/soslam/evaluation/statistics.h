@@ -11,7 +11,7 @@ namespace soslam {
 // One value of each item that has it: `value_of` is a member or function that returns a double or
 // std::optional<double>.
 template <typename Items, typename ValueOf>
-std::vector<double> ValuesOf(const Items& items, const ValueOf& value_of) {
+std::vector<double> CollectValues(const Items& items, const ValueOf& value_of) {
   std::vector<double> values;
   for (const auto& item : items) {
     if (const std::optional<double> value = std::invoke(value_of, item)) values.push_back(*value);

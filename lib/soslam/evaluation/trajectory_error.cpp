@@ -23,7 +23,7 @@ std::vector<PosePair> PosePairs(const Sequence& sequence,
   return pairs;
 }
 
-TrajectoryGap GapOf(const std::vector<PosePair>& pairs) {
+TrajectoryGap ComputeGap(const std::vector<PosePair>& pairs) {
   std::vector<double> rotations, translations;
   for (const auto& [estimated, truth] : pairs) {
     rotations.push_back(kDegPerRad * estimated.rotation.angularDistance(truth.rotation));
@@ -32,7 +32,7 @@ TrajectoryGap GapOf(const std::vector<PosePair>& pairs) {
   return {*MedianOf(rotations), *MedianOf(translations)};
 }
 
-double ExtentOf(const std::vector<PosePair>& pairs, Rigid3d PosePair::*pose) {
+double ComputeExtent(const std::vector<PosePair>& pairs, Rigid3d PosePair::*pose) {
   Eigen::AlignedBox3d around;
   for (const PosePair& pair : pairs) around.extend((pair.*pose).translation);
   return around.diagonal().norm();
@@ -46,9 +46,9 @@ double MeasureSpread(const std::vector<PosePair>& pairs, Rigid3d PosePair::*pose
   Eigen::Vector3d middle;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     middle[axis] = *MedianOf(
-        ValuesOf(pairs, [&](const PosePair& pair) { return (pair.*pose).translation[axis]; }));
+        CollectValues(pairs, [&](const PosePair& pair) { return (pair.*pose).translation[axis]; }));
   }
-  return *MedianOf(ValuesOf(
+  return *MedianOf(CollectValues(
       pairs, [&](const PosePair& pair) { return ((pair.*pose).translation - middle).norm(); }));
 }
 
@@ -71,10 +71,10 @@ bool IsDrift(const TrajectoryGap& gap, double extent_m) {
 }
 
 bool AreInOneWorld(const std::vector<PosePair>& pairs) {
-  return IsDrift(GapOf(pairs), ExtentOf(pairs, &PosePair::truth)) && HaveSameScale(pairs);
+  return IsDrift(ComputeGap(pairs), ComputeExtent(pairs, &PosePair::truth)) && HaveSameScale(pairs);
 }
 
-Eigen::Matrix3Xd CentresOf(const std::vector<PosePair>& pairs, Rigid3d PosePair::*pose) {
+Eigen::Matrix3Xd CollectCentres(const std::vector<PosePair>& pairs, Rigid3d PosePair::*pose) {
   Eigen::Matrix3Xd centres(3, pairs.size());
   for (Eigen::Index i = 0; i < centres.cols(); ++i) {
     centres.col(i) = (pairs[i].*pose).translation;
@@ -94,7 +94,8 @@ double ResidualOfFit(const Eigen::Matrix3Xd& estimated, const Eigen::Matrix3Xd& 
 
 std::optional<double> AbsoluteTrajectoryError(const std::vector<PosePair>& pairs) {
   if (pairs.size() < 3) return std::nullopt;
-  return ResidualOfFit(CentresOf(pairs, &PosePair::estimated), CentresOf(pairs, &PosePair::truth),
+  return ResidualOfFit(CollectCentres(pairs, &PosePair::estimated),
+                       CollectCentres(pairs, &PosePair::truth),
                        /*with_scale=*/false);
 }
 

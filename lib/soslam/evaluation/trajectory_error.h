@@ -27,10 +27,10 @@ struct TrajectoryGap {
   double translation_m = 0.0;
 };
 // `pairs` must not be empty.
-TrajectoryGap GapOf(const std::vector<PosePair>& pairs);
+TrajectoryGap ComputeGap(const std::vector<PosePair>& pairs);
 
 // Extent of a camera's path (m): the diagonal of the box around it.
-double ExtentOf(const std::vector<PosePair>& pairs, Rigid3d PosePair::*pose);
+double ComputeExtent(const std::vector<PosePair>& pairs, Rigid3d PosePair::*pose);
 
 // True if the median distances of both cameras from the middles of their paths are about equal.
 bool HaveSameScale(const std::vector<PosePair>& pairs);
@@ -42,7 +42,7 @@ bool IsDrift(const TrajectoryGap& gap, double extent_m);
 bool AreInOneWorld(const std::vector<PosePair>& pairs);
 
 // Camera centres, in columns.
-Eigen::Matrix3Xd CentresOf(const std::vector<PosePair>& pairs, Rigid3d PosePair::*pose);
+Eigen::Matrix3Xd CollectCentres(const std::vector<PosePair>& pairs, Rigid3d PosePair::*pose);
 
 // The root mean square distance of the truth from the estimate, moved and perhaps scaled so that it
 // is smallest (Umeyama).

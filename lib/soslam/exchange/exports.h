@@ -53,7 +53,7 @@ enum class CocoAnnotations { kNone, kVisibleBoxes };
 std::string CocoDatasetText(const std::vector<World>& worlds, CocoAnnotations annotations);
 
 // A world in glTF 2.0, in one self-contained file. The root node "world" rotates the world so that
-// UpOf is glTF's y; below it are
+// EstimateCommonUp is glTF's y; below it are
 // - a node "<label> <id>" per landmark: its pose, its body as a mesh in the object frame, a
 // material
 //   named by the label, and extras: id, label, observations, half_axes [a, b, c] in metres, yaw_deg
@@ -74,9 +74,9 @@ std::string GlbBytes(const World& world, const LabelColours& colours);
 std::string LandmarksCsvText(const std::vector<World>& worlds);
 
 // A short table of the bodies as upright boxes, one row each below a header: label; centre x, y, z;
-// full lengths size_x, size_y, size_z; yaw_deg, that of size_x about UpOf(world); score, the mean
-// of the object's detections; id. Metres. size_z is along the body's axis nearest to up; how far
-// that leans is left out.
+// full lengths size_x, size_y, size_z; yaw_deg, that of size_x about EstimateCommonUp(world);
+// score, the mean of the object's detections; id. Metres. size_z is along the body's axis nearest
+// to up; how far that leans is left out.
 std::string BoxesCsvText(const World& world);
 
 // The poses in the text format of the TUM RGB-D benchmark: a line "timestamp tx ty tz qx qy qz qw"

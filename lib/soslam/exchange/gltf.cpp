@@ -37,7 +37,7 @@ void AppendLittleEndian(std::uint32_t value, std::string* bytes) {
 class GltfBuilder {
  public:
   GltfBuilder(const World& world, const LabelColours& colours) : colours_(colours) {
-    const auto root_rotation = RotationBetween(UpOf(world), Eigen::Vector3d::UnitY());
+    const auto root_rotation = RotationBetween(EstimateCommonUp(world), Eigen::Vector3d::UnitY());
     document_ = {{"asset", {{"version", "2.0"}, {"generator", "soslam " SOSLAM_VERSION}}},
                  {"scene", 0},
                  {"scenes", json::array({{{"nodes", json::array({0})}}})}};
@@ -130,7 +130,7 @@ class GltfBuilder {
                    {"label", object.label},
                    {"observations", object.estimate.observations},
                    {"half_axes", landmark.half_axes},
-                   {"yaw_deg", YawOf(object) * kDegPerRad},
+                   {"yaw_deg", ComputeYaw(object) * kDegPerRad},
                    {"shape_exponent", landmark.shape_exponents.horizontal},
                    {"vertical_exponent", landmark.shape_exponents.vertical}};
     if (landmark.rests_on != RestingFace::kBottom) {

@@ -36,7 +36,7 @@ std::vector<std::string> MakeCsvRow(const WorldObject& object) {
     Append(landmark.Centre(), &row);
     Append(landmark.frame_from_object.rotation.coeffs(), &row);
     Append(landmark.half_axes, &row);
-    Append(std::array{YawOf(object) * kDegPerRad, landmark.shape_exponents.horizontal,
+    Append(std::array{ComputeYaw(object) * kDegPerRad, landmark.shape_exponents.horizontal,
                       landmark.shape_exponents.vertical},
            &row);
     if (object.estimate.covariance) {
@@ -77,7 +77,7 @@ std::string LandmarksCsvText(const std::vector<World>& worlds) {
 }
 
 std::string BoxesCsvText(const World& world) {
-  const Eigen::Vector3d up = UpOf(world);
+  const Eigen::Vector3d up = EstimateCommonUp(world);
   std::string text = "label,x,y,z,size_x,size_y,size_z,yaw_deg,score,id\n";
   for (const WorldObject& object : world.objects) {
     if (!object.estimate.landmark_in_world) continue;

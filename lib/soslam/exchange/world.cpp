@@ -47,7 +47,7 @@ std::vector<World> WorldsOfMap(const Sequence& sequence, const MapEstimate& map)
     World& world = segment ? *std::ranges::find(worlds, *segment, &World::segment) : worlds.front();
     world.objects.push_back(
         {object.id, object.label, segment, map.planes_in_world[object.plane_index].normal,
-         MeanOf(ValuesOf(detections_by_object[index], score)).value_or(1.0), estimate});
+         MeanOf(CollectValues(detections_by_object[index], score)).value_or(1.0), estimate});
     if (!segment && estimate.landmark_in_world) {
       world.objects.back().estimate.landmark_in_world.reset();
       world.objects.back().estimate.failure = "unknown_segment";
@@ -85,7 +85,7 @@ std::vector<World> WorldsOfTruth(const Sequence& sequence) {
   return worlds;
 }
 
-Eigen::Vector3d UpOf(const World& world) {
+Eigen::Vector3d EstimateCommonUp(const World& world) {
   constexpr double kMinCosine = 0.9;
   std::vector<Eigen::Vector3d> normals;
   for (const WorldObject& object : world.objects) {
@@ -147,7 +147,7 @@ void AddPoints(const Sequence& sequence, const std::vector<MapPoint>& points,
   }
 }
 
-double YawOf(const WorldObject& object) {
+double ComputeYaw(const WorldObject& object) {
   return Yaw(object.support_normal, object.estimate.landmark_in_world->frame_from_object.rotation);
 }
 

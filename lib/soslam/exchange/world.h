@@ -75,7 +75,7 @@ std::vector<World> WorldsOfTruth(const Sequence& sequence);
 
 // The support normal (in the world) that most objects with a landmark share to about 25 degrees;
 // the z axis if there are no objects.
-Eigen::Vector3d UpOf(const World& world);
+Eigen::Vector3d EstimateCommonUp(const World& world);
 
 // The folder that holds the images of all worlds, relative to the dataset folder: "rgb", or the
 // last one that they share.
@@ -88,7 +88,7 @@ void AddPoints(const Sequence& sequence, const std::vector<MapPoint>& points,
                std::vector<World>* worlds);
 
 // The yaw (rad) of the object's landmark about its support normal. The object must have a landmark.
-double YawOf(const WorldObject& object);
+double ComputeYaw(const WorldObject& object);
 
 // `quality` is map_quality of the metrics.json that belongs to the map.
 

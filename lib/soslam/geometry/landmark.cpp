@@ -94,7 +94,7 @@ SupportPoint FindSupportPoint(const Landmark& landmark, const Eigen::Vector3d& d
           direction.dot(landmark.Centre()) + support.extent};
 }
 
-Plane SupportPlaneOf(const Landmark& landmark) {
+Plane ComputeSupportPlane(const Landmark& landmark) {
   const Eigen::Vector3d up = landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ();
   return {up, landmark.half_axes.z() - up.dot(landmark.Centre())};
 }

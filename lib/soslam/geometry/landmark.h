@@ -100,7 +100,7 @@ struct SupportPoint {
 SupportPoint FindSupportPoint(const Landmark& landmark, const Eigen::Vector3d& direction);
 
 // The support plane: tangent to the landmark at the end of its -z axis, with its z axis as normal.
-Plane SupportPlaneOf(const Landmark& landmark);
+Plane ComputeSupportPlane(const Landmark& landmark);
 
 // True if all numbers are finite and the half axes positive.
 bool HasExtent(const Landmark& landmark);

@@ -31,7 +31,7 @@ void CheckScale(const GroundEstimate& estimate, std::vector<Finding>* findings) 
     return;
   }
   if (estimate.scale->log_sigma < kUncertain) return;
-  const WorldScale scale = *WorldScaleOf(estimate, {});
+  const WorldScale scale = *EstimateWorldScale(estimate, {});
   constexpr double kLeastDifference = 0.05;  // one that is seen in the words
   const int objects = estimate.AgreeingObjects();
   const double independent = estimate.IndependentObjects();
@@ -218,8 +218,8 @@ std::vector<std::string> GivenInWords(const WorldScale& scale) {
 
 }  // namespace
 
-std::optional<WorldScale> WorldScaleOf(const GroundEstimate& estimate,
-                                       const std::vector<Finding>& findings) {
+std::optional<WorldScale> EstimateWorldScale(const GroundEstimate& estimate,
+                                             const std::vector<Finding>& findings) {
   if (!estimate.scale) return std::nullopt;
   WorldScale scale{std::exp(estimate.scale->log_scale),
                    estimate.scale->log_sigma,
@@ -255,8 +255,8 @@ std::optional<WorldScale> WorldScaleOf(const GroundEstimate& estimate,
   return scale;
 }
 
-WorldReport ReportOf(const GroundEstimate& estimate, const Sequence& input,
-                     const std::vector<Finding>& findings) {
+WorldReport MakeReport(const GroundEstimate& estimate, const Sequence& input,
+                       const std::vector<Finding>& findings) {
   WorldReport report;
   report.dataset = input.name;
   report.up = {estimate.up_in_input,
@@ -270,12 +270,12 @@ WorldReport ReportOf(const GroundEstimate& estimate, const Sequence& input,
   for (const TriedOrientation& tried : estimate.up_of_cameras.orientations) {
     report.up.tried.push_back({tried.orientation, tried.cost, tried.probability});
   }
-  report.scale = WorldScaleOf(estimate, findings);
+  report.scale = EstimateWorldScale(estimate, findings);
   report.output_from_input = estimate.output_from_input;
   for (int i = 0; i < std::ssize(estimate.planes); ++i) {
     const auto objects = std::ranges::count(estimate.objects, i, &WorldReport::ObjectRow::plane);
-    report.planes.push_back(
-        {RowOf(estimate.planes[i], i), estimate.points_on_planes[i], static_cast<int>(objects)});
+    report.planes.push_back({MakePlaneRow(estimate.planes[i], i), estimate.points_on_planes[i],
+                             static_cast<int>(objects)});
   }
   report.points = estimate.points;
   report.planes_of_points = estimate.planes_of_points;

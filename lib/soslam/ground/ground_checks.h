@@ -25,12 +25,12 @@ inline constexpr const char* kObjectsAgainstOneAnotherCheck = "scale_contradicte
 inline constexpr const char* kSettingsAgainstEachOtherCheck = "settings_of_scale_differ";
 
 // None where nothing tells the scale. `findings`: of CheckGround.
-std::optional<WorldScale> WorldScaleOf(const GroundEstimate& estimate,
-                                       const std::vector<Finding>& findings);
+std::optional<WorldScale> EstimateWorldScale(const GroundEstimate& estimate,
+                                             const std::vector<Finding>& findings);
 
 // `findings`: of CheckGround.
-WorldReport ReportOf(const GroundEstimate& estimate, const Sequence& input,
-                     const std::vector<Finding>& findings);
+WorldReport MakeReport(const GroundEstimate& estimate, const Sequence& input,
+                       const std::vector<Finding>& findings);
 
 // Half the 95 % interval, in per cent of its geometric middle.
 double HalfIntervalPercent(const WorldScale& scale);

@@ -27,7 +27,7 @@ std::optional<GroundPoint> MeasureGroundPoint(const Sequence& sequence, const Ma
   std::vector<PointView> views;
   double nearest = std::numeric_limits<double>::infinity();
   for (const PointObservation& observation : point.observations) {
-    const auto index = FrameIndexOf(sequence, observation);
+    const auto index = FindFrameIndex(sequence, observation);
     if (!index) continue;
     const Frame& frame = sequence.frames[*index];
     views.push_back(

@@ -185,7 +185,7 @@ std::vector<MeasuredObject> MeasureObjects(const Sequence& sequence, const std::
                                            const HorizontalPlanes& planes,
                                            const GroundOptions& options, int threads) {
   const UpEstimate up =
-      UpEstimateOf(WithTiltCovariance(planes.up_in_world, planes.tilt_covariance));
+      MakeUpEstimate(WithTiltCovariance(planes.up_in_world, planes.tilt_covariance));
   const std::set<std::string> moving = NormalisedLabels("moving_labels", sequence.moving_labels);
   std::vector<MeasuredObject> objects;
   for (const BoxGroup& group : groups) {

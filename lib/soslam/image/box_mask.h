@@ -10,7 +10,7 @@
 namespace soslam {
 
 // CV_8UC1: 0 at pixels whose centre is in one of the boxes, 255 elsewhere.
-inline cv::Mat OutsideOf(const std::vector<Box>& boxes, const cv::Size& size) {
+inline cv::Mat MaskOutBoxes(const std::vector<Box>& boxes, const cv::Size& size) {
   cv::Mat mask(size, CV_8UC1, cv::Scalar(255));
   for (const Box& box : boxes) {
     const auto cut = CutToImage(box, size.width, size.height);

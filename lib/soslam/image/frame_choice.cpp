@@ -37,7 +37,7 @@ Points Track(const cv::Mat& from, const cv::Mat& to, const Points& points,
 
 }  // namespace
 
-FrameView ViewOf(const cv::Mat& grey) {
+FrameView MakeFrameView(const cv::Mat& grey) {
   constexpr int kSharpnessSide = 640, kTrackingSide = 240;
   const cv::Mat medium = ScaledDown(grey, kSharpnessSide);
   cv::Mat laplacian;

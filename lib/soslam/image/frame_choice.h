@@ -63,7 +63,7 @@ struct FrameView {
   double sharpness = 0.0;  // variance of the Laplacian at a common size
   cv::Mat small;           // CV_8UC1, for tracking
 };
-FrameView ViewOf(const cv::Mat& grey);
+FrameView MakeFrameView(const cv::Mat& grey);
 
 // Finds the features of one small image in others.
 class MotionTracker {

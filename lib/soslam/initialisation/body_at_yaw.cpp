@@ -87,14 +87,14 @@ std::optional<Landmark> BodyAtYaw::Solve(double yaw) const {
       break;
     }
   }
-  const Landmark landmark = LandmarkOf(body);
+  const Landmark landmark = MakeLandmark(body);
   for (const BoxView& view : evidence_.views) {
     if (!IsInFront(Transform(view.camera_from_reference, landmark))) return std::nullopt;
   }
   return landmark;
 }
 
-Landmark BodyAtYaw::LandmarkOf(const Body& body) const {
+Landmark BodyAtYaw::MakeLandmark(const Body& body) const {
   UprightVector parameters;
   parameters << body.yaw, body.foot, body.half_axes.array().log().matrix(), body.height_m;
   return upright_.LandmarkAt(parameters, evidence_.Exponents(), evidence_.RestsOn());
@@ -103,7 +103,7 @@ Landmark BodyAtYaw::LandmarkOf(const Body& body) const {
 bool BodyAtYaw::Step(int round, Body* body) const {
   const bool is_first = round == 0;
   LinearSystem system;
-  const Landmark landmark = LandmarkOf(*body);
+  const Landmark landmark = MakeLandmark(*body);
   for (const BoxView& view : evidence_.views) AddView(view, landmark, *body, is_first, &system);
   // RatioTerm to first order about the object of this height with the prior's ratios. There both
   // residuals are zero, and a derivative by a half axis is that by its logarithm divided by the

@@ -38,7 +38,7 @@ class BodyAtYaw {
   // Normal equations in foot x, foot y, a, b, c and the foot's height above the plane.
   struct LinearSystem;
 
-  Landmark LandmarkOf(const Body& body) const;
+  Landmark MakeLandmark(const Body& body) const;
   bool Step(int round, Body* body) const;
   void AddView(const BoxView& view, const Landmark& landmark, const Body& body, bool is_first,
                LinearSystem* system) const;

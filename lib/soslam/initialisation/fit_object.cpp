@@ -21,11 +21,12 @@ constexpr double kSameOptimumYaw = 0.5 * kRadPerDeg;
 constexpr int kHalvings = 4;
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
-double YawOf(const ObjectEvidence& evidence, const Landmark& landmark) {
+double ComputeYaw(const ObjectEvidence& evidence, const Landmark& landmark) {
   return Yaw(evidence.plane.normal, landmark.frame_from_object.rotation);
 }
 
-// The landmark near the start that fits best, at the start's yaw or any. See CostOf for the limit.
+// The landmark near the start that fits best, at the start's yaw or any. See EvaluateCost for the
+// limit.
 std::optional<ObjectFit> Fit(const ObjectEvidence& evidence, const Landmark& start,
                              bool yaw_is_free, double limit) {
   Landmark at = start;
@@ -36,7 +37,7 @@ std::optional<ObjectFit> Fit(const ObjectEvidence& evidence, const Landmark& sta
     if (!solution) return std::nullopt;
     at = solution->landmark;
   }
-  return ObjectFit{at, CostOf(evidence, at, limit)};
+  return ObjectFit{at, EvaluateCost(evidence, at, limit)};
 }
 
 // The best of the yaws on ever finer grids about the start.
@@ -63,7 +64,7 @@ ObjectFit Leaning(const ObjectEvidence& evidence, const ObjectFit& upright) {
     if (!tilted) return upright;
     at = tilted->landmark;
   }
-  const ObjectFit leaning{at, CostOf(evidence, at)};
+  const ObjectFit leaning{at, EvaluateCost(evidence, at)};
   return leaning.cost.total < upright.cost.total ? leaning : upright;
 }
 
@@ -190,7 +191,7 @@ YawProfile ProfileOverYaw(const ObjectEvidence& evidence, double step) {
     const auto start = body_at.Solve(profile.yaw.back());
     profile.fits.emplace_back();
     if (!start) continue;
-    profile.fits.back() = is_linear ? ObjectFit{*start, CostOf(evidence, *start)}
+    profile.fits.back() = is_linear ? ObjectFit{*start, EvaluateCost(evidence, *start)}
                                     : Fit(evidence, *start, /*yaw_is_free=*/false, kNoLimit);
   }
   return profile;
@@ -208,15 +209,16 @@ std::vector<ObjectFit> FitObject(const ObjectEvidence& evidence,
     if (!fit || !std::isfinite(fit->cost.total)) continue;
     lowest = std::min(lowest, fit->cost.total);
     const bool is_known = std::ranges::any_of(fits, [&](const ObjectFit& other) {
-      return std::abs(YawDifferenceModuloPi(YawOf(evidence, fit->landmark),
-                                            YawOf(evidence, other.landmark))) < kSameOptimumYaw;
+      return std::abs(YawDifferenceModuloPi(ComputeYaw(evidence, fit->landmark),
+                                            ComputeYaw(evidence, other.landmark))) <
+             kSameOptimumYaw;
     });
     if (!is_known) fits.push_back(*fit);
   }
   // An object with a = b has two yaws of the same cost: they are sorted by yaw, not by rounding
   // errors of the costs.
   std::ranges::sort(fits, {}, [&](const ObjectFit& fit) {
-    return std::pair(RankOfCost(fit.cost.total), YawOf(evidence, fit.landmark));
+    return std::pair(RankOfCost(fit.cost.total), ComputeYaw(evidence, fit.landmark));
   });
   SortByRank(&fits, options.max_hypotheses);
   if (evidence.MayLean()) {

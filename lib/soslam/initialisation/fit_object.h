@@ -10,7 +10,7 @@
 
 namespace soslam {
 
-// A landmark and its cost (CostOf).
+// A landmark and its cost (EvaluateCost).
 struct ObjectFit {
   Landmark landmark;
   EvidenceCost cost;

@@ -74,9 +74,9 @@ LandmarkCosts BoxAndPriorCosts(const ObjectEvidence& evidence, const Landmark& l
 
 }  // namespace
 
-std::array<BoxEdge, 4> EdgesOf(const Sequence& sequence, const Detection& detection,
-                               const std::optional<ShapePrior>& prior,
-                               const UprightOptions& options) {
+std::array<BoxEdge, 4> MakeBoxEdges(const Sequence& sequence, const Detection& detection,
+                                    const std::optional<ShapePrior>& prior,
+                                    const UprightOptions& options) {
   return BoxEdges(sequence.CameraOf(detection), detection.box, detection.is_one_sided,
                   options.detection_sigma_fraction, prior ? prior->edge_bias : EdgeBias());
 }
@@ -168,7 +168,7 @@ ObjectEvidence EvidenceInWorld(const Sequence& sequence, const std::vector<int>&
       evidence.plane = support.plane_in_world;
       evidence.scene_axis = support.scene_axis_in_world;
     }
-    evidence.views.push_back({EdgesOf(sequence, detection, prior, options),
+    evidence.views.push_back({MakeBoxEdges(sequence, detection, prior, options),
                               sequence.FrameOf(detection).world_from_camera.Inverse()});
   }
   evidence.picture_costs = PictureCosts(pictures, evidence.plane);
@@ -179,7 +179,7 @@ ObjectEvidence EvidenceInCamera(const Sequence& sequence, const Detection& detec
                                 const std::optional<ShapePrior>& prior,
                                 const UprightOptions& options) {
   ObjectEvidence evidence;
-  evidence.views = {{EdgesOf(sequence, detection, prior, options), Rigid3d()}};
+  evidence.views = {{MakeBoxEdges(sequence, detection, prior, options), Rigid3d()}};
   evidence.plane = detection.plane_in_camera;
   evidence.scene_axis = SceneAxisInCamera(sequence, detection);
   evidence.axes_weight = options.axes_weight;
@@ -290,7 +290,7 @@ LandmarkCosts OutlineCosts(const ObjectEvidence& evidence) {
   return costs;
 }
 
-EvidenceCost CostOf(const ObjectEvidence& evidence, const Landmark& landmark, double limit) {
+EvidenceCost EvaluateCost(const ObjectEvidence& evidence, const Landmark& landmark, double limit) {
   EvidenceCost cost;
   for (const BoxView& view : evidence.views) {
     const bool is_behind = !IsInFront(Transform(view.camera_from_reference, landmark));

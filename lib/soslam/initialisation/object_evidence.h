@@ -114,9 +114,9 @@ double FrontProbability(const std::vector<double>& picture_costs, const Plane& p
                         const Landmark& landmark);
 
 // The edges of a detection's box, without the bias of its label, for fits and the back end.
-std::array<BoxEdge, 4> EdgesOf(const Sequence& sequence, const Detection& detection,
-                               const std::optional<ShapePrior>& prior,
-                               const UprightOptions& options);
+std::array<BoxEdge, 4> MakeBoxEdges(const Sequence& sequence, const Detection& detection,
+                                    const std::optional<ShapePrior>& prior,
+                                    const UprightOptions& options);
 
 // Evidence of one object in the world, from its detections (indices into Sequence::detections, at
 // least one), with the frames' estimated poses, on the object's plane, if it has one. All views
@@ -172,8 +172,8 @@ struct EvidenceCost {
   double further = 0.0;   // part of it
   double compared = 0.0;  // part of it
 };
-EvidenceCost CostOf(const ObjectEvidence& evidence, const Landmark& landmark,
-                    double limit = std::numeric_limits<double>::infinity());
+EvidenceCost EvaluateCost(const ObjectEvidence& evidence, const Landmark& landmark,
+                          double limit = std::numeric_limits<double>::infinity());
 
 // SupportPlane::scene_axis_in_world of a detection's plane.
 std::optional<Eigen::Vector3d> SceneAxisInCamera(const Sequence& sequence,

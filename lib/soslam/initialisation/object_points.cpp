@@ -28,7 +28,7 @@ struct ViewsOfPoint {
 std::map<int, ViewsOfPoint> ViewsBySegment(const Sequence& sequence, const MapPoint& point) {
   std::map<int, ViewsOfPoint> by_segment;
   for (const PointObservation& observation : point.observations) {
-    const auto index = FrameIndexOf(sequence, observation);
+    const auto index = FindFrameIndex(sequence, observation);
     if (!index) continue;
     const Frame& frame = sequence.frames[*index];
     by_segment[frame.segment].frame_indices.push_back(*index);
@@ -46,8 +46,8 @@ struct PlacesInBoxes {
 
 // The point in the camera of detection `anchor`. Errors of the image points of one track are
 // correlated: together they are as precise as two.
-ObjectPoint PointOf(const Sequence& sequence, const TriangulatedPoint& point, size_t views,
-                    const PlacesInBoxes& places, int anchor, const PointOptions& options) {
+ObjectPoint MakeObjectPoint(const Sequence& sequence, const TriangulatedPoint& point, size_t views,
+                            const PlacesInBoxes& places, int anchor, const PointOptions& options) {
   const Detection& detection = sequence.detections[anchor];
   const Rigid3d camera_from_world = sequence.FrameOf(detection).world_from_camera.Inverse();
   const Eigen::Matrix3d rotation = camera_from_world.rotation.toRotationMatrix();
@@ -106,7 +106,7 @@ std::vector<PointsOfObject> FindObjectPoints(const Sequence& sequence,
         if (!triangulated) break;
         const int anchor = of_object.in_box[of_object.in_box.size() / 2];
         ObjectPoint point =
-            PointOf(sequence, *triangulated, seen.views.size(), of_object, anchor, options);
+            MakeObjectPoint(sequence, *triangulated, seen.views.size(), of_object, anchor, options);
         point.index = static_cast<int>(i);
         if (point.prior > kLeastPrior) found[object_index][anchor].push_back(point);
       }

@@ -38,7 +38,7 @@ Landmark UprightParametrisation::LandmarkAt(const UprightVector& parameters,
   return landmark;
 }
 
-UprightVector UprightParametrisation::ParametersOf(const Landmark& landmark) const {
+UprightVector UprightParametrisation::ComputeParameters(const Landmark& landmark) const {
   const Eigen::Vector3d from_origin = landmark.Centre() - origin;
   UprightVector parameters;
   parameters << Yaw(normal, landmark.frame_from_object.rotation), from_origin.dot(x),
@@ -67,12 +67,13 @@ std::optional<UprightSolution> FitUpright(const Plane& plane, const Landmark& st
   };
   const auto evaluate = [&](const UprightVector& at) {
     const Landmark landmark = landmark_at(at);
-    QuadraticModel<7> sum = ModelOf(costs, landmark).Chained(upright.ParameterJacobian(landmark));
+    QuadraticModel<7> sum =
+        LineariseCosts(costs, landmark).Chained(upright.ParameterJacobian(landmark));
     if (!is_free.yaw) sum.Hold(0);
     if (!is_free.height) sum.Hold(6);
     return sum;
   };
-  UprightVector parameters = upright.ParametersOf(start);
+  UprightVector parameters = upright.ComputeParameters(start);
   if (!is_free.height) parameters[6] = 0.0;
   const double negligible = std::max(negligible_decrease, NegligibleDecrease(costs));
   const double cost = MinimiseSquares(evaluate, {kMaxIterations, negligible}, &parameters).cost;
@@ -82,7 +83,7 @@ std::optional<UprightSolution> FitUpright(const Plane& plane, const Landmark& st
 
 std::optional<UprightSolution> FitLeaning(const Plane& plane, const Landmark& upright,
                                           const LandmarkCosts& costs) {
-  const auto linearise = [&](const Landmark& at) { return ModelOf(costs, at); };
+  const auto linearise = [&](const Landmark& at) { return LineariseCosts(costs, at); };
   const auto plus = [](const Landmark& at, const LandmarkStep& step) {
     return std::optional(ApplyStep(at, step));
   };

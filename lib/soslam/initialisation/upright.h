@@ -23,7 +23,7 @@ struct UprightParametrisation {
   Landmark LandmarkAt(const UprightVector& parameters, const ShapeExponents& shape_exponents,
                       RestingFace rests_on = RestingFace::kBottom) const;
   // Parameters of an upright landmark; for any other, those of the nearest one.
-  UprightVector ParametersOf(const Landmark& landmark) const;
+  UprightVector ComputeParameters(const Landmark& landmark) const;
   UprightJacobian ParameterJacobian(const Landmark& landmark) const;
 
   Eigen::Quaterniond rotation;  // UprightRotation(normal, 0)

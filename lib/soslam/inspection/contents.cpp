@@ -129,7 +129,7 @@ ValueTable MakeTable(const Hdf5File& file, const std::string& group) {
 
 }  // namespace
 
-Inspection ContentsOf(const Schema& schema, const json& document) {
+Inspection InspectContents(const Schema& schema, const json& document) {
   // The header and the findings are told in words.
   Schema of_body = schema;
   for (const char* name : {"artefact", "findings"}) of_body["properties"].erase(name);
@@ -138,7 +138,7 @@ Inspection ContentsOf(const Schema& schema, const json& document) {
   return contents;
 }
 
-Inspection ContentsOf(const Hdf5File& file) {
+Inspection InspectContents(const Hdf5File& file) {
   file.RequireWalkable();
   Inspection contents;
   for (const std::string& name : file.Attributes("/")) {

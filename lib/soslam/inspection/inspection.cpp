@@ -91,7 +91,7 @@ std::string FormatFacts(const std::vector<Fact>& facts, bool is_coloured) {
   constexpr size_t kLineWidth = 110, kValueWidth = 10;
   const auto field_of = [](const Fact& fact) { return fact.name.substr(fact.name.rfind('/') + 1); };
   size_t width = 0;
-  for (const Fact& fact : facts) width = std::max(width, 2 + WidthOf(field_of(fact)));
+  for (const Fact& fact : facts) width = std::max(width, 2 + CountCharacters(field_of(fact)));
   const size_t indent = 2 + width + 2, doc_indent = indent + kValueWidth + 2;
   std::string text, record;
   for (const Fact& fact : facts) {
@@ -102,10 +102,10 @@ std::string FormatFacts(const std::vector<Fact>& facts, bool is_coloured) {
     }
     record = record_of_fact;
     if (!record.empty()) name.insert(0, "  ");
-    name.resize(name.size() + width - WidthOf(name), ' ');
+    name.resize(name.size() + width - CountCharacters(name), ' ');
     std::string value = Wrapped(fact.text, kLineWidth - indent, indent);
     if (!fact.doc.empty()) {
-      const size_t used = WidthOf(fact.text);
+      const size_t used = CountCharacters(fact.text);
       value += used <= kValueWidth ? std::string(kValueWidth + 2 - used, ' ')
                                    : "\n" + std::string(doc_indent, ' ');
       value += Wrapped(fact.doc, kLineWidth - doc_indent, doc_indent);
@@ -144,11 +144,11 @@ Inspection Inspect(const std::filesystem::path& file, const std::optional<Sequen
   std::vector<Finding> findings;
   if (of_json != nullptr) {
     const json document = ReadArtefact(file, kind);
-    inspection = ContentsOf(of_json->schema(), document);
+    inspection = InspectContents(of_json->schema(), document);
     AddDerivedColumns(kind, document, &inspection);
-    findings = FindingsOf(document);
+    findings = ReadFindings(document);
   } else {
-    inspection = ContentsOf(OpenArtefact(file, kind));
+    inspection = InspectContents(OpenArtefact(file, kind));
   }
   if (sequence) {
     for (ValueTable& table : inspection.tables) AddLabels(*sequence, &table);
@@ -201,7 +201,7 @@ void KeepObject(int id, Inspection* inspection) {
   }
 }
 
-const ValueTable& TableOf(const Inspection& inspection, const std::optional<std::string>& name) {
+const ValueTable& FindTable(const Inspection& inspection, const std::optional<std::string>& name) {
   std::vector<std::string> known;
   for (const ValueTable& table : inspection.tables) {
     if (!name || table.name == *name) return table;

@@ -79,7 +79,7 @@ void KeepObject(int id, Inspection* inspection);
 std::string FormatInspection(const Inspection& inspection, bool is_coloured);
 
 // The table of this name, or the first one. Throws SettingsError, naming the known ones.
-const ValueTable& TableOf(const Inspection& inspection, const std::optional<std::string>& name);
+const ValueTable& FindTable(const Inspection& inspection, const std::optional<std::string>& name);
 
 // Text for a terminal: all rows, and what the columns are.
 std::string FormatWholeTable(const ValueTable& table, bool is_coloured);
@@ -87,11 +87,11 @@ std::string FormatWholeTable(const ValueTable& table, bool is_coloured);
 // The contents of a document by the JSON schema of its kind, which follows from its description:
 // lists of records are tables, whose rows have the fields of a record and, of a list in it, the
 // number of items and the fields of the first one; all other fields are facts.
-Inspection ContentsOf(const nlohmann::ordered_json& schema, const nlohmann::json& document);
+Inspection InspectContents(const nlohmann::ordered_json& schema, const nlohmann::json& document);
 
 // The contents of an HDF5 file: groups in a group of the root are rows of a table, and have
 // attributes and data sets; data sets of the root are facts. Throws InputError.
-Inspection ContentsOf(const Hdf5File& file);
+Inspection InspectContents(const Hdf5File& file);
 
 // Adds to the tables of landmarks.json or map.json what no field states: the yaws of landmarks, and
 // the standard deviations of their places, yaws and sizes.

@@ -22,7 +22,9 @@ const Stroke kTruthStroke{palette::kVermilion, 2};
 const Stroke kTruthAxis{palette::kVermilion, 1};
 
 // Id and label of an Object or WorldObject.
-std::string CaptionOf(const auto& object) { return fmt::format("{} {}", object.id, object.label); }
+std::string MakeCaption(const auto& object) {
+  return fmt::format("{} {}", object.id, object.label);
+}
 
 // Draws the x axis as an arrow to the front if there is one, else through the body.
 void DrawAxes(const Landmark& landmark_in_camera, bool has_front, const Stroke& x_axis,
@@ -85,7 +87,8 @@ std::vector<OverlayInput::Body> BodiesInImage(const Sequence& sequence,
   std::vector<OverlayInput::Body> bodies;
   for (const ObjectEstimate& estimate : estimates) {
     const bool is_detected = detected.contains(estimate.object_index);
-    AddBodyInImage(estimate, is_detected ? "" : CaptionOf(sequence.objects[estimate.object_index]),
+    AddBodyInImage(estimate,
+                   is_detected ? "" : MakeCaption(sequence.objects[estimate.object_index]),
                    camera_from_world, camera, &bodies);
   }
   return bodies;
@@ -99,7 +102,7 @@ OverlayInput OverlayOfFrame(const Sequence& sequence, int frame_index) {
   input.camera = sequence.CameraOf(frame);
   input.grounds = FindGrounds(sequence, frame_index, {});
   for (const Detection& detection : DetectionsIn(sequence, frame_index)) {
-    input.detections.push_back({detection.box, CaptionOf(sequence.ObjectOf(detection))});
+    input.detections.push_back({detection.box, MakeCaption(sequence.ObjectOf(detection))});
     if (const auto truth = TrueLandmarkInCamera(sequence, detection)) {
       input.truths_in_camera.push_back(
           {*truth, sequence.ObjectOf(detection).ground_truth->MayHaveFront()});
@@ -140,7 +143,7 @@ OverlayInput OverlayOfWorld(const World& world, const WorldFrame& frame) {
   OverlayInput input{.camera = frame.camera};
   const Rigid3d camera_from_world = frame.world_from_camera.Inverse();
   for (const WorldObject& object : world.objects) {
-    AddBodyInImage(object.estimate, CaptionOf(object), camera_from_world, frame.camera,
+    AddBodyInImage(object.estimate, MakeCaption(object), camera_from_world, frame.camera,
                    &input.landmarks);
   }
   return input;

@@ -74,7 +74,7 @@ std::vector<PrintedColumn> PrintedColumns(const ValueTable& table, size_t rows, 
       column.is_text |= value.is_string() || value.is_boolean() || value.is_object();
     }
     for (const std::string& text : column.texts) {
-      column.width = std::max(column.width, WidthOf(text));
+      column.width = std::max(column.width, CountCharacters(text));
     }
     printed.push_back(std::move(column));
   }
@@ -96,7 +96,7 @@ std::string InWords(const Value& value, double largest) {
   }
   if (value.is_string()) {
     const auto& text = value.get_ref<const std::string&>();
-    return WidthOf(text) <= kMostLetters ? text : text.substr(0, kMostLetters) + "...";
+    return CountCharacters(text) <= kMostLetters ? text : text.substr(0, kMostLetters) + "...";
   }
   if (!value.is_structured()) return value.dump();
   if (value.empty()) return "none";
@@ -138,7 +138,7 @@ std::string FormatTable(const ValueTable& table, bool is_coloured, const TableLi
       std::string printed;
       for (const PrintedColumn& column : part) {
         const std::string& value = column.texts[line];
-        const std::string padding(column.width - WidthOf(value), ' ');
+        const std::string padding(column.width - CountCharacters(value), ' ');
         printed +=
             (printed.empty() ? "" : "  ") + (column.is_text ? value + padding : padding + value);
       }

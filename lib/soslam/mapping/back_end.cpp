@@ -113,7 +113,7 @@ MapEstimate OptimiseChecked(const BackEndInput& input, const OptimiseOptions& op
       object.failure = input.sequence.objects[i].is_static ? "no_start" : kMovingObject;
     } else if (HasExtent(*landmarks[i])) {
       object.landmark_in_world = landmarks[i];
-      object.points = problem.PointsOf(i);
+      object.points = problem.ComputePosteriors(i);
     } else {
       object.failure = "collapsed";  // as boxes alone may be explained best
     }

@@ -86,8 +86,8 @@ BackEndProblem::ImageBlocks BackEndProblem::BlocksOfImage(size_t index,
                             view_weights_[index])};
 }
 
-PointCost BackEndProblem::PointCostOf(size_t object_index, const PointsInView& view,
-                                      const Landmark& start_in_camera) const {
+PointCost BackEndProblem::MakePointCost(size_t object_index, const PointsInView& view,
+                                        const Landmark& start_in_camera) const {
   const double weight = PointWeight(input_.points[object_index], options_.points);
   return {view.points,     start_in_camera, SizeForPoints(start_in_camera),
           options_.points, weight,          second_derivatives_of_points_};
@@ -105,12 +105,12 @@ void BackEndProblem::PrepareCovariances() {
   }
 }
 
-std::vector<PointPosterior> BackEndProblem::PointsOf(size_t object_index) const {
+std::vector<PointPosterior> BackEndProblem::ComputePosteriors(size_t object_index) const {
   std::vector<PointPosterior> points;
   if (input_.points.empty() || !input_.initial_landmarks[object_index]) return points;
   for (const PointsInView& view : input_.points[object_index]) {
     const Landmark in_camera = LandmarkInCamera(input_.sequence.detections[view.detection_index]);
-    std::ranges::copy(PointCostOf(object_index, view, in_camera).Posteriors(in_camera),
+    std::ranges::copy(MakePointCost(object_index, view, in_camera).Posteriors(in_camera),
                       std::back_inserter(points));
   }
   std::ranges::stable_sort(points, {}, &PointPosterior::point);
@@ -121,7 +121,7 @@ BackEndProblem::ImageBlocks BackEndProblem::PointBlocks(size_t object_index,
                                                         const PointsInView& view) const {
   const Detection& detection = input_.sequence.detections[view.detection_index];
   const Landmark in_camera = LandmarkInCamera(detection);
-  auto points = std::make_unique<PointCost>(PointCostOf(object_index, view, in_camera));
+  auto points = std::make_unique<PointCost>(MakePointCost(object_index, view, in_camera));
   ImageBlocks blocks{{"points", "", {}, static_cast<int>(view.points.size())}, true};
   blocks.residuals.functions.push_back(
       std::make_unique<ImageResidual>(std::move(points), in_camera.shape_exponents));

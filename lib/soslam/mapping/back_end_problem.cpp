@@ -231,8 +231,8 @@ void BackEndProblem::AddDetection(size_t index, const Landmark& initial_in_camer
     return;
   }
   view_losses_.emplace_back(&loss_, view_weights_[index], ceres::DO_NOT_TAKE_OWNERSHIP);
-  const auto edges =
-      EdgesOf(input_.sequence, detection, input_.priors[detection.object_index], options_.upright);
+  const auto edges = MakeBoxEdges(input_.sequence, detection, input_.priors[detection.object_index],
+                                  options_.upright);
   for (size_t side = 0; side < edges.size(); ++side) {
     // A body so near that it reaches behind the camera has no tangent point in view.
     if (!(FindTangentDepth(edges[side], initial_in_camera).depth_m > 0.0)) {

@@ -55,7 +55,7 @@ class BackEndProblem {
   void PrepareCovariances();
 
   // The points of an object at its present landmark; none without a landmark.
-  std::vector<PointPosterior> PointsOf(size_t object_index) const;
+  std::vector<PointPosterior> ComputePosteriors(size_t object_index) const;
 
   const SolverSummary& summary() const { return summary_; }
   ceres::Problem& problem() { return problem_; }
@@ -78,8 +78,8 @@ class BackEndProblem {
   void AddDetection(size_t index, const Landmark& initial_in_camera);
   void SetManifolds();  // and which poses are constant
   ImageBlocks BlocksOfImage(size_t index, const ImageEvidence& image) const;
-  PointCost PointCostOf(size_t object_index, const PointsInView& view,
-                        const Landmark& start_in_camera) const;
+  PointCost MakePointCost(size_t object_index, const PointsInView& view,
+                          const Landmark& start_in_camera) const;
   ImageBlocks PointBlocks(size_t object_index, const PointsInView& view) const;
   void AddImageBlocks(size_t index, ImageBlocks blocks);
 

@@ -77,7 +77,7 @@ std::vector<Landmark> BestOfEachYaw(const std::vector<Landmark>& landmarks,
     const auto known = best.find(bin);
     const double limit =
         known == best.end() ? std::numeric_limits<double>::infinity() : known->second.first;
-    const double cost = CostOf(evidence, landmark, limit).total;
+    const double cost = EvaluateCost(evidence, landmark, limit).total;
     if (cost < limit) best.insert_or_assign(bin, std::pair(cost, landmark));
   }
   std::vector<std::pair<double, Landmark>> candidates;

@@ -33,8 +33,8 @@ struct PointTrack {
 
 // Index in Sequence::frames of the frame that observes a point; none where the sequence does not
 // have it.
-inline std::optional<size_t> FrameIndexOf(const Sequence& sequence,
-                                          const PointObservation& observation) {
+inline std::optional<size_t> FindFrameIndex(const Sequence& sequence,
+                                            const PointObservation& observation) {
   const auto frame =
       std::ranges::lower_bound(sequence.frames, observation.frame_id, {}, &Frame::id);
   if (frame == sequence.frames.end() || frame->id != observation.frame_id) return std::nullopt;

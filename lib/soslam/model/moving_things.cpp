@@ -62,7 +62,7 @@ std::vector<MapPoint> WithoutMovingThings(const Sequence& sequence, std::vector<
   std::erase_if(points, [&](const MapPoint& point) {
     int seen = 0, covered = 0;
     for (const PointObservation& observation : point.observations) {
-      const auto frame_index = FrameIndexOf(sequence, observation);
+      const auto frame_index = FindFrameIndex(sequence, observation);
       if (!frame_index) continue;
       ++seen;
       covered += std::ranges::any_of(

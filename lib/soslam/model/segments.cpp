@@ -5,7 +5,7 @@
 
 namespace soslam {
 
-std::vector<int> SegmentsOf(const Sequence& sequence) {
+std::vector<int> ListSegments(const Sequence& sequence) {
   std::vector<int> segments;
   for (const Frame& frame : sequence.frames) {
     if (segments.empty() || segments.back() != frame.segment) segments.push_back(frame.segment);

@@ -10,7 +10,7 @@
 namespace soslam {
 
 // The segments of the frames, each once, in the order of their frames.
-std::vector<int> SegmentsOf(const Sequence& sequence);
+std::vector<int> ListSegments(const Sequence& sequence);
 
 // The segment of each object: the only one, or that of its first detection; none if unknown.
 std::vector<std::optional<int>> SegmentsOfObjects(const Sequence& sequence);

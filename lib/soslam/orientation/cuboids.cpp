@@ -208,8 +208,8 @@ CuboidEvidence EvidenceInBox(const EdgeMaps& maps, const Box& box, double min_se
   return evidence;
 }
 
-CuboidErrors ErrorsOf(const CuboidView& view, const Landmark& cuboid,
-                      const CuboidEvidence& evidence, const CuboidOptions& options) {
+CuboidErrors ComputeErrors(const CuboidView& view, const Landmark& cuboid,
+                           const CuboidEvidence& evidence, const CuboidOptions& options) {
   std::vector<ImageEdge> edges;
   for (const LineSegment3& edge : VisibleCuboidEdges(cuboid)) {
     const auto begin = view.camera.Project(PointAt(cuboid, edge[0]));
@@ -249,7 +249,7 @@ std::vector<Hypothesis> BestCuboids(const CuboidView& view, const CuboidEvidence
   const auto proposals = ProposeCuboids(view, options.yaw_samples, options.corner_samples);
   std::vector<CuboidErrors> errors;
   for (const CuboidProposal& proposal : proposals) {
-    errors.push_back(ErrorsOf(view, proposal.landmark_in_camera, evidence, options));
+    errors.push_back(ComputeErrors(view, proposal.landmark_in_camera, evidence, options));
   }
   const std::vector<double> costs = CuboidCosts(errors, options);
   std::vector<Hypothesis> best;

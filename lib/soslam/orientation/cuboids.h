@@ -70,8 +70,8 @@ struct CuboidErrors {
   double angle;
   double shape;  // excess of the ratio of the footprint's sides over shape_threshold
 };
-CuboidErrors ErrorsOf(const CuboidView& view, const Landmark& cuboid,
-                      const CuboidEvidence& evidence, const CuboidOptions& options);
+CuboidErrors ComputeErrors(const CuboidView& view, const Landmark& cuboid,
+                           const CuboidEvidence& evidence, const CuboidOptions& options);
 
 // The cost of each proposal: distance + w1 angle + w2 shape, the first two scaled to [0, 1] over
 // the proposals.

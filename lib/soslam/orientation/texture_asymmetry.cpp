@@ -158,7 +158,7 @@ AsymmetryCost::AsymmetryCost(std::shared_ptr<const SymmetryImage> image, const C
       weight_(2.0 * weight * options.asymmetry_cost /
               static_cast<double>(std::max<size_t>(1, texture_.pixels.size()))) {}
 
-SymmetryDescriptor AsymmetryCost::DescriptorOf(const Landmark& landmark_in_camera) const {
+SymmetryDescriptor AsymmetryCost::ComputeDescriptor(const Landmark& landmark_in_camera) const {
   Landmark landmark = landmark_in_camera;
   landmark.rests_on = rests_on_;
   return {descriptor_, *image_, camera_, InOwnAxes(landmark)};
@@ -179,7 +179,7 @@ double AsymmetryCost::Residual(const SymmetryDescriptor& descriptor, const Eigen
 }
 
 double AsymmetryCost::Value(const Landmark& landmark_in_camera) const {
-  const SymmetryDescriptor descriptor = DescriptorOf(landmark_in_camera);
+  const SymmetryDescriptor descriptor = ComputeDescriptor(landmark_in_camera);
   double sum = 0.0;
   for (const Eigen::Vector2d& pixel : texture_.pixels) {
     const double residual = Residual(descriptor, pixel, nullptr);
@@ -189,7 +189,7 @@ double AsymmetryCost::Value(const Landmark& landmark_in_camera) const {
 }
 
 void AsymmetryCost::AddTo(const Landmark& landmark_in_camera, LandmarkModel* sum) const {
-  const SymmetryDescriptor descriptor = DescriptorOf(landmark_in_camera);
+  const SymmetryDescriptor descriptor = ComputeDescriptor(landmark_in_camera);
   const Eigen::Matrix3d own_from_object = OwnFromObject(rests_on_).cwiseAbs();
   LandmarkModel pairs;
   for (const Eigen::Vector2d& pixel : texture_.pixels) {

@@ -80,7 +80,7 @@ class AsymmetryCost final : public LandmarkCost {
   bool ConvergesSlowly() const override { return true; }
 
  private:
-  SymmetryDescriptor DescriptorOf(const Landmark& landmark_in_camera) const;
+  SymmetryDescriptor ComputeDescriptor(const Landmark& landmark_in_camera) const;
   // Residual of a pair, and its derivative by the landmark in its own axes; the loss is included.
   double Residual(const SymmetryDescriptor& descriptor, const Eigen::Vector2d& pixel,
                   LandmarkJacobian1* jacobian) const;

@@ -74,7 +74,8 @@ std::map<size_t, StandingBody> FindOwnHeights(const Observations& observations,
     if (!observations[i]) return;
     auto body = FitBodyAtFreeHeight(*observations[i], normal, kYawStep);
     if (!body) return;
-    const double information = EvidenceOf(*body, body->landmark.Centre()).information(2, 2);
+    const double information =
+        ComputePlaneEvidence(*body, body->landmark.Centre()).information(2, 2);
     const double size = 2.0 * body->landmark.half_axes.maxCoeff();
     if (information * std::pow(kMaxHeightSigmaBySize * size, 2) > 1.0) found[i] = body;
   });
@@ -97,17 +98,18 @@ StandingBodies OnSharedPlanes(const std::map<size_t, StandingBody>& own,
   std::vector<PlaneEvidence> evidence;
   std::vector<double> heights;
   for (const StandingBody& body : standing.bodies) {
-    evidence.push_back(
-        WithHeightNoise(EvidenceOf(body, pivot), HeightSigma(body, options.height_sigma_fraction)));
+    evidence.push_back(WithHeightNoise(ComputePlaneEvidence(body, pivot),
+                                       HeightSigma(body, options.height_sigma_fraction)));
     heights.push_back(-body.evidence.plane.SignedDistance(pivot));
   }
   for (const HeightPrior& prior : of_points) {
     const Plane level{normal, -normal.dot(prior.point_in_world)};
-    evidence.push_back(EvidenceOf(prior, level, pivot));
+    evidence.push_back(ComputePlaneEvidence(prior, level, pivot));
     heights.push_back(-level.SignedDistance(pivot));
   }
-  const PlaneHeights levels = ClusterPlaneHeights(
-      evidence, heights, EvidenceOf(up_prior, reference), kMaxTilt, options.new_plane_cost);
+  const PlaneHeights levels =
+      ClusterPlaneHeights(evidence, heights, ComputePlaneEvidence(up_prior, reference), kMaxTilt,
+                          options.new_plane_cost);
   const auto bodies_end =
       levels.level_of.begin() + static_cast<std::ptrdiff_t>(standing.bodies.size());
   standing.plane_of.assign(levels.level_of.begin(), bodies_end);
@@ -164,7 +166,7 @@ ObjectSupport FindSupport(const ObjectEvidence& evidence, const std::optional<in
     if (const auto body = FitBodyAtFreeHeight(evidence, plane.normal, kYawStep)) {
       const Eigen::Vector3d centre = body->landmark.Centre();
       support.height = plane.SignedDistance(centre) - body->landmark.half_axes.z();
-      support.height_sigma = 1.0 / std::sqrt(EvidenceOf(*body, centre).information(2, 2));
+      support.height_sigma = 1.0 / std::sqrt(ComputePlaneEvidence(*body, centre).information(2, 2));
     }
   }
   for (size_t i = 0; i < planes.size(); ++i) {

@@ -96,7 +96,7 @@ PlanesEstimate PlanesBelowCameras(const Sequence& sequence, double height_m) {
   return estimate;
 }
 
-PlaneRow RowOf(const EstimatedPlane& plane, int id, double tilt_variance) {
+PlaneRow MakePlaneRow(const EstimatedPlane& plane, int id, double tilt_variance) {
   PlaneRow row = {id, plane.plane_in_world, plane.point_in_world, plane.x_axis_in_world,
                   plane.covariance};
   if (const auto& covariance = plane.covariance) {
@@ -107,12 +107,12 @@ PlaneRow RowOf(const EstimatedPlane& plane, int id, double tilt_variance) {
   return row;
 }
 
-PlanesReport ReportOf(const PlanesEstimate& estimate, const Sequence& given) {
+PlanesReport MakeReport(const PlanesEstimate& estimate, const Sequence& given) {
   PlanesReport report;
   report.dataset = given.name;
   for (int i = 0; i < std::ssize(estimate.planes); ++i) {
     PlanesReport::EstimatedPlaneRow row = {
-        RowOf(estimate.planes[i], i, estimate.orientation_tilt_variance)};
+        MakePlaneRow(estimate.planes[i], i, estimate.orientation_tilt_variance)};
     if (const auto error = CompareWithGiven(given, estimate, i)) {
       row.error = {given.planes[error->given_plane_index].id, kDegPerRad * error->angle,
                    error->offset};

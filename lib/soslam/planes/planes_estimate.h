@@ -69,10 +69,10 @@ std::optional<PlaneError> CompareWithGiven(const Sequence& given, const PlanesEs
                                            int plane_index);
 
 // The row of a plane in reports. `tilt_variance` (rad^2) is added to the tilt of the covariance.
-PlaneRow RowOf(const EstimatedPlane& plane, int id, double tilt_variance = 0.0);
+PlaneRow MakePlaneRow(const EstimatedPlane& plane, int id, double tilt_variance = 0.0);
 
 // `given`: the sequence that the planes were estimated from, with its given planes.
-PlanesReport ReportOf(const PlanesEstimate& estimate, const Sequence& given);
+PlanesReport MakeReport(const PlanesEstimate& estimate, const Sequence& given);
 
 // Ground planes for cameras that a vehicle holds level at a known height (m): y = height in each
 // camera's frame. The ground of a long trajectory is not one plane, so each object gets its own:

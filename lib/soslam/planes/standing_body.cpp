@@ -20,7 +20,8 @@ namespace {
 constexpr double kPriorShare = 1e-9;
 constexpr size_t kAllMinima = std::numeric_limits<size_t>::max();
 
-Rigid3d MotionOf(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMotion& motion) {
+Rigid3d MakeRigidMotion(const Plane& plane, const Eigen::Vector3d& pivot,
+                        const PlaneMotion& motion) {
   const Eigen::Quaterniond level = UprightRotation(plane.normal, 0.0);
   const Eigen::Quaterniond turn = ExpRotation(level * Eigen::Vector3d(motion.x(), motion.y(), 0.0));
   return {turn, pivot - turn * pivot + motion.z() * (turn * plane.normal)};
@@ -35,8 +36,8 @@ Eigen::VectorXd NoMotion(const StandingBodies& standing) {
 }
 
 // The cost of all bodies and of the cameras' up prior to second order in the planes' motions.
-QuadraticModel<Eigen::Dynamic> ModelOf(const StandingBodies& standing,
-                                       const Eigen::Vector3d& pivot) {
+QuadraticModel<Eigen::Dynamic> LineariseCosts(const StandingBodies& standing,
+                                              const Eigen::Vector3d& pivot) {
   const Eigen::VectorXd zero = NoMotion(standing);
   QuadraticModel<Eigen::Dynamic> sum{0.0, zero, Eigen::MatrixXd::Zero(zero.size(), zero.size())};
   const auto add = [&](const PlaneEvidence& evidence, int plane) {
@@ -45,15 +46,15 @@ QuadraticModel<Eigen::Dynamic> ModelOf(const StandingBodies& standing,
     sum.gradient(at) += evidence.gradient;
     sum.information(at, at) += evidence.information;
   };
-  add(EvidenceOf(standing.up_prior, standing.planes.front()), 0);
+  add(ComputePlaneEvidence(standing.up_prior, standing.planes.front()), 0);
   for (size_t i = 0; i < standing.bodies.size(); ++i) {
     const StandingBody& body = standing.bodies[i];
     const double sigma = HeightSigma(body, standing.height_sigma_fraction);
-    add(WithHeightNoise(EvidenceOf(body, pivot), sigma), standing.plane_of[i]);
+    add(WithHeightNoise(ComputePlaneEvidence(body, pivot), sigma), standing.plane_of[i]);
   }
   for (size_t i = 0; i < standing.heights.size(); ++i) {
     const int plane = standing.plane_of_height[i];
-    add(EvidenceOf(standing.heights[i], standing.planes[plane], pivot), plane);
+    add(ComputePlaneEvidence(standing.heights[i], standing.planes[plane], pivot), plane);
   }
   return sum;
 }
@@ -89,12 +90,12 @@ std::optional<StandingBodies> Stepped(const StandingBodies& standing, const Eige
 }  // namespace
 
 Plane ApplyMotion(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMotion& motion) {
-  return Transform(MotionOf(plane, pivot, motion), plane);
+  return Transform(MakeRigidMotion(plane, pivot, motion), plane);
 }
 
 Landmark ApplyMotion(const Plane& plane, const Eigen::Vector3d& pivot, const PlaneMotion& motion,
                      const Landmark& landmark) {
-  return Transform(MotionOf(plane, pivot, motion), landmark);
+  return Transform(MakeRigidMotion(plane, pivot, motion), landmark);
 }
 
 std::optional<StandingBody> FitOnPlane(StandingBody body) {
@@ -104,7 +105,7 @@ std::optional<StandingBody> FitOnPlane(StandingBody body) {
   return body;
 }
 
-PlaneEvidence EvidenceOf(const StandingBody& body, const Eigen::Vector3d& pivot) {
+PlaneEvidence ComputePlaneEvidence(const StandingBody& body, const Eigen::Vector3d& pivot) {
   const Plane& plane = body.evidence.plane;
   const Eigen::Matrix3d level = UprightRotation(plane.normal, 0.0).toRotationMatrix();
   Eigen::Matrix<double, kLandmarkDof, 3> d_motion;  // at zero motion
@@ -115,7 +116,7 @@ PlaneEvidence EvidenceOf(const StandingBody& body, const Eigen::Vector3d& pivot)
   const Eigen::Matrix<double, kLandmarkDof, 6> d_upright =  // at a fixed height
       UprightParametrisation(plane).ParameterJacobian(body.landmark).leftCols<6>();
   const LandmarkCosts outlines = OutlineCosts(body.evidence);
-  const LandmarkModel model = ModelOf(outlines, body.landmark);
+  const LandmarkModel model = LineariseCosts(outlines, body.landmark);
   QuadraticModel<6> of_body = model.Chained(d_upright);
   of_body.information.diagonal().array() += kPriorShare * of_body.information.diagonal().maxCoeff();
   const Eigen::Matrix<double, 6, 3> mixed = d_upright.transpose() * model.information * d_motion;
@@ -138,14 +139,14 @@ std::optional<StandingBody> FitBodyAtFreeHeight(ObjectEvidence evidence,
                               {.max_hypotheses = kAllMinima});
   evidence.height_is_free = false;
   for (const ObjectFit& fit : fits) {
-    evidence.plane.offset = SupportPlaneOf(fit.landmark).offset;
+    evidence.plane.offset = ComputeSupportPlane(fit.landmark).offset;
     const StandingBody body{evidence, fit.landmark};
-    if (EvidenceOf(body, fit.landmark.Centre()).information(2, 2) > 0.0) return body;
+    if (ComputePlaneEvidence(body, fit.landmark.Centre()).information(2, 2) > 0.0) return body;
   }
   return std::nullopt;
 }
 
-PlaneEvidence EvidenceOf(const UpPrior& up_prior, const Plane& plane) {
+PlaneEvidence ComputePlaneEvidence(const UpPrior& up_prior, const Plane& plane) {
   const Eigen::Matrix<double, 3, 2> d_turns = UpByTurns(plane.normal);
   const Eigen::Vector3d d_normal = up_prior.information * plane.normal;
   PlaneEvidence evidence;
@@ -155,8 +156,8 @@ PlaneEvidence EvidenceOf(const UpPrior& up_prior, const Plane& plane) {
   return evidence;
 }
 
-PlaneEvidence EvidenceOf(const HeightPrior& prior, const Plane& plane,
-                         const Eigen::Vector3d& pivot) {
+PlaneEvidence ComputePlaneEvidence(const HeightPrior& prior, const Plane& plane,
+                                   const Eigen::Vector3d& pivot) {
   const Eigen::Matrix3d level = UprightRotation(plane.normal, 0.0).toRotationMatrix();
   const Eigen::Vector3d arm = prior.point_in_world - pivot;
   // Rotations about the pivot raise the plane at the point.
@@ -184,7 +185,7 @@ std::optional<RefinedPlanes> RefinePlanes(StandingBodies* standing, int threads)
   const auto start = Stepped(*standing, pivot, NoMotion(*standing), threads);
   if (!start) return std::nullopt;
   *standing = *start;
-  const auto linearise = [&](const StandingBodies& at) { return ModelOf(at, pivot); };
+  const auto linearise = [&](const StandingBodies& at) { return LineariseCosts(at, pivot); };
   const auto plus = [&](const StandingBodies& at, const Eigen::VectorXd& step) {
     return step.allFinite() ? Stepped(at, pivot, step, threads) : std::nullopt;
   };

@@ -36,7 +36,7 @@ struct StandingBody {
 std::optional<StandingBody> FitOnPlane(StandingBody body);
 
 // Evidence at a body that fits best on its plane, with its six degrees of freedom marginalised.
-PlaneEvidence EvidenceOf(const StandingBody& body, const Eigen::Vector3d& pivot);
+PlaneEvidence ComputePlaneEvidence(const StandingBody& body, const Eigen::Vector3d& pivot);
 
 // The best body on a plane with this normal and free height, over all yaws in steps of `step`
 // (rad). None when the views do not determine its height.
@@ -45,8 +45,8 @@ std::optional<StandingBody> FitBodyAtFreeHeight(ObjectEvidence observation,
                                                 double step);
 
 // The cost of a height prior as a function of a plane's motion.
-PlaneEvidence EvidenceOf(const HeightPrior& prior, const Plane& plane,
-                         const Eigen::Vector3d& pivot);
+PlaneEvidence ComputePlaneEvidence(const HeightPrior& prior, const Plane& plane,
+                                   const Eigen::Vector3d& pivot);
 
 // Parallel planes, the bodies that stand on them, what points tell of them, and the prior on up.
 struct StandingBodies {
@@ -60,7 +60,7 @@ struct StandingBodies {
 };
 
 // The up prior's cost as a function of a plane's motion.
-PlaneEvidence EvidenceOf(const UpPrior& up_prior, const Plane& plane);
+PlaneEvidence ComputePlaneEvidence(const UpPrior& up_prior, const Plane& plane);
 
 // Standard deviation of a body's height over its plane (m).
 double HeightSigma(const StandingBody& body, double height_sigma_fraction);

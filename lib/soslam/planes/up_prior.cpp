@@ -116,8 +116,8 @@ class LevelDirections {
 
 // Planes through cameras' centres and segments; their normals are level where the edges are
 // vertical.
-LevelDirections NormalsOf(const std::vector<SegmentView>& views, double sigma,
-                          double correlation_rad) {
+LevelDirections ComputeNormals(const std::vector<SegmentView>& views, double sigma,
+                               double correlation_rad) {
   const std::vector<double> shares = CameraWeights(PosesOf(views), correlation_rad);
   std::vector<LevelDirection> normals;
   for (size_t i = 0; i < views.size(); ++i) {
@@ -190,12 +190,12 @@ UpPrior RobustUpPriorFromCameras(const std::vector<Rigid3d>& world_from_camera,
 
 Eigen::Matrix3d InformationOfVerticals(const SegmentView& view, double sigma,
                                        const Eigen::Vector3d& up_in_world) {
-  return NormalsOf({view}, sigma, 0.0).Information(up_in_world);
+  return ComputeNormals({view}, sigma, 0.0).Information(up_in_world);
 }
 
 UpPrior WithVerticals(const UpPrior& up_prior, const std::vector<SegmentView>& views, double sigma,
                       double correlation_rad, double max_tilt) {
-  const LevelDirections normals = NormalsOf(views, sigma, correlation_rad);
+  const LevelDirections normals = ComputeNormals(views, sigma, correlation_rad);
   const auto cost = [&](const Eigen::Vector3d& up) { return up_prior.Cost(up) + normals.Cost(up); };
   Eigen::Vector3d best = up_prior.up_in_world;
   double lowest = cost(best);

@@ -88,7 +88,7 @@ class Learner {
       }
       row.samples += static_cast<int>(data.Count());
       const auto mean = [&](double ShapeExponents::*exponent) {
-        return Rounded(*MeanOf(ValuesOf(data.shape_exponents, exponent)));
+        return Rounded(*MeanOf(CollectValues(data.shape_exponents, exponent)));
       };
       if (!data.shape_exponents.empty()) {
         row.prior.shape_exponents = {mean(&ShapeExponents::horizontal),
@@ -182,8 +182,8 @@ PriorSource SourceOfCatalogue(const std::string& name, const std::vector<Catalog
   return source;
 }
 
-std::vector<CatalogueModel> WithoutObjectsOf(const Sequence& sequence, const SemanticTable& table,
-                                             std::vector<CatalogueModel> models) {
+std::vector<CatalogueModel> ExcludeObjects(const Sequence& sequence, const SemanticTable& table,
+                                           std::vector<CatalogueModel> models) {
   constexpr double kSameHalfAxisM = 0.5e-3 + 1e-9;
   std::vector<Eigen::Vector3d> in_scene;
   for (const Object& object : sequence.objects) {

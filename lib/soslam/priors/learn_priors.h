@@ -102,8 +102,8 @@ PriorSource SourceOfCatalogue(const std::string& name, const std::vector<Catalog
 
 // The models without those that equal, to the millimetre, an object of a sequence with ground
 // truth; the table supplies how objects are mounted.
-std::vector<CatalogueModel> WithoutObjectsOf(const Sequence& sequence, const SemanticTable& table,
-                                             std::vector<CatalogueModel> models);
+std::vector<CatalogueModel> ExcludeObjects(const Sequence& sequence, const SemanticTable& table,
+                                           std::vector<CatalogueModel> models);
 
 // The base table, updated row by row with the data of the sources; labels that it lacks become
 // rows. Method: docs/priors.md. Throws InputError as LookUpTable.

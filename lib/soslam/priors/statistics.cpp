@@ -16,7 +16,7 @@ constexpr double kSigmaByMad = 1.4826;
 constexpr double kFarthest = 2.5;
 
 std::vector<double> Standardised(const std::vector<double>& values, double sigma) {
-  return ValuesOf(values, [sigma, median = MedianOf(values).value()](double value) {
+  return CollectValues(values, [sigma, median = MedianOf(values).value()](double value) {
     return std::clamp((value - median) / sigma, -kFarthest, kFarthest);
   });
 }
@@ -26,7 +26,7 @@ std::vector<double> Standardised(const std::vector<double>& values, double sigma
 double RobustSigma(const std::vector<double>& values) {
   const double median = MedianOf(values).value();
   const auto deviation = [&](double value) { return std::abs(value - median); };
-  return kSigmaByMad * MedianOf(ValuesOf(values, deviation)).value();
+  return kSigmaByMad * MedianOf(CollectValues(values, deviation)).value();
 }
 
 NormalBelief Update(const NormalBelief& prior, const std::vector<double>& values,

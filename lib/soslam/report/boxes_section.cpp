@@ -76,7 +76,7 @@ std::vector<Sheet> MakeSheets(const Associations& associations, const Sequence& 
     if (row.track) track_of[{row.name.frame, row.name.given_object}] = *row.track;
   }
   const auto box_of = [&](const Associations::DetectionName& name, const std::string& mark) {
-    const SeenBox seen = SeenBoxOf(name, sequence);
+    const SeenBox seen = FindSeenBox(name, sequence);
     const Camera& camera = sequence.CameraOf(sequence.frames[seen.frame_index]);
     SheetBox box = {mark, seen.box, PictureOfBox(seen.frame_index, seen.box, camera)};
     if (!images.has(seen.frame_index)) box.picture.part = {0, 0, camera.width, camera.height};

@@ -97,7 +97,7 @@ Table SequencesTable(const std::vector<DatasetResult>& datasets) {
     if (!facts.counts) continue;
     table.rows.push_back(
         {dataset.name, text(facts.boxes), text(facts.odometry), text(facts.annotation),
-         MarksOf(facts, facts.counts->objects), std::to_string(facts.counts->frames),
+         FormatMarks(facts, facts.counts->objects), std::to_string(facts.counts->frames),
          std::to_string(facts.counts->objects), std::to_string(facts.counts->round_objects)});
   }
   return table;

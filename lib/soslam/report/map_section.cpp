@@ -185,7 +185,7 @@ class MapSectionBuilder {
                   {LabelsInWords(object), SizeInWords(*estimate, scale_),
                    fmt::format("{}; {}", SupportInWords(*estimate, sequence_, map_, scale_),
                                Counted(static_cast<size_t>(estimate->observations), "view"))},
-                  ChoosePicture(BoxesOf(sequence_, detections[index]), images_, sequence_),
+                  ChoosePicture(CollectBoxes(sequence_, detections[index]), images_, sequence_),
                   doubts_[entries.size()]};
       // The outline of the body in place of the box, if the camera sees all of it.
       const int frame = entry.picture.frame_index;
@@ -269,7 +269,7 @@ class MapSectionBuilder {
           " Dashed objects are uncertain: most images that should show them do not, or by their "
           "95\u00a0% intervals they may stand beside their outline, or be half or twice as large.";
     }
-    const std::vector<int> segments = SegmentsOf(sequence_);
+    const std::vector<int> segments = ListSegments(sequence_);
     if (segments.size() > 1) {
       const auto place = std::ranges::find(segments, segment) - segments.begin();
       caption += fmt::format(" Part {} of {}.", place + 1, segments.size());

@@ -34,7 +34,7 @@ SeenBox BoxInFrame(const Sequence& sequence, int frame_index, const Box& box) {
 
 }  // namespace
 
-std::vector<SeenBox> BoxesOf(const Sequence& sequence, const std::vector<int>& detections) {
+std::vector<SeenBox> CollectBoxes(const Sequence& sequence, const std::vector<int>& detections) {
   std::vector<SeenBox> boxes;
   for (const int index : detections) {
     const Detection& seen = sequence.detections[index];
@@ -43,7 +43,7 @@ std::vector<SeenBox> BoxesOf(const Sequence& sequence, const std::vector<int>& d
   return boxes;
 }
 
-SeenBox SeenBoxOf(const Associations::DetectionName& name, const Sequence& sequence) {
+SeenBox FindSeenBox(const Associations::DetectionName& name, const Sequence& sequence) {
   const auto frame = std::ranges::lower_bound(sequence.frames, name.frame, {}, &Frame::id);
   if (frame == sequence.frames.end() || frame->id != name.frame) {
     throw InputError(fmt::format(
@@ -62,7 +62,7 @@ std::vector<NotPlaced> TracksLeftOut(const Associations& associations, const Seq
     if (!detection.track) continue;  // a second box of something
     const Associations::TrackRow& track = associations.tracks.at(*detection.track);
     if (track.fate == TrackFate::kObject) continue;
-    left_out[&track].boxes.push_back(SeenBoxOf(detection.name, sequence));
+    left_out[&track].boxes.push_back(FindSeenBox(detection.name, sequence));
     ++labels[&track][detection.label];
   }
   std::vector<NotPlaced> things;
@@ -115,8 +115,8 @@ std::vector<NotPlaced> CollectUnplaced(const fs::path& folder, const MapEstimate
   for (int i = 0; i < std::ssize(sequence.objects); ++i) {
     if (placed.contains(i) || detections[i].empty()) continue;
     const std::string& failure = failures.try_emplace(i, kNoStart).first->second;
-    things.push_back(
-        {sequence.objects[i].label, BoxesOf(sequence, detections[i]), ReasonOf(failure).words});
+    things.push_back({sequence.objects[i].label, CollectBoxes(sequence, detections[i]),
+                      ReasonOf(failure).words});
   }
   std::map<std::string, NotPlaced> left_out_by_planes;  // by label
   for (const RejectedDetection& rejected : sequence.rejected) {

@@ -53,7 +53,7 @@ namespace {
 
 // Size of a page's data and tables.
 size_t PageBytes(const DatasetPage& page) {
-  return PageText(DataOf(page)).size() + DatasetTables(page).size();
+  return PageText(MakePageData(page)).size() + DatasetTables(page).size();
 }
 
 // Makes the page of a dataset. Files that variants share are read once.
@@ -216,7 +216,7 @@ class PageMaker {
 
 // What the data of a dataset's page and those of the page of all datasets share.
 json MakeHead(const DatasetPage& page) {
-  json head = {{"dataset", Utf8(page.name)},  {"url", UrlOf(page.name)},
+  json head = {{"dataset", Utf8(page.name)},  {"url", EncodeUrl(page.name)},
                {"unfinished", json::array()}, {"findings", json::array()},
                {"notes", page.notes},         {"problems", page.problems},
                {"variants", json::array()},   {"has_true_objects", page.has_true_objects}};
@@ -242,7 +242,7 @@ DatasetPage MakePage(const DatasetResult& dataset, const ImageSourceOf& images, 
   return PageMaker(dataset, images).Fitted(max_bytes, threads);
 }
 
-json DataOf(const DatasetPage& page) {
+json MakePageData(const DatasetPage& page) {
   json data = MakeHead(page);
   data["images"] = page.images;
   data["symmetries"] = page.symmetries;

@@ -79,7 +79,7 @@ std::string OverviewTables(const std::vector<DatasetPage>& pages);
 
 // The data for the scripts of a page; for programs those of the page of all datasets, with each
 // variant's metrics but without their rows.
-nlohmann::json DataOf(const DatasetPage& page);
+nlohmann::json MakePageData(const DatasetPage& page);
 nlohmann::json OverviewData(const std::vector<DatasetPage>& pages);
 
 }  // namespace soslam

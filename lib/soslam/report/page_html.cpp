@@ -46,7 +46,7 @@ std::string Utf8(const std::string& bytes) {
   return json::parse(JsonText(bytes)).get<std::string>();
 }
 
-std::string UrlOf(const std::string& name) {
+std::string EncodeUrl(const std::string& name) {
   std::string url;
   for (const char c : name) {
     const auto byte = static_cast<unsigned char>(c);
@@ -127,7 +127,7 @@ std::vector<Finding> FindingsIn(const fs::path& file) {
   }
   if (!document.is_object()) return {};
   try {
-    return FindingsOf(document);
+    return ReadFindings(document);
   } catch (const InputError& error) {
     return {{"findings", Severity::kWarning, error.what(), "findings as its stage writes them",
              "a file that was edited, or written by another version",

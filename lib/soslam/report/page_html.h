@@ -24,7 +24,7 @@ const std::map<std::string, std::string_view>& EmbeddedPageFiles();
 std::string Utf8(const std::string& bytes);
 
 // The name of a file or folder as part of a URL.
-std::string UrlOf(const std::string& name);
+std::string EncodeUrl(const std::string& name);
 
 // A page's data as stored in the page. Invalid UTF-8 is replaced.
 std::string PageText(const nlohmann::json& data);

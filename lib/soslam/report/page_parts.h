@@ -110,7 +110,7 @@ struct SeenBox {
   bool is_whole = true;
 };
 
-std::vector<SeenBox> BoxesOf(const Sequence& sequence, const std::vector<int>& detections);
+std::vector<SeenBox> CollectBoxes(const Sequence& sequence, const std::vector<int>& detections);
 
 // Something that was detected and has no landmark in the map.
 struct NotPlaced {
@@ -121,9 +121,9 @@ struct NotPlaced {
 
 // A detection of associations.json in the sequence that its stage wrote, or that later stages made
 // of it. Throws InputError where that has no such frame.
-SeenBox SeenBoxOf(const Associations::DetectionName& name, const Sequence& sequence);
+SeenBox FindSeenBox(const Associations::DetectionName& name, const Sequence& sequence);
 
-// The tracks that association left out, by associations.json. `sequence` as for SeenBoxOf.
+// The tracks that association left out, by associations.json. `sequence` as for FindSeenBox.
 std::vector<NotPlaced> TracksLeftOut(const Associations& associations, const Sequence& sequence);
 
 // What a variant's folder has no landmark for, with the most boxes first: tracks that association

@@ -81,7 +81,7 @@ nlohmann::json PageSequence(const Sequence& sequence, const PageSelection& selec
   }
   // Pages know segments by their places in the order of their frames.
   std::map<int, size_t> place_of_segment;
-  for (const int segment : SegmentsOf(sequence)) {
+  for (const int segment : ListSegments(sequence)) {
     place_of_segment.emplace(segment, page["segments"].size());
     page["segments"].push_back({{"up", PageVector(UpOfSegment(sequence, segment))}});
   }

@@ -392,7 +392,7 @@ std::string DatasetTables(const DatasetPage& page) {
 std::string OverviewTables(const std::vector<DatasetPage>& pages) {
   std::string sections;
   for (const DatasetPage& page : pages) {
-    const std::string url = UrlOf(page.name);
+    const std::string url = EncodeUrl(page.name);
     std::string content = Faint("Nothing of it can be shown.");
     if (!page.variants.empty()) {
       content = fmt::format(

@@ -118,7 +118,7 @@ void AddAlignedTruth(const Sequence& sequence, const PageSelection& selection,
   if (!quality) return;
   json objects = json::array(), trajectory = json::array();
   int place_of_segment = 0;
-  for (const int segment : SegmentsOf(sequence)) {
+  for (const int segment : ListSegments(sequence)) {
     const int place = place_of_segment++;
     const auto aligned = quality->alignments.of_segment.find(segment);
     if (aligned == quality->alignments.of_segment.end()) continue;
@@ -186,7 +186,7 @@ json PagePoints(const MapEstimate& map, const std::vector<MapPoint>& points,
                         points.size(), posterior.point));
       }
       for (const PointObservation& observation : points[posterior.point].observations) {
-        const auto frame = FrameIndexOf(sequence, observation);
+        const auto frame = FindFrameIndex(sequence, observation);
         if (!frame) continue;
         const auto place = places.find({static_cast<int>(*frame), estimate.object_index});
         const auto pixel = UndistortedPixel(sequence, observation);

@@ -109,7 +109,8 @@ std::vector<Cell> MeasuredRow(const std::string& dataset, const std::string& kin
     most = std::to_string(*observations.rbegin());
     if (observations.size() > 1) most += fmt::format(" ({})", variant_with_most);
   }
-  std::vector<Cell> row = {dataset, kind, MarksOf(facts, objects), std::to_string(objects), most};
+  std::vector<Cell> row = {dataset, kind, FormatMarks(facts, objects), std::to_string(objects),
+                           most};
   for (const auto& mean : means) {
     const std::string text = mean ? layout.metric.Text(mean->mean) : kNoValue;
     if (mean && mean->objects < objects) {

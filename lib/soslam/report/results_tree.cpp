@@ -82,7 +82,7 @@ const VariantResult* DatasetResult::Evaluated(const std::string& variant) const 
   return found == variants.end() ? nullptr : &*found;
 }
 
-std::vector<std::string> SubfoldersOf(const fs::path& folder) {
+std::vector<std::string> ListSubfolders(const fs::path& folder) {
   std::vector<std::string> names;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
@@ -92,15 +92,15 @@ std::vector<std::string> SubfoldersOf(const fs::path& folder) {
   return names;
 }
 
-fs::path DatasetFolderOf(const fs::path& results_of_dataset) {
+fs::path ReadDatasetFolder(const fs::path& results_of_dataset) {
   return ReadFirstLine(results_of_dataset / "shared" / "dataset.txt");
 }
 
 std::vector<DatasetResult> ReadResults(const fs::path& results, DamagedFiles damaged) {
   std::vector<DatasetResult> datasets;
-  for (const std::string& name : SubfoldersOf(results)) {
+  for (const std::string& name : ListSubfolders(results)) {
     DatasetResult dataset = {name, {}};
-    for (const std::string& variant : SubfoldersOf(results / name)) {
+    for (const std::string& variant : ListSubfolders(results / name)) {
       const fs::path folder = results / name / variant;
       if (!Exists(folder / "metrics.json") && !Exists(folder / "stages.txt")) continue;
       dataset.variants.push_back(ReadVariant(results / name, folder, damaged));
@@ -170,7 +170,7 @@ void ReadAbout(const std::filesystem::path& settings, DatasetFacts* facts) {
       ReadDocument<AboutDataset>(about, settings.string() + ": about");
 }
 
-std::string MarksOf(const DatasetFacts& facts, int objects) {
+std::string FormatMarks(const DatasetFacts& facts, int objects) {
   std::vector<std::string> marks;
   if (objects <= kFewObjects) marks.emplace_back("f");
   if (facts.partly_annotated) marks.emplace_back("p");

@@ -68,7 +68,7 @@ inline constexpr int kFewObjects = 2;
 
 // Letters for what limits the means of a row over so many objects of the dataset: "p, r"; kNoValue
 // if there is nothing. MarksNote says what they mean.
-std::string MarksOf(const DatasetFacts& facts, int objects);
+std::string FormatMarks(const DatasetFacts& facts, int objects);
 std::string MarksNote();
 
 // In what the dataset differs from the published one of its rows: "9 frames, 4 objects; boxes:
@@ -144,11 +144,11 @@ struct DatasetResult {
 };
 
 // The names of the folders in a folder, sorted; empty if the folder does not exist.
-std::vector<std::string> SubfoldersOf(const std::filesystem::path& folder);
+std::vector<std::string> ListSubfolders(const std::filesystem::path& folder);
 
 // The dataset's folder at the time when its runs were planned: the first line of shared/dataset.txt
 // in its results. Empty without that file.
-std::filesystem::path DatasetFolderOf(const std::filesystem::path& results_of_dataset);
+std::filesystem::path ReadDatasetFolder(const std::filesystem::path& results_of_dataset);
 
 // All datasets in a results folder by name, including those without metrics; empty if the folder
 // does not exist. A metrics.json or timing.json that is not valid either leads to an InputError

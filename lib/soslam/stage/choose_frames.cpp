@@ -139,7 +139,7 @@ ChosenFrames ChoosePhotos(const FrameOptions& options, const fs::path& folder, i
     if (IsLeftOut(frames[i])) return;
     const fs::path& path = (*photos)[i].path;
     try {
-      views[i] = ViewOf(ReadImage(path, cv::IMREAD_GRAYSCALE));
+      views[i] = MakeFrameView(ReadImage(path, cv::IMREAD_GRAYSCALE));
       frames[i].sharpness = views[i].sharpness;
     } catch (const InputError& error) {
       const std::string message = error.what(), place = path.string() + ": ";
@@ -198,7 +198,7 @@ ChosenFrames ChooseFromVideo(const FrameOptions& options, const fs::path& path) 
     }
     const cv::Mat grey = video.Image(cv::IMREAD_GRAYSCALE);
     const ImageSize size = {grey.cols, grey.rows};
-    const FrameView view = ViewOf(grey);
+    const FrameView view = MakeFrameView(grey);
     photos.back().header.stored = size;
     frames.back().sharpness = view.sharpness;
     selectors.try_emplace(size, options).first->second.Add(view);

@@ -265,7 +265,7 @@ class Programs {
         const fs::path mask = workspace_ / kMasks / (job_.images[i] + ".png");
         fs::create_directories(mask.parent_path());
         const cv::Size pixels(static_cast<int>(size.width), static_cast<int>(size.height));
-        if (!cv::imwrite(mask.string(), OutsideOf(job_.masked[i], pixels))) {
+        if (!cv::imwrite(mask.string(), MaskOutBoxes(job_.masked[i], pixels))) {
           throw SettingsError(fmt::format("{}: cannot be written", mask.string()));
         }
       }

@@ -114,7 +114,7 @@ void RunLearnPriors(const LearnPriorsOptions& options, const StageFiles& files, 
     std::vector<CatalogueModel> models = ReadFurnitureCatalogue(files.at("furniture"));
     const size_t all = models.size();
     for (const Sequence& sequence : held_out) {
-      models = WithoutObjectsOf(sequence, base_table, std::move(models));
+      models = ExcludeObjects(sequence, base_table, std::move(models));
     }
     fmt::print("{}: {} models, {} left out as objects of sequences that are held out\n", catalogue,
                all, all - models.size());

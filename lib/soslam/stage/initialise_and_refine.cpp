@@ -51,7 +51,7 @@ std::optional<PointsInFrames> ReadPointsInFrames(const PointOptions& options,
                                                  const Sequence& sequence,
                                                  const StageFiles& files) {
   if (!options.point_evidence) return std::nullopt;
-  return PointsInFrames(sequence, WithoutDistortion(sequence, ReadPointsOf(sequence, files)),
+  return PointsInFrames(sequence, WithoutDistortion(sequence, ReadCheckedPoints(sequence, files)),
                         options);
 }
 

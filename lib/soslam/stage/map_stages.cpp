@@ -68,7 +68,7 @@ BackEndInput ReadInput(const Sequence& sequence, const OptimiseOptions& options,
       sequence, {}, ObjectPriors(sequence, table, options.ratio_prior, options.shape)};
   if (options.points.point_evidence) {
     input.points = FindObjectPoints(
-        sequence, WithoutDistortion(sequence, ReadPointsOf(sequence, files)), options.points);
+        sequence, WithoutDistortion(sequence, ReadCheckedPoints(sequence, files)), options.points);
   }
   if (!UsesEdges(options)) return input;
   const auto frame_of = [&](int index) {
@@ -131,7 +131,8 @@ Sequence AsInMap(Sequence sequence, const MapEstimate& map) {
   return sequence;
 }
 
-std::vector<std::optional<Landmark>> LandmarksOf(const MapEstimate& map, const Sequence& sequence) {
+std::vector<std::optional<Landmark>> CollectLandmarks(const MapEstimate& map,
+                                                      const Sequence& sequence) {
   std::vector<std::optional<Landmark>> landmarks(sequence.objects.size());
   for (const ObjectEstimate& object : map.objects) {
     landmarks[static_cast<size_t>(object.object_index)] = object.landmark_in_world;
@@ -165,8 +166,8 @@ void RunOptimise(const OptimiseOptions& options, const StageFiles& files, int th
   if (options.detection_model == DetectionModel::kTangency) {
     const Sequence in_map = AsInMap(sequence, map);
     const auto quarter_turns = QuarterTurnProbabilities(
-        {in_map, LandmarksOf(map, sequence), input.priors, input.images, input.points}, options,
-        map.solver.Dispersion(), threads);
+        {in_map, CollectLandmarks(map, sequence), input.priors, input.images, input.points},
+        options, map.solver.Dispersion(), threads);
     for (ObjectEstimate& object : map.objects) {
       object.quarter_turn = quarter_turns[static_cast<size_t>(object.object_index)];
     }
@@ -213,7 +214,7 @@ int RunCheckMinima(const NoOptions& /*options*/, const StageFiles& files, int th
   const MapEstimate map = ReadMap(path, imported);
   const Sequence sequence = AsInMap(imported, map);
   BackEndInput input = ReadInput(sequence, options, inputs, threads);
-  input.initial_landmarks = LandmarksOf(map, sequence);
+  input.initial_landmarks = CollectLandmarks(map, sequence);
   int above = 0;
   const auto minima = CheckMinima(input, options, threads);
   for (const ObjectMinimum& minimum : minima) {

@@ -57,7 +57,7 @@ void AddPictureEvidence(const PictureOptions& asked, const StageFiles& files, Se
   inputs->push_back(files.at("appearance"));
 }
 
-std::vector<MapPoint> ReadPointsOf(const Sequence& sequence, const StageFiles& files) {
+std::vector<MapPoint> ReadCheckedPoints(const Sequence& sequence, const StageFiles& files) {
   std::vector<MapPoint> points = ReadPoints(files.at("points"));
   std::set<int> frame_ids;
   for (const Frame& frame : sequence.frames) frame_ids.insert(frame.id);

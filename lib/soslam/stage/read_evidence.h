@@ -29,7 +29,7 @@ void CheckHasPoints(const PointOptions& options, const StageFiles& files);
 // The file "points". Throws InputError if the sequence has none of the frames that see them: points
 // of another dataset, or of other images, would be no evidence in silence. None at all is what
 // soslam-track has warned of.
-std::vector<MapPoint> ReadPointsOf(const Sequence& sequence, const StageFiles& files);
+std::vector<MapPoint> ReadCheckedPoints(const Sequence& sequence, const StageFiles& files);
 
 // Gives the detections the parts of file "appearance" that are asked for, and adds it to `inputs`.
 // Throws SettingsError without a file, InputError for one of another sequence, and as

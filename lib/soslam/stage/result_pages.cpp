@@ -112,7 +112,7 @@ void RunPages(const NoOptions& /*options*/, const StageFiles& files, int threads
     };
     const fs::path folder = results / result.name;
     const size_t max_data_bytes = kMaxPageBytes - page_with("", {}).size();
-    const fs::path dataset = DatasetFolderOf(folder);
+    const fs::path dataset = ReadDatasetFolder(folder);
     DatasetPage& page = pages.emplace_back(MakePage(
         result, [&](const Sequence& sequence) { return ImagesIn(dataset, sequence); },
         max_data_bytes, threads));
@@ -124,7 +124,7 @@ void RunPages(const NoOptions& /*options*/, const StageFiles& files, int threads
     }
     for (const std::string& problem : page.problems) print(problem);
     if (page.variants.empty()) continue;  // there is nothing to show
-    const std::string html = page_with(DatasetTables(page), DataOf(page));
+    const std::string html = page_with(DatasetTables(page), MakePageData(page));
     WriteTextFile(folder / "report.html", html);
     fmt::print("{}: {} variants, {} images, {:.1f} MB\n", (folder / "report.html").string(),
                page.variants.size(), page.images.size(), static_cast<double>(html.size()) / 1e6);

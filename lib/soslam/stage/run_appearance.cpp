@@ -73,7 +73,7 @@ void RunAppearance(const NoOptions& options, const StageFiles& files, int thread
   std::set<std::string> unknown;
   for (const Detection& detection : sequence.detections) {
     const std::string& label = sequence.ObjectOf(detection).label;
-    if (!head.GroupOf(label)) {
+    if (!head.FindGroup(label)) {
       unknown.insert(label);
     } else if (image_of_frame.contains(detection.frame_index)) {
       by_frame[detection.frame_index].push_back(&detection);
@@ -101,8 +101,8 @@ void RunAppearance(const NoOptions& options, const StageFiles& files, int thread
           reader.Read(*image_of_frame.at(frames[i].front()->frame_index), cv::IMREAD_COLOR);
       for (const Detection* detection : frames[i]) {
         const Object& object = sequence.ObjectOf(*detection);
-        const Crop crop = CropOf(image, sequence.CameraOf(*detection), detection->box,
-                                 detection->plane_in_camera.normal, head.Side());
+        const Crop crop = RenderCrop(image, sequence.CameraOf(*detection), detection->box,
+                                     detection->plane_in_camera.normal, head.Side());
         cv::Mat mirrored;
         cv::flip(crop.image, mirrored, /*flipCode=*/1);
         const cv::Mat features = layers.Features(crop.image);
@@ -118,7 +118,7 @@ void RunAppearance(const NoOptions& options, const StageFiles& files, int thread
         }
         records[i].push_back(
             {sequence.FrameOf(*detection).id, object.id,
-             head.Appearance(features, of_mirror, crop.direction, *head.GroupOf(object.label)),
+             head.Appearance(features, of_mirror, crop.direction, *head.FindGroup(object.label)),
              head.Descriptor(features), head.Distance(features)});
         progress.Step();
       }

@@ -190,7 +190,7 @@ void RunExport(const ExportOptions& options, const StageFiles& files, int thread
   std::vector<World> worlds = ReadWorlds(sequence, options, files);
   CheckWorlds(worlds, files);
   if (files.contains("points")) {
-    const std::vector<MapPoint> points = ReadPointsOf(sequence, files);
+    const std::vector<MapPoint> points = ReadCheckedPoints(sequence, files);
     AddPoints(sequence, points, &worlds);
     std::vector<double> errors_px;
     for (const World& world : worlds) {

@@ -181,7 +181,7 @@ std::string RunInspect(const InspectRequest& request, bool is_coloured) {
   // With a picture the object is that of the picture.
   if (request.object_id && !request.image) KeepObject(*request.object_id, &inspection);
   if (!request.csv && !request.table) return FormatInspection(inspection, is_coloured);
-  const ValueTable& table = TableOf(inspection, request.table);
+  const ValueTable& table = FindTable(inspection, request.table);
   if (!request.csv) return FormatWholeTable(table, is_coloured);
   std::string csv = FormatCsv(table);
   if (*request.csv == "-") return csv;

@@ -340,7 +340,7 @@ void RunReconstruct(const ReconstructOptions& options, const StageFiles& files, 
   if (has_model) {
     TurnModel(given.images, dataset, options.image_orientation, &model);
   }
-  Reconstruction reconstruction = ReconstructionOf(model, given.images);
+  Reconstruction reconstruction = BuildReconstruction(model, given.images);
   CheckCamera(model, given, dataset);
   CheckPoses(reconstruction, given);
   ArtefactInfo info{OptionsToJson(options), model.files, model.findings, "reconstruct"};

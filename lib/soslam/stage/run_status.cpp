@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::vector<std::string> PlannedDatasets(const fs::path& results) {
-  std::vector<std::string> names = SubfoldersOf(results);
+  std::vector<std::string> names = ListSubfolders(results);
   std::erase_if(names,
                 [&](const std::string& name) { return !Exists(results / name / "plan.mk"); });
   return names;
@@ -51,7 +51,7 @@ class Status {
     }
     plan_ = MakePlan(folders_.pipelines, name_, Variants(options),
                      Exists(folders_.results / kEditsFile));
-    states_ = StatesOf(plan_, folders_, under_way);
+    states_ = DetermineStates(plan_, folders_, under_way);
   }
 
   void PrintTable() const {
@@ -193,7 +193,7 @@ std::vector<Finding> FindingsOfRun(const StageInstance& instance, const fs::path
     if (artefact.extension() != ".json" || !Exists(artefact)) continue;
     const nlohmann::json document = ParseJsonFile(artefact);
     try {
-      std::ranges::move(FindingsOf(document), std::back_inserter(findings));
+      std::ranges::move(ReadFindings(document), std::back_inserter(findings));
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}: findings: {}", artefact.string(), error.what()));
     }

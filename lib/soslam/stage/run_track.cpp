@@ -34,8 +34,8 @@ void RunTrack(const TrackOptions& options, const StageFiles& files, int threads)
       "{}: {} points from {} tracks, median reprojection error {:.2f} px, each in {:.0f} "
       "images (median)\n",
       sequence.name, points.size(), tracked.tracks,
-      *MedianOf(ValuesOf(points, &MapPoint::reprojection_error_px)),
-      *MedianOf(ValuesOf(points, views)));
+      *MedianOf(CollectValues(points, &MapPoint::reprojection_error_px)),
+      *MedianOf(CollectValues(points, views)));
 }
 
 }  // namespace soslam

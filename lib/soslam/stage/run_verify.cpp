@@ -15,7 +15,7 @@ namespace soslam {
 namespace {
 
 // The runs in folder "results", of datasets in folder "data_root".
-std::vector<DatasetRuns> FindRunsOf(const StageFiles& files) {
+std::vector<DatasetRuns> FindRecordedRuns(const StageFiles& files) {
   const auto data_root = files.find("data_root");
   return FindRuns(files.at("results"),
                   data_root == files.end() ? std::filesystem::path() : data_root->second);
@@ -29,7 +29,7 @@ int RunVerify(const NoOptions& /*options*/, const StageFiles& files, int /*threa
   table.header = {"dataset", "affected variants", "runs", "unused", "files", "findings"};
   table.left_columns = 2;
   bool has_findings = false;
-  for (const DatasetRuns& dataset : FindRunsOf(files)) {
+  for (const DatasetRuns& dataset : FindRecordedRuns(files)) {
     const Verification verification = Verify(dataset);
     std::set<std::string> affected;
     for (const Discrepancy& discrepancy : verification.discrepancies) {
@@ -88,7 +88,7 @@ int RunReproduce(const NoOptions& /*options*/, const StageFiles& files, int thre
   table.header = {"dataset", "runs", "artefacts the same", "that differ", "runs not rerun"};
   std::set<std::string> software_changes;
   bool has_findings = false;
-  const std::vector<DatasetRuns> datasets = FindRunsOf(files);
+  const std::vector<DatasetRuns> datasets = FindRecordedRuns(files);
   const FolderBeside again(files.at("results"));
   for (const DatasetRuns& dataset : datasets) {
     std::array<size_t, kOutcomeNames.size()> counts = {};  // indexed by kind

@@ -122,7 +122,7 @@ void RunAssociate(const AssociateOptions& settings, const StageFiles& files, int
   std::ranges::move(CheckEdits(sequence, association), std::back_inserter(info.findings));
   std::ranges::move(CheckMovedThings(sequence, association), std::back_inserter(info.findings));
   ReportFindings("associate", info.findings);
-  WriteAssociations(files.at("associations"), ReportOf(sequence, association, agreement), info);
+  WriteAssociations(files.at("associations"), MakeReport(sequence, association, agreement), info);
   WriteSequence(files.at("output"), associated, info);
   fmt::print("{} objects with {} of {} detections; tracks: {}\n", association.objects.size(),
              associated.detections.size(), sequence.detections.size(), DescribeTracks(association));
@@ -294,7 +294,7 @@ void RunPlanes(const PlanesOptions& options, const StageFiles& files, int thread
   ReportFindings("planes", info.findings);
   // Planes are not compared with themselves.
   WritePlanes(files.at("report"),
-              ReportOf(result.estimate, has_planes ? WithoutPlanes(sequence) : sequence), info);
+              MakeReport(result.estimate, has_planes ? WithoutPlanes(sequence) : sequence), info);
   WriteSequence(files.at("output"), result.sequence, info);
   fmt::print("{}: {} planes of {} objects\n", sequence.name, result.estimate.planes.size(),
              sequence.objects.size());
@@ -373,10 +373,10 @@ void RunGround(const GroundOptions& options, const StageFiles& files, int thread
         std::back_inserter(info.findings));
   }
   ReportFindings("ground", info.findings);
-  WriteWorld(files.at("world"), ReportOf(estimate, sequence, info.findings), info);
+  WriteWorld(files.at("world"), MakeReport(estimate, sequence, info.findings), info);
   WriteSequence(files.at("output"), WithGround(sequence, estimate), info);
   std::string scale_in_words = "unknown scale";
-  if (const auto scale = WorldScaleOf(estimate, info.findings)) {
+  if (const auto scale = EstimateWorldScale(estimate, info.findings)) {
     const std::string contradictions = ContradictionsInWords(*scale);
     scale_in_words = fmt::format("scale +- {:.0f} % (95 %) from {}{}{}",
                                  HalfIntervalPercent(*scale), SourcesInWords(*scale),

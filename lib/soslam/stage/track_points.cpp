@@ -46,7 +46,7 @@ std::vector<FeatureTrack> FollowFeatures(const Sequence& sequence,
       tracker.Add(
           grey[i],
           camera.Intrinsics() * frame_from_last.toRotationMatrix() * before.Intrinsics().inverse(),
-          OutsideOf(moving[&frame - sequence.frames.data()], grey[i].size()));
+          MaskOutBoxes(moving[&frame - sequence.frames.data()], grey[i].size()));
       progress.Step();
     }
   }

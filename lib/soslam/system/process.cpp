@@ -55,7 +55,7 @@ void Lower(__rlimit_resource resource, rlim_t value) {
   _exit(0);
 }
 
-int ExitStatusOf(pid_t process) {
+int WaitForExit(pid_t process) {
   int status = 0;
   while (waitpid(process, &status, 0) < 0) {
     if (errno != EINTR) throw std::system_error(errno, std::generic_category(), "waitpid");
@@ -106,7 +106,7 @@ std::optional<int> FollowProgram(const std::vector<std::string>& words,
   if (process > 0) ForEachLine(ends[0], use_line);
   close(ends[0]);
   if (process < 0) throw std::system_error(errno, std::generic_category(), "fork");
-  const int status = ExitStatusOf(process);
+  const int status = WaitForExit(process);
   if (WIFSIGNALED(status)) return 128 + WTERMSIG(status);
   if (WEXITSTATUS(status) == kNoSuchProgram) return std::nullopt;
   return WEXITSTATUS(status);
@@ -117,7 +117,7 @@ std::optional<std::string> CrashInOwnProcess(const std::function<void()>& work,
   const pid_t process = fork();
   if (process < 0) throw std::system_error(errno, std::generic_category(), "fork");
   if (process == 0) WorkAndExit(work, limits);
-  const int status = ExitStatusOf(process);
+  const int status = WaitForExit(process);
   if (WIFSIGNALED(status)) {
     return fmt::format("signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
   }

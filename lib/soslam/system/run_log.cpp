@@ -31,7 +31,7 @@ std::int64_t Nanoseconds(const timespec& time) {
 }
 
 // The stamp of a regular file; none if there is no such file.
-std::optional<Stamp> StampOf(const fs::path& path) {
+std::optional<Stamp> ReadStamp(const fs::path& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
   return Stamp{status.st_dev, status.st_ino, status.st_size, Nanoseconds(status.st_mtim),
@@ -60,7 +60,7 @@ fs::path Key(const fs::path& path) { return fs::absolute(path).lexically_normal(
 
 // Stamp and digest of a file; none when it cannot be read.
 std::optional<NotedInput> Digest(const fs::path& path) {
-  const std::optional<Stamp> stamp = StampOf(path);
+  const std::optional<Stamp> stamp = ReadStamp(path);
   if (!stamp) return std::nullopt;
   try {
     return NotedInput{{path, Sha256OfFile(path)}, *stamp};
@@ -117,7 +117,7 @@ void CheckInputsUnchanged() {
   if (!notes) return;
   const std::scoped_lock lock(notes->mutex);
   for (const auto& [key, input] : notes->inputs) {
-    const bool is_unchanged = StampOf(key) == input.stamp || notes->outputs.contains(key);
+    const bool is_unchanged = ReadStamp(key) == input.stamp || notes->outputs.contains(key);
     if (is_unchanged) continue;
     const std::optional<NotedInput> now = Digest(key);
     if (!now || now->digest.sha256 != input.digest.sha256) {

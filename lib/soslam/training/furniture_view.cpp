@@ -331,7 +331,8 @@ std::optional<FurnitureView> RandomView(const FurnitureModel& target,
   const Eigen::Vector3d up_in_camera =
       (camera_from_world.rotation * Eigen::Vector3d::UnitZ() + random->Normals(0.03).cast<double>())
           .normalized();
-  view.crop = CropOf(Photographed(colours(part).clone(), random), camera, box, up_in_camera, side);
+  view.crop =
+      RenderCrop(Photographed(colours(part).clone(), random), camera, box, up_in_camera, side);
   const Eigen::Vector3d towards =
       -(camera_from_world.rotation.conjugate() * view.crop.direction.ray_in_camera);
   view.azimuth = std::atan2(towards.y(), towards.x());

@@ -73,8 +73,8 @@ const StageInstance& Plan::Instance(const std::string& id) const {
   return *found;
 }
 
-std::vector<std::filesystem::path> PrerequisitesOf(const StageInstance& instance,
-                                                   const PlanFolders& folders) {
+std::vector<std::filesystem::path> ListPrerequisites(const StageInstance& instance,
+                                                     const PlanFolders& folders) {
   std::vector<std::filesystem::path> files = {
       folders.executables / ("soslam-" + instance.stage),
       folders.results / InstancePath(instance.Id(), "settings.json")};

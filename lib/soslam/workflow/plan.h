@@ -56,8 +56,8 @@ struct PlanFolders {
 
 // The files that a stage instance depends on: executable, settings, input artefacts, listings,
 // semantic table.
-std::vector<std::filesystem::path> PrerequisitesOf(const StageInstance& instance,
-                                                   const PlanFolders& folders);
+std::vector<std::filesystem::path> ListPrerequisites(const StageInstance& instance,
+                                                     const PlanFolders& folders);
 
 // Path of an artefact or the record of a stage instance, relative to the results of the dataset:
 // "shared/refine-c664bee12d/done".
@@ -90,7 +90,7 @@ inline constexpr const char* kTrunk = "trunk";
 // that can take long (refine, optimise) and continues to the end of all variants that share its
 // beginning, so branches do not share instances and can run in parallel. Everything else is the
 // trunk: stages that take less time than a job costs, and the edges, which many branches read.
-std::vector<WorkUnit> WorkUnitsOf(const Plan& plan);
+std::vector<WorkUnit> SplitPlan(const Plan& plan);
 
 // Text of the makefile that executes a plan: one goal per variant, "all" first, and one rule per
 // stage instance. It needs GNU make >= 4.3; $(BIN) is the folder of the executables, $(LAUNCH) the

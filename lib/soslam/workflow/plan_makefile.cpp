@@ -26,7 +26,7 @@ void AppendNew(Iterator begin, Iterator end, Ids* ids) {
 
 }  // namespace
 
-std::vector<WorkUnit> WorkUnitsOf(const Plan& plan) {
+std::vector<WorkUnit> SplitPlan(const Plan& plan) {
   const auto takes_long = [&](const std::string& id) {
     const std::string& stage = plan.Instance(id).stage;
     return stage == "refine" || stage == "optimise";
@@ -139,7 +139,7 @@ std::string VariantRules(const Plan& plan, const VariantChain& variant) {
 std::string InstanceRules(const StageInstance& instance) {
   std::vector<std::string> prerequisites, outputs;
   const PlanFolders folders = {"$(dataset)", "$(pipelines)", "$(results)", "$(BIN)"};
-  for (const auto& file : PrerequisitesOf(instance, folders)) {
+  for (const auto& file : ListPrerequisites(instance, folders)) {
     prerequisites.push_back(file.string());
   }
   std::string command = "soslam-" + instance.stage;
@@ -171,7 +171,7 @@ std::string InstanceRules(const StageInstance& instance) {
 // Goals for the jobs of a cluster, for what each needs from the trunk, and lists of their
 // instances.
 std::string UnitRules(const Plan& plan) {
-  const std::vector<WorkUnit> units = WorkUnitsOf(plan);
+  const std::vector<WorkUnit> units = SplitPlan(plan);
   std::vector<std::string> names;
   for (const WorkUnit& unit : units) names.push_back(unit.name);
   std::string text =

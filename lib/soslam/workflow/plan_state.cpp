@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-std::optional<fs::file_time_type> TimeOf(const fs::path& file) {
+std::optional<fs::file_time_type> ReadModificationTime(const fs::path& file) {
   std::error_code error;
   const auto time = fs::last_write_time(file, error);
   return error ? std::nullopt : std::optional(time);
@@ -44,7 +44,7 @@ std::string NewerFilesListedIn(const fs::path& listing, const fs::path& dataset,
     const size_t end = line.rfind(' ', line.rfind(' ') - 1);
     if (end == std::string::npos) continue;
     const std::string name = line.substr(0, end);
-    const auto time = TimeOf(dataset / name);
+    const auto time = ReadModificationTime(dataset / name);
     if (time && *time > done) newer.push_back(name);
   }
   if (newer.empty()) return "files of the dataset came, went or were replaced since";
@@ -71,14 +71,14 @@ std::map<std::string, StagesUnderWay> ReadStagesUnderWay(const fs::path& file) {
   return under_way;
 }
 
-std::map<std::string, InstanceState> StatesOf(const Plan& plan, const PlanFolders& folders,
-                                              const StagesUnderWay& under_way) {
+std::map<std::string, InstanceState> DetermineStates(const Plan& plan, const PlanFolders& folders,
+                                                     const StagesUnderWay& under_way) {
   std::map<std::string, InstanceState> states;
   for (const StageInstance& instance : plan.instances) {
     const auto result = [&](const std::string& file) {
       return folders.results / InstancePath(instance.Id(), file);
     };
-    const auto done = TimeOf(result("done"));
+    const auto done = ReadModificationTime(result("done"));
     const std::string failure = FailureIn(result(""));
     InstanceState found;
     if (!failure.empty()) {
@@ -93,8 +93,8 @@ std::map<std::string, InstanceState> StatesOf(const Plan& plan, const PlanFolder
         if (Exists(result(output.file))) continue;
         found.reasons.push_back(output.file + ", which it writes, is gone");
       }
-      for (const fs::path& path : PrerequisitesOf(instance, folders)) {
-        const auto time = TimeOf(path);
+      for (const fs::path& path : ListPrerequisites(instance, folders)) {
+        const auto time = ReadModificationTime(path);
         if (!time) found.reasons.push_back(path.string() + " does not exist");
         if (!time || *time <= *done) continue;
         const bool is_listing =

@@ -41,8 +41,8 @@ std::map<std::string, StagesUnderWay> ReadStagesUnderWay(const std::filesystem::
 
 // States of all instances of a plan, keyed by id. Nothing is written. The listings of the dataset
 // (see RunPlan) are assumed to be correct.
-std::map<std::string, InstanceState> StatesOf(const Plan& plan, const PlanFolders& folders,
-                                              const StagesUnderWay& under_way = {});
+std::map<std::string, InstanceState> DetermineStates(const Plan& plan, const PlanFolders& folders,
+                                                     const StagesUnderWay& under_way = {});
 
 // Differences of settings and inputs between a variant's instance and the last complete run of the
 // variant, one line each: "yaw_step_deg: 2.0 -> 5.0". Empty when there is none, or the variant has

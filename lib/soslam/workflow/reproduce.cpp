@@ -88,7 +88,7 @@ class Reproduction {
     if (const auto failure = RunAgain(record, run)) return not_rerun(*failure);
     rerun_.insert(run.folder);
     for (const RunFile& output : record.outputs) {
-      use(Compare(PathOf(output, record, run, dataset_)));
+      use(Compare(LocateFile(output, record, run, dataset_)));
     }
   }
 
@@ -106,13 +106,13 @@ class Reproduction {
     }
     if (auto foreign = ForeignWrite(record, run)) return foreign;
     for (const RunFile& input : record.inputs) {
-      const fs::path path = PathOf(input, record, run, dataset_);
+      const fs::path path = LocateFile(input, record, run, dataset_);
       if (path.parent_path() == run.folder) continue;  // its settings, which are recorded
       if (IsResult(path)) {
         if (!rerun_.contains(path.parent_path())) {
           return fmt::format("{}, which it reads, was not made again", path.string());
         }
-      } else if (const auto change = digests_.ChangeOf(path, input.sha256)) {
+      } else if (const auto change = digests_.DescribeChange(path, input.sha256)) {
         return fmt::format("{} {} since", path.string(), *change);
       }
     }
@@ -136,7 +136,7 @@ class Reproduction {
       if (written.contains(argument)) return "--" + argument + " is a folder";
     }
     for (const RunFile& output : record.outputs) {
-      const fs::path path = PathOf(output, record, run, dataset_);
+      const fs::path path = LocateFile(output, record, run, dataset_);
       if (IsResult(path)) continue;
       return fmt::format("it wrote {}, which is outside of {}", path.string(),
                          dataset_.results.string());
@@ -164,14 +164,14 @@ class Reproduction {
       words.insert(words.end(), {"--" + argument, path.string()});
     };
     for (const auto& [argument, path] : record.folders) {
-      add(argument, FolderOf(argument, record, dataset_));
+      add(argument, LocateFolder(argument, record, dataset_));
     }
     for (const std::vector<RunFile>* files : {&record.inputs, &record.outputs}) {
       for (const RunFile& file : *files) {
         const bool is_in_a_folder = file.argument == file.relative_to;
         if (is_in_a_folder || file.argument.value_or("").empty() || file.argument == "settings")
           continue;
-        const fs::path path = PathOf(file, record, run, dataset_);
+        const fs::path path = LocateFile(file, record, run, dataset_);
         add(*file.argument, IsResult(path) ? Again(path) : path);
       }
     }

@@ -41,14 +41,14 @@ fs::path FolderOfDataset(const DatasetRuns& dataset) {
       continue;  // reported when the run is compared
     }
   }
-  return DatasetFolderOf(dataset.results);
+  return ReadDatasetFolder(dataset.results);
 }
 
 DatasetRuns RunsOfDataset(const std::string& name, const fs::path& results,
                           const fs::path& data_root) {
   DatasetRuns dataset = {name, (results / name).lexically_normal(), data_root / name, {}, {}, {},
                          {}};
-  for (const std::string& folder : SubfoldersOf(dataset.results)) {
+  for (const std::string& folder : ListSubfolders(dataset.results)) {
     VariantRuns variant = {folder};
     try {
       variant.runs = RunsIn(dataset.results / folder / "stages.txt");
@@ -70,14 +70,14 @@ DatasetRuns RunsOfDataset(const std::string& name, const fs::path& results,
     }
   }
   if (data_root.empty()) dataset.dataset = FolderOfDataset(dataset);
-  for (const std::string& folder : SubfoldersOf(dataset.results / kShared)) {
+  for (const std::string& folder : ListSubfolders(dataset.results / kShared)) {
     const std::string shared = std::string(kShared) + "/" + folder;
     if (Find(shared, &dataset.runs) == nullptr) dataset.unused.push_back(shared);
   }
   for (const VariantRuns& variant : dataset.variants) {
-    for (const std::string& folder : SubfoldersOf(dataset.results / variant.name)) {
+    for (const std::string& folder : ListSubfolders(dataset.results / variant.name)) {
       std::vector<std::string> runs = {variant.name + "/" + folder};
-      for (const std::string& inner : SubfoldersOf(dataset.results / runs.front())) {
+      for (const std::string& inner : ListSubfolders(dataset.results / runs.front())) {
         runs.push_back(runs.front() + "/" + inner);
       }
       for (const std::string& run : runs) {
@@ -96,7 +96,7 @@ std::vector<DatasetRuns> FindRuns(const fs::path& results, const fs::path& data_
     throw InputError(results.string() + ": is no folder; expected results of runs");
   }
   std::vector<DatasetRuns> datasets;
-  for (const std::string& name : SubfoldersOf(results)) {
+  for (const std::string& name : ListSubfolders(results)) {
     DatasetRuns dataset = RunsOfDataset(name, results, data_root);
     if (dataset.variants.empty() && dataset.unused.empty()) continue;
     datasets.push_back(std::move(dataset));
@@ -108,17 +108,17 @@ std::vector<DatasetRuns> FindRuns(const fs::path& results, const fs::path& data_
   return datasets;
 }
 
-fs::path FolderOf(const std::string& argument, const RunRecord& record,
-                  const DatasetRuns& dataset) {
+fs::path LocateFolder(const std::string& argument, const RunRecord& record,
+                      const DatasetRuns& dataset) {
   const bool is_known_dataset = argument == "dataset" && !dataset.dataset.empty();
   return is_known_dataset ? dataset.dataset : AsCalled(record.folders.at(argument), record);
 }
 
-fs::path PathOf(const RunFile& file, const RunRecord& record, const RecordedRun& run,
-                const DatasetRuns& dataset) {
+fs::path LocateFile(const RunFile& file, const RunRecord& record, const RecordedRun& run,
+                    const DatasetRuns& dataset) {
   if (file.relative_to == kRelativeToRun) return (run.folder / file.path).lexically_normal();
   if (file.relative_to == kRelativeToCall) return AsCalled(file.path, record).lexically_normal();
-  return (FolderOf(file.relative_to, record, dataset) / file.path).lexically_normal();
+  return (LocateFolder(file.relative_to, record, dataset) / file.path).lexically_normal();
 }
 
 namespace {
@@ -146,8 +146,8 @@ void CheckRun(const DatasetRuns& dataset, const RecordedRun& run, FileDigests* d
   }
   const auto check = [&](const RunFile& of_run, const char* what_it_did) {
     if (of_run.relative_to == "dataset" && IsDatasetGone(dataset)) return;
-    const fs::path path = PathOf(of_run, *record, run, dataset);
-    if (const auto change = digests->ChangeOf(path, of_run.sha256)) {
+    const fs::path path = LocateFile(of_run, *record, run, dataset);
+    if (const auto change = digests->DescribeChange(path, of_run.sha256)) {
       add(path, fmt::format("{} since {} {} it", *change, run.name, what_it_did));
     }
   };
@@ -204,7 +204,8 @@ void CheckVariant(const DatasetRuns& dataset, const VariantRuns& variant,
 
 }  // namespace
 
-std::optional<std::string> FileDigests::ChangeOf(const fs::path& path, const std::string& sha256) {
+std::optional<std::string> FileDigests::DescribeChange(const fs::path& path,
+                                                       const std::string& sha256) {
   auto digest = digests_.find(path);
   if (digest == digests_.end()) {
     digest = digests_.emplace(path, "").first;  // empty where it cannot be read

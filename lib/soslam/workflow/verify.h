@@ -44,18 +44,19 @@ std::vector<DatasetRuns> FindRuns(const std::filesystem::path& results,
                                   const std::filesystem::path& data_root);
 
 // Current path of a file of a run.
-std::filesystem::path PathOf(const RunFile& file, const RunRecord& record, const RecordedRun& run,
-                             const DatasetRuns& dataset);
+std::filesystem::path LocateFile(const RunFile& file, const RunRecord& record,
+                                 const RecordedRun& run, const DatasetRuns& dataset);
 
 // Current path of a folder argument of a run; that of a dataset may have moved.
-std::filesystem::path FolderOf(const std::string& argument, const RunRecord& record,
-                               const DatasetRuns& dataset);
+std::filesystem::path LocateFolder(const std::string& argument, const RunRecord& record,
+                                   const DatasetRuns& dataset);
 
 // Compares files with their recorded digests; each file is read only once.
 class FileDigests {
  public:
   // "is gone", "has changed", "cannot be read"; none when the content is unchanged.
-  std::optional<std::string> ChangeOf(const std::filesystem::path& path, const std::string& sha256);
+  std::optional<std::string> DescribeChange(const std::filesystem::path& path,
+                                            const std::string& sha256);
   size_t files() const { return digests_.size(); }
 
  private:
