@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "soslam/geometry/angles.h"
-#include "soslam/planes/planes_and_orientation.h"
 #include "soslam/planes/scene_axis.h"
+#include "soslam/planes/tilt_drift.h"
 #include "support/looking_at.h"
 #include "support/random.h"
 
