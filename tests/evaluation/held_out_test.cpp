@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "soslam/evaluation/held_out.h"
-
 #include <gtest/gtest.h>
 
 #include "soslam/dataset/gate.h"
+#include "soslam/evaluation/metrics.h"
 #include "soslam/synthesis/simulate.h"
 #include "support/scene.h"
 

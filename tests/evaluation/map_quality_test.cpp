@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "soslam/evaluation/map_quality.h"
-
 #include <gmock/gmock.h>
 
 #include <numbers>
 
 #include "soslam/base/assignment.h"
+#include "soslam/evaluation/map_reasons.h"
 #include "support/map_quality_fixture.h"
 
 namespace soslam {

@@ -5,6 +5,7 @@
 
 #include <numbers>
 
+#include "soslam/evaluation/landmark_errors.h"
 #include "soslam/evaluation/trajectory_error.h"
 #include "soslam/synthesis/simulate.h"
 #include "support/random.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "soslam/evaluation/map_quality.h"
+#include "soslam/evaluation/metrics.h"
 #include "soslam/geometry/angles.h"
 #include "support/random.h"
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "soslam/evaluation/held_out.h"
-
 #include <Eigen/Core>
 #include <algorithm>
 
 #include "soslam/base/assignment.h"
 #include "soslam/evaluation/map_reasons.h"
+#include "soslam/evaluation/metrics.h"
 #include "soslam/evaluation/statistics.h"
 
 namespace soslam {

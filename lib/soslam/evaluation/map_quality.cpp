@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "soslam/evaluation/map_quality.h"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <string>
 
 #include "soslam/base/assignment.h"
+#include "soslam/evaluation/map_reasons.h"
+#include "soslam/evaluation/metrics.h"
 #include "soslam/evaluation/statistics.h"
 #include "soslam/model/label_groups.h"
 

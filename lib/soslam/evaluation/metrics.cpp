@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "soslam/evaluation/metrics.h"
 
+#include "soslam/evaluation/landmark_errors.h"
 #include "soslam/evaluation/statistics.h"
 #include "soslam/evaluation/trajectory_error.h"
 
