@@ -166,22 +166,12 @@ Alignment Align(const std::vector<PosePair>& pairs, AlignmentKind kind) {
 
 Alignments AlignSegments(const Sequence& sequence, const std::vector<Rigid3d>& world_from_camera,
                          AlignmentKind choice) {
-  struct PosesOfSegment {
-    std::vector<PosePair> odometry, estimated;
-  };
-  std::map<int, PosesOfSegment> segments;
-  for (size_t i = 0; i < sequence.frames.size(); ++i) {
-    const Frame& frame = sequence.frames[i];
-    PosesOfSegment& poses = segments[frame.segment];
-    if (!frame.true_world_from_camera) continue;
-    poses.odometry.push_back({frame.world_from_camera, *frame.true_world_from_camera});
-    poses.estimated.push_back({world_from_camera[i], *frame.true_world_from_camera});
-  }
+  const auto odometry = PosePairs(sequence, PosesOf(sequence));
   Alignments alignments;
-  for (const auto& [segment, poses] : segments) {
-    const AlignmentKind asked = ChooseKind(choice, sequence, poses.odometry);
-    Alignment alignment = Align(poses.estimated, asked);
-    alignment.up_error_deg = UpErrorDeg(sequence, segment, poses.estimated);
+  for (const auto& [segment, estimated] : PosePairs(sequence, world_from_camera)) {
+    const AlignmentKind asked = ChooseKind(choice, sequence, odometry.at(segment));
+    Alignment alignment = Align(estimated, asked);
+    alignment.up_error_deg = UpErrorDeg(sequence, segment, estimated);
     alignments.of_segment[segment] = alignment;
     const char* kind = kAlignmentKindNames[static_cast<size_t>(alignment.kind)];
     if (alignment.kind != asked) {
@@ -195,9 +185,9 @@ Alignments AlignSegments(const Sequence& sequence, const std::vector<Rigid3d>& w
            "no ground truth of the trajectory, or a camera that stands still, which tells no scale",
            "give groundtruth.txt of a camera that moves, or choose another alignment"});
     }
-    if (poses.estimated.empty() || alignment.kind == AlignmentKind::kSimilarity) continue;
-    const Alignment similarity = Align(poses.estimated, AlignmentKind::kSimilarity);
-    if (HaveOtherScale(Align(poses.estimated, AlignmentKind::kRigid), similarity)) {
+    if (estimated.empty() || alignment.kind == AlignmentKind::kSimilarity) continue;
+    const Alignment similarity = Align(estimated, AlignmentKind::kSimilarity);
+    if (HaveOtherScale(Align(estimated, AlignmentKind::kRigid), similarity)) {
       alignments.findings.push_back(
           {"alignment_scale", Severity::kWarning,
            fmt::format("the map of segment {} is aligned as {}, which leaves its cameras {:.3g} m "

@@ -132,10 +132,11 @@ Metrics EvaluateMap(const Sequence& sequence, const MapEstimate& map, AlignmentK
   // Each segment has a world of its own, so one alignment is not enough.
   const int segment = sequence.frames.front().segment;
   if (sequence.frames.back().segment != segment) return metrics;
-  const auto error = AbsoluteTrajectoryError(PosePairs(sequence, map.world_from_camera, segment));
+  const auto error =
+      AbsoluteTrajectoryError(PosePairs(sequence, map.world_from_camera).at(segment));
   if (error) {
     metrics.trajectory = {
-        *error, *AbsoluteTrajectoryError(PosePairs(sequence, PosesOf(sequence), segment))};
+        *error, *AbsoluteTrajectoryError(PosePairs(sequence, PosesOf(sequence)).at(segment))};
   }
   return metrics;
 }

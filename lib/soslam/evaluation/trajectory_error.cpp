@@ -11,14 +11,13 @@
 
 namespace soslam {
 
-std::vector<PosePair> PosePairs(const Sequence& sequence,
-                                const std::vector<Rigid3d>& world_from_camera, int segment) {
-  std::vector<PosePair> pairs;
+std::map<int, std::vector<PosePair>> PosePairs(const Sequence& sequence,
+                                               const std::vector<Rigid3d>& world_from_camera) {
+  std::map<int, std::vector<PosePair>> pairs;
   for (size_t i = 0; i < sequence.frames.size(); ++i) {
     const auto& truth = sequence.frames[i].true_world_from_camera;
-    if (truth && sequence.frames[i].segment == segment) {
-      pairs.push_back({world_from_camera[i], *truth});
-    }
+    std::vector<PosePair>& of_segment = pairs[sequence.frames[i].segment];
+    if (truth) of_segment.push_back({world_from_camera[i], *truth});
   }
   return pairs;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -16,10 +17,10 @@ struct PosePair {
   Rigid3d truth;
 };
 
-// The poses of the frames of a segment that have a true one. `world_from_camera`: the estimates,
-// one per Sequence::frames.
-std::vector<PosePair> PosePairs(const Sequence& sequence,
-                                const std::vector<Rigid3d>& world_from_camera, int segment);
+// The poses of the frames that have a true one, by segment. `world_from_camera`: the estimates, one
+// per Sequence::frames.
+std::map<int, std::vector<PosePair>> PosePairs(const Sequence& sequence,
+                                               const std::vector<Rigid3d>& world_from_camera);
 
 // Difference of two trajectories, medians over frames.
 struct TrajectoryGap {
