@@ -21,6 +21,41 @@
 #include "soslam/base/description.h"
 #include "soslam/model/sequence.h"
 
+// Absent values are null in every artefact.
+template <typename Value>
+struct nlohmann::adl_serializer<std::optional<Value>> {
+  static void to_json(json& json, const std::optional<Value>& value) {
+    json = value ? nlohmann::json(*value) : nlohmann::json();
+  }
+  static void from_json(const json& json, std::optional<Value>& value) {
+    value = json.is_null() ? std::nullopt : std::optional(json.get<Value>());
+  }
+};
+
+// Vectors are lists of numbers, matrices lists of their rows.
+template <int kRows, int kColumns, int kOptions>
+struct nlohmann::adl_serializer<Eigen::Matrix<double, kRows, kColumns, kOptions>> {
+  static_assert(kRows > 1 && kColumns > 0, "a list of known length");
+  using Matrix = Eigen::Matrix<double, kRows, kColumns, kOptions>;
+
+  template <typename Json>
+  static void to_json(Json& json, const Matrix& matrix) {
+    json = Json::array();
+    for (int i = 0; i < kRows; ++i) {
+      const auto row = matrix.row(i);
+      json.push_back(kColumns == 1 ? Json(row[0])
+                                   : Json(std::vector<double>(row.begin(), row.end())));
+    }
+  }
+  static void from_json(const json& json, Matrix& matrix) {
+    for (int i = 0; i < kRows; ++i) {
+      for (int k = 0; k < kColumns; ++k) {
+        (kColumns == 1 ? json.at(i) : json.at(i).at(k)).get_to(matrix(i, k));
+      }
+    }
+  }
+};
+
 namespace soslam {
 
 // JSON and JSON schemas of structs by their descriptions, see base/description.h. Vectors are lists
@@ -174,7 +209,8 @@ class JsonWriter : public internal::VisitorThatDoesNotRead {
   template <typename Value, typename Describer = ByDescribe>
   nlohmann::json ToJson(const Value& value, const Describer& describe = {}) const {
     using nlohmann::json;
-    if constexpr (std::same_as<Value, json> || std::is_arithmetic_v<Value>) {
+    if constexpr (std::same_as<Value, json> || std::is_arithmetic_v<Value> ||
+                  internal::IsMatrix<Value>) {
       return value;
     } else if constexpr (internal::IsText<Value>) {
       return std::string(value);
@@ -194,14 +230,6 @@ class JsonWriter : public internal::VisitorThatDoesNotRead {
       return object;
     } else if constexpr (std::same_as<Value, Eigen::Quaterniond>) {
       return {value.x(), value.y(), value.z(), value.w()};
-    } else if constexpr (internal::IsMatrix<Value>) {
-      json list = json::array();
-      for (int i = 0; i < value.rows(); ++i) {
-        const auto row = value.row(i);
-        list.push_back(value.cols() == 1 ? json(row[0])
-                                         : json(std::vector<double>(row.begin(), row.end())));
-      }
-      return list;
     } else {
       JsonWriter part(sequence_);
       // Descriptions change what they visit only when it is read.

@@ -6,50 +6,14 @@
 #include <filesystem>
 #include <functional>
 #include <istream>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "soslam/artefact/described_json.h"
 #include "soslam/base/error.h"
 #include "soslam/model/finding.h"
-
-// Absent values are null in every artefact.
-template <typename Value>
-struct nlohmann::adl_serializer<std::optional<Value>> {
-  static void to_json(json& json, const std::optional<Value>& value) {
-    json = value ? nlohmann::json(*value) : nlohmann::json();
-  }
-  static void from_json(const json& json, std::optional<Value>& value) {
-    value = json.is_null() ? std::nullopt : std::optional(json.get<Value>());
-  }
-};
-
-// Vectors are lists of numbers, matrices lists of their rows.
-template <int kRows, int kColumns, int kOptions>
-struct nlohmann::adl_serializer<Eigen::Matrix<double, kRows, kColumns, kOptions>> {
-  static_assert(kRows > 1 && kColumns > 0, "a list of known length");
-  using Matrix = Eigen::Matrix<double, kRows, kColumns, kOptions>;
-
-  static void to_json(json& json, const Matrix& matrix) {
-    json = nlohmann::json::array();
-    for (int i = 0; i < kRows; ++i) {
-      const auto row = matrix.row(i);
-      json.push_back(kColumns == 1 ? nlohmann::json(row[0])
-                                   : nlohmann::json(std::vector<double>(row.begin(), row.end())));
-    }
-  }
-  static void from_json(const json& json, Matrix& matrix) {
-    for (int i = 0; i < kRows; ++i) {
-      for (int k = 0; k < kColumns; ++k) {
-        (kColumns == 1 ? json.at(i) : json.at(i).at(k)).get_to(matrix(i, k));
-      }
-    }
-  }
-};
 
 namespace soslam {
 

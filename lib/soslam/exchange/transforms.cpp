@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "soslam/artefact/described_json.h"
 #include "soslam/base/error.h"
 #include "soslam/exchange/exports.h"
 #include "soslam/geometry/distortion.h"
@@ -42,10 +43,7 @@ std::string TransformsText(const World& world, const fs::path& dataset) {
     if (!is_one_camera) entry.update(Intrinsics(frame.camera));
     Eigen::Matrix4d world_from_opengl = frame.world_from_camera.Matrix();
     world_from_opengl.block<3, 2>(0, 1) *= -1.0;
-    for (int i = 0; i < 4; ++i) {
-      const Eigen::RowVector4d row = world_from_opengl.row(i);
-      entry["transform_matrix"].push_back({row[0], row[1], row[2], row[3]});
-    }
+    entry["transform_matrix"] = world_from_opengl;
     document["frames"].push_back(entry);
   }
   return document.dump(1) + "\n";

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "soslam/artefact/dataset_folder.h"
+#include "soslam/artefact/described_json.h"
 #include "soslam/base/parallel.h"
 #include "soslam/dataset/trajectories.h"
 #include "soslam/synthesis/render.h"
@@ -40,11 +41,6 @@ std::string BoxesText(const Scene& scene, const std::vector<SimulatedBox>& boxes
   return text;
 }
 
-template <typename Vector>
-std::vector<double> Numbers(const Vector& vector) {
-  return {vector.begin(), vector.end()};
-}
-
 // One entry per line.
 std::string ArrayText(const ordered_json& entries) {
   std::string text = "[";
@@ -62,9 +58,9 @@ std::string ObjectsText(const Scene& scene) {
     entries.push_back({{"id", object.id},
                        {"label", object.label},
                        {"model", kShapeNames[static_cast<size_t>(object.shape)]},
-                       {"center", Numbers(world_from_object.translation)},
-                       {"quaternion_xyzw", Numbers(world_from_object.rotation.coeffs())},
-                       {"half_axes", Numbers(truth.landmark_in_world.half_axes)},
+                       {"center", world_from_object.translation},
+                       {"quaternion_xyzw", world_from_object.rotation.coeffs()},
+                       {"half_axes", truth.landmark_in_world.half_axes},
                        {"mirror_symmetric", truth.mirror_symmetric},
                        {"mirror_symmetric_yz", truth.mirror_symmetric_yz},
                        {"rotationally_symmetric", truth.rotationally_symmetric},
@@ -165,7 +161,7 @@ void WriteDataset(const Scene& scene, bool noise, const fs::path& folder, int th
   for (const ScenePlane& plane : scene.planes) {
     planes.push_back({{"id", plane.id},
                       {"label", plane.label},
-                      {"normal", Numbers(plane.plane_in_world.normal)},
+                      {"normal", plane.plane_in_world.normal},
                       {"d", plane.plane_in_world.offset}});
   }
   output.Write("planes.json", ArrayText(planes));
