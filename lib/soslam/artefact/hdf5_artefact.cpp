@@ -6,13 +6,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
-#include <string_view>
 #include <utility>
 
 #include "soslam/base/error.h"
+#include "soslam/image/file_kind.h"
 
 namespace soslam {
 namespace {
@@ -40,12 +39,7 @@ Hdf5File OpenArtefact(const std::filesystem::path& path, const std::string& kind
   return file;
 }
 
-bool IsHdf5(const std::filesystem::path& path) {
-  constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
-  std::string begin(kSignature.size(), '\0');
-  std::ifstream(path, std::ios::binary).read(begin.data(), static_cast<int>(begin.size()));
-  return begin == kSignature;
-}
+bool IsHdf5(const std::filesystem::path& path) { return KindOfFile(path) == "an HDF5 file"; }
 
 nlohmann::json ReadArtefactHeader(const std::filesystem::path& path) {
   nlohmann::json header;

@@ -255,25 +255,6 @@ ArrayShape Hdf5File::ReadShape(const std::string& name, const Hdf5Handle& data_s
   return shape;
 }
 
-ArrayShape Hdf5File::CheckedShape(const std::string& name, const Hdf5Handle& data_set, int depth,
-                                  const std::vector<int>& expected) const {
-  const Hdf5Element element = Hdf5ElementOf(depth);
-  const Hdf5Handle type{H5Dget_type(data_set.id()), &H5Tclose};
-  ArrayShape shape = ReadShape(name, data_set);
-  const bool same_type = H5Tequal(type.id(), element.type) > 0;
-  const bool same_shape =
-      std::equal(shape.begin(), shape.end(), expected.begin(), expected.end(),
-                 [](std::uint64_t size, int wanted) {
-                   return wanted == kAny || size == static_cast<std::uint64_t>(wanted);
-                 });
-  if (!same_type || !same_shape) {
-    FailReading(name, fmt::format("is {} of {}; expected {}", fmt::join(shape, " x "),
-                                  same_type ? element.name : "another type",
-                                  Describe(expected, element.name)));
-  }
-  return shape;
-}
-
 void Hdf5File::ReadArray(const std::string& name, int depth, const std::vector<int>& expected,
                          const std::function<void*(const ArrayShape&)>& allocate) const {
   const auto element_size = static_cast<size_t>(CV_ELEM_SIZE1(depth));
@@ -281,11 +262,22 @@ void Hdf5File::ReadArray(const std::string& name, int depth, const std::vector<i
   std::optional<std::string> chunk;
   {
     const Hdf5Lock turn;
-    if (!Has(name)) {
-      FailReading(name, "missing; expected " + Describe(expected, Hdf5ElementOf(depth).name));
-    }
+    const Hdf5Element element = Hdf5ElementOf(depth);
+    if (!Has(name)) FailReading(name, "missing; expected " + Describe(expected, element.name));
     const Hdf5Handle data_set{H5Dopen2(file_.id(), name.c_str(), H5P_DEFAULT), &H5Dclose};
-    shape = CheckedShape(name, data_set, depth, expected);
+    const Hdf5Handle type{H5Dget_type(data_set.id()), &H5Tclose};
+    shape = ReadShape(name, data_set);
+    const bool same_type = H5Tequal(type.id(), element.type) > 0;
+    const bool same_shape =
+        std::equal(shape.begin(), shape.end(), expected.begin(), expected.end(),
+                   [](std::uint64_t size, int wanted) {
+                     return wanted == kAny || size == static_cast<std::uint64_t>(wanted);
+                   });
+    if (!same_type || !same_shape) {
+      FailReading(name, fmt::format("is {} of {}; expected {}", fmt::join(shape, " x "),
+                                    same_type ? element.name : "another type",
+                                    Describe(expected, element.name)));
+    }
     chunk = ReadChunk(data_set, shape, Size());
   }
   const size_t bytes = CountValues(shape) * element_size;

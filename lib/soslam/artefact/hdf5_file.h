@@ -130,13 +130,11 @@ class Hdf5File {
   std::uint64_t Size() const;  // size of the file, bytes
   // Shape of a data set. Throws if it has too many values.
   ArrayShape ReadShape(const std::string& name, const Hdf5Handle& data_set) const;
-  // ReadShape; also throws if shape or element type differ from the expected ones.
-  ArrayShape CheckedShape(const std::string& name, const Hdf5Handle& data_set, int depth,
-                          const std::vector<int>& expected) const;
 
   void WriteArray(const std::string& name, const ArrayShape& shape, int depth, const void* values);
   // Reads into the memory that `allocate` returns for the shape that is found. Throws before that
-  // if the stored bytes cannot hold so many values.
+  // if shape or element type differ from the expected ones, or the stored bytes cannot hold so many
+  // values.
   void ReadArray(const std::string& name, int depth, const std::vector<int>& expected,
                  const std::function<void*(const ArrayShape&)>& allocate) const;
 

@@ -25,6 +25,11 @@ namespace fs = std::filesystem;
 constexpr std::array kNames = {"classes.txt", "obj.names",    "data.yaml",
                                "data.yml",    "dataset.yaml", "labels.txt"};
 
+std::vector<std::string> ListOf(std::string_view names) {
+  const auto fields = SplitFields(names);
+  return {fields.begin(), fields.end()};
+}
+
 void CheckName(const std::string& name, const std::string& place) {
   if (!name.empty() && name.find(',') == name.npos) return;
   throw InputError(
@@ -106,21 +111,9 @@ std::optional<std::string> Contradiction(const ClassNames& one, const ClassNames
 
 // The names that labelImg comes with, and writes beside labels (classes.txt) until they are
 // changed.
-const std::vector<std::string> kLabelImgTemplate = {"dog",
-                                                    "person",
-                                                    "cat",
-                                                    "tv",
-                                                    "car",
-                                                    "meatballs",
-                                                    "marinara sauce",
-                                                    "tomato sauce",
-                                                    "chicken noodle soup",
-                                                    "french onion soup",
-                                                    "chicken breast",
-                                                    "ribs",
-                                                    "pulled pork",
-                                                    "hamburger",
-                                                    "cavity"};
+const std::vector<std::string> kLabelImgTemplate = ListOf(
+    "dog,person,cat,tv,car,meatballs,marinara sauce,tomato sauce,chicken noodle soup,"
+    "french onion soup,chicken breast,ribs,pulled pork,hamburger,cavity");
 
 // Removes labelImg's template where another list contradicts it, which is a finding.
 void RemoveTemplates(std::vector<ClassNames>* lists, std::vector<Finding>* findings) {
@@ -195,7 +188,7 @@ std::vector<fs::path> FindLabelFiles(const fs::path& labels, const fs::path& dat
 }
 
 const std::vector<std::string>& CocoLabels() {
-  constexpr std::string_view kLabels =
+  static const std::vector<std::string> labels = ListOf(
       "person,bicycle,car,motorcycle,airplane,bus,train,truck,boat,traffic light,fire hydrant,"
       "stop sign,parking meter,bench,bird,cat,dog,horse,sheep,cow,elephant,bear,zebra,giraffe,"
       "backpack,umbrella,handbag,tie,suitcase,frisbee,skis,snowboard,sports ball,kite,"
@@ -203,11 +196,7 @@ const std::vector<std::string>& CocoLabels() {
       "knife,spoon,bowl,banana,apple,sandwich,orange,broccoli,carrot,hot dog,pizza,donut,cake,"
       "chair,couch,potted plant,bed,dining table,toilet,tv,laptop,mouse,remote,keyboard,"
       "cell phone,microwave,oven,toaster,sink,refrigerator,book,clock,vase,scissors,teddy bear,"
-      "hair drier,toothbrush";
-  static const auto labels = [&] {
-    const auto names = SplitFields(kLabels);
-    return std::vector<std::string>(names.begin(), names.end());
-  }();
+      "hair drier,toothbrush");
   return labels;
 }
 
