@@ -184,12 +184,12 @@ TEST_F(CocoResultsTest, TurnedBoxesBecomeUpright) {
   };
   for (const double half_turn_deg : {0.0, 180.0, 360.0}) {
     ExpectBox(Only(turned(half_turn_deg).boxes).box, {9.5, 9.5, 49.5, 29.5});
-    const CocoBoxes quarter = turned(half_turn_deg + 90.0);
+    const FolderBoxes quarter = turned(half_turn_deg + 90.0);
     ExpectBox(Only(quarter.boxes).box, {19.5, -0.5, 39.5, 39.5});
     EXPECT_FALSE(IsOblique(quarter.boxes[0]));
   }
   for (const double angle_deg : {30.0, 150.0, 330.0}) {
-    const CocoBoxes oblique = turned(angle_deg);
+    const FolderBoxes oblique = turned(angle_deg);
     const double half_width = 20.0 * std::sqrt(0.75) + 5.0;
     const double half_height = 10.0 + 10.0 * std::sqrt(0.75);
     ExpectBox(Only(oblique.boxes).box,
@@ -200,7 +200,7 @@ TEST_F(CocoResultsTest, TurnedBoxesBecomeUpright) {
 }
 
 TEST_F(CocoResultsTest, NumbersMayBeTextOrNull) {
-  const CocoBoxes read = ReadCocoResults(Write("results.json", R"([
+  const FolderBoxes read = ReadCocoResults(Write("results.json", R"([
       {"image_id": 0, "category_id": 1, "bbox": [10, 10, 40, 20], "score": null, "angle": null,
        "rotation": "0.0", "bbox_mode": null, "track_id": null, "iscrowd": null,
        "attributes": {"rotation": "90", "track_id": "7", "outside": "false"}},
@@ -218,7 +218,7 @@ TEST_F(CocoResultsTest, NumbersMayBeTextOrNull) {
 TEST_F(CocoResultsTest, WordsAsAttributesAreNoAngles) {
   for (const char* value : {R"("front")", R"("")", R"("30 degrees")", "true", "null", "[30]"}) {
     SCOPED_TRACE(value);
-    const CocoBoxes read = ReadCocoResults(Write(
+    const FolderBoxes read = ReadCocoResults(Write(
         "results.json", fmt::format(R"([{{"image_id": 0, "category_id": 1, "bbox": [10, 10, 40, 20],
                           "attributes": {{"rotation": {}}}}}])",
                                     value)));
@@ -228,7 +228,7 @@ TEST_F(CocoResultsTest, WordsAsAttributesAreNoAngles) {
 }
 
 TEST_F(CocoResultsTest, WhatIsNoSingleObjectInTheImageIsLeftOut) {
-  const CocoBoxes read = ReadCocoResults(Write("results.json", R"([
+  const FolderBoxes read = ReadCocoResults(Write("results.json", R"([
       {"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4], "iscrowd": 1},
       {"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4], "ignore": 1},
       {"image_id": 0, "category_id": 1, "bbox": [1, 2, 3, 4], "attributes": {"outside": true}},
@@ -267,7 +267,7 @@ TEST_F(CocoResultsTest, ImagesOfTwoFilesThatContradictEachOtherAreAFinding) {
     EXPECT_THAT(read("rgb/b.png", same).findings, IsEmpty()) << same;
     EXPECT_THAT(read(same, "rgb/b.png").findings, IsEmpty()) << same;
   }
-  const CocoBoxes boxes = read("rgb/b.png", "rgb/c.png");
+  const FolderBoxes boxes = read("rgb/b.png", "rgb/c.png");
   EXPECT_EQ(Only(boxes.boxes).frame, FrameKey("rgb/b.png"));
   EXPECT_THAT(
       Only(boxes.findings).found,

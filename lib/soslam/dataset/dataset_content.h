@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "soslam/dataset/gate.h"
@@ -46,6 +47,13 @@ struct DatasetContent {
     Landmark landmark_in_camera;
   };
   std::vector<LabelInFrame> labels_in_frames = {};
+
+  // Adds a frame that has a pose. The camera of the first frame is that of the sequence.
+  void AddFrame(Frame frame, const Camera& camera) {
+    if (frames.empty()) sequence.camera = camera;
+    if (camera != sequence.camera) frame.camera = camera;
+    frames.push_back({std::move(frame), true});
+  }
 };
 
 // Reads a folder of images: the project's own format, TUM RGB-D or ICL-NUIM. All three have a list

@@ -52,14 +52,8 @@ void PrintAssumedLabels(const std::vector<LabelledBox>& boxes, const fs::path& f
 }
 
 FolderBoxes ReadCocoBoxes(const DatasetFiles& files) {
-  CocoBoxes read = ReadCocoResults(files.detections, files.class_names);
-  FolderBoxes boxes{std::move(read.boxes)};
-  boxes.left_out = std::move(read.left_out);
-  boxes.findings = std::move(read.findings);
-  if (!read.has_categories) {
-    boxes.class_names = CocoLabels();
-    PrintAssumedLabels(boxes.boxes, files.detections);
-  }
+  FolderBoxes boxes = ReadCocoResults(files.detections, files.class_names);
+  if (!boxes.class_names.empty()) PrintAssumedLabels(boxes.boxes, files.detections);
   const auto oblique = std::ranges::count_if(boxes.boxes, [](const LabelledBox& box) {
     return box.as_drawn && box.as_drawn->IsOblique();
   });

@@ -46,8 +46,6 @@ DatasetContent ReadKittiObject(const fs::path& folder, const ImportOptions& opti
     }
     const Camera camera = WithImageSize(calibration.camera, image_file, options.image_orientation,
                                         image_size, frame.id);
-    if (content.frames.empty()) content.sequence.camera = camera;
-    if (camera != content.sequence.camera) frame.camera = camera;
     for (const KittiLabel& label : labels) {
       DetectionRow row = RowOfLabel(label, label.box, label.score, calibration, camera);
       row.frame_id = frame.id;
@@ -57,7 +55,7 @@ DatasetContent ReadKittiObject(const fs::path& folder, const ImportOptions& opti
       AddLabelledObject(std::move(object), frame.id, &content.sequence);
       content.rows.push_back(std::move(row));
     }
-    content.frames.push_back({std::move(frame), true});
+    content.AddFrame(std::move(frame), camera);
   }
   return content;
 }

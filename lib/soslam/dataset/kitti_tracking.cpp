@@ -124,11 +124,7 @@ class Recording {
     }
     camera_ = WithImageSize(calibration_.camera, any_image, options_.image_orientation,
                             RecordingValues("image_size", options_.kitti.image_size), number_);
-    if (content_->frames.empty()) content_->sequence.camera = camera_;
-    for (Frame& frame : frames) {
-      if (camera_ != content_->sequence.camera) frame.camera = camera_;
-      content_->frames.push_back({std::move(frame), true});
-    }
+    for (Frame& frame : frames) content_->AddFrame(std::move(frame), camera_);
   }
 
   void AddObjects() {

@@ -298,7 +298,7 @@ void AddOwnNames(CocoNames own, const fs::path& results, const fs::path& dataset
   names->image_sizes = std::move(own.image_sizes);
 }
 
-void ReadEntry(const JsonEntry& entry, const std::optional<CocoNames>& names, CocoBoxes* read) {
+void ReadEntry(const JsonEntry& entry, const std::optional<CocoNames>& names, FolderBoxes* read) {
   std::optional<JsonEntry> attributes;  // that CVAT adds
   if (entry.Has("attributes") && entry.Field("attributes").is_object()) {
     attributes.emplace(entry.Field("attributes"), entry.place() + "/attributes");
@@ -338,7 +338,7 @@ json ParseDatasetFile(const fs::path& path) {
 
 }  // namespace
 
-CocoBoxes ReadCocoResults(const fs::path& results, const std::optional<fs::path>& dataset) {
+FolderBoxes ReadCocoResults(const fs::path& results, const std::optional<fs::path>& dataset) {
   const json document = ParseJsonFile(results);
   auto names =
       dataset ? std::optional(ReadCocoNames(ParseDatasetFile(*dataset), *dataset)) : std::nullopt;
@@ -348,7 +348,7 @@ CocoBoxes ReadCocoResults(const fs::path& results, const std::optional<fs::path>
                      ": is not a list of results, nor a data set with \"images\", "
                      "\"annotations\" and \"categories\"");
   }
-  CocoBoxes read;
+  FolderBoxes read;
   if (!is_list) {
     CocoNames own = ReadCocoNames(document, results);
     if (names) {
@@ -363,7 +363,7 @@ CocoBoxes ReadCocoResults(const fs::path& results, const std::optional<fs::path>
         ": categories is missing; expected the names of the classes, {\"id\", \"name\"}");
   }
   const json& list = is_list ? document : JsonEntry(document, results.string()).List("annotations");
-  read.has_categories = names.has_value();
+  if (!names) read.class_names = CocoLabels();
   for (const JsonEntry& entry :
        ListEntries(list, results.string() + (is_list ? "#" : "#/annotations"))) {
     ReadEntry(entry, names, &read);

@@ -53,11 +53,12 @@ std::vector<LabelledBox> ReadDetectionsCsv(const std::filesystem::path& path);
 // must be rows of rgb.txt, the labels without comma.
 std::string LabelledBoxesText(const std::vector<LabelledBox>& boxes);
 
-// Boxes of COCO's results or of a data set.
-struct CocoBoxes {
+// Boxes and the class names that their labels were taken from; no names where boxes have labels.
+struct FolderBoxes {
   std::vector<LabelledBox> boxes;
-  RejectionCounts left_out;     // boxes that are not of one object in the image
-  bool has_categories = false;  // false: the labels are COCO's
+  std::vector<std::string> class_names = {};
+  RejectionCounts corrected = {};  // boxes that were changed on reading
+  RejectionCounts left_out = {};   // boxes that are not of one object in an image
   std::vector<Finding> findings = {};
 };
 
@@ -76,8 +77,8 @@ struct CocoBoxes {
 // them itself, or some of them. Without either, an integer image_id is a 0-based row of the image
 // list, and category_id is COCO's own (1 to 90). A text as image_id is the name of an image. In
 // file order. Throws InputError with file and JSON pointer.
-CocoBoxes ReadCocoResults(const std::filesystem::path& results,
-                          const std::optional<std::filesystem::path>& dataset = std::nullopt);
+FolderBoxes ReadCocoResults(const std::filesystem::path& results,
+                            const std::optional<std::filesystem::path>& dataset = std::nullopt);
 
 // Reads detections in OA-SLAM's format (M. Zins, G. Simon, M.-O. Berger, "OA-SLAM", ISMAR 2022):
 // [{"file_name", "detections": [{"category_id", "detection_score", "bbox": [x1, y1, x2, y2]}]}],

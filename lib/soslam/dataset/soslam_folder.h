@@ -34,15 +34,6 @@ std::vector<ListedFrame> ReadFolderFrames(const std::filesystem::path& folder,
                                           const std::optional<Rigid3d>& body_from_camera,
                                           std::vector<Finding>* findings);
 
-// Boxes and the class names that their labels were taken from; no names where boxes have labels.
-struct FolderBoxes {
-  std::vector<LabelledBox> boxes;
-  std::vector<std::string> class_names = {};
-  RejectionCounts corrected = {};  // boxes that were changed on reading
-  RejectionCounts left_out = {};   // boxes that are not of one object in an image
-  std::vector<Finding> findings = {};
-};
-
 // Reads the boxes of a folder of images in any of the formats of `detections_format`. Class names
 // may be stored with YOLO's labels: `files` then gets their path, which is printed to stdout.
 // Throws InputError.
