@@ -231,82 +231,74 @@ struct Solid {
 
 using Solids = std::vector<const Solid*>;
 
-class FrameRenderer {
- public:
-  FrameRenderer(const Scene& scene, const Rigid3d& world_from_camera)
-      : camera_(scene.camera), surroundings_(scene), world_from_camera_(world_from_camera) {
-    for (const Landmark& body_in_world : AllBodies(scene)) {
-      const Landmark body_in_camera = Transform(world_from_camera.Inverse(), body_in_world);
-      Solid solid{body_in_camera, body_in_camera.frame_from_object.Inverse(), std::nullopt,
-                  ExactOutline(camera_, body_in_camera)};
-      if (solids_.size() < scene.objects.size()) {
-        solid.texture.emplace(scene.objects[solids_.size()]);
-      }
-      solids_.push_back(std::move(solid));
+// The solids of a scene, those of its objects first.
+std::vector<Solid> SolidsOf(const Scene& scene, const Rigid3d& world_from_camera) {
+  std::vector<Solid> solids;
+  for (const Landmark& body_in_world : AllBodies(scene)) {
+    const Landmark body_in_camera = Transform(world_from_camera.Inverse(), body_in_world);
+    Solid solid{body_in_camera, body_in_camera.frame_from_object.Inverse(), std::nullopt,
+                ExactOutline(scene.camera, body_in_camera)};
+    if (solids.size() < scene.objects.size()) solid.texture.emplace(scene.objects[solids.size()]);
+    solids.push_back(std::move(solid));
+  }
+  return solids;
+}
+
+Colour RayColour(const Surroundings& surroundings, const Rigid3d& world_from_camera,
+                 const Solids& solids, const Eigen::Vector3d& ray_in_camera) {
+  double depth = kInfinity;
+  const Solid* nearest = nullptr;
+  for (const Solid* solid : solids) {
+    const auto hit =
+        NearestIntersection(solid->body_in_camera, Eigen::Vector3d::Zero(), ray_in_camera);
+    if (hit && *hit < depth) {
+      depth = *hit;
+      nearest = solid;
     }
   }
-
-  void RenderRow(int v, cv::Vec3b* row) const {
-    Solids in_pixel;
-    for (int u = 0; u < camera_.width; ++u) {
-      in_pixel.clear();
-      for (const Solid& solid : solids_) {
-        if (solid.MayCover(u, v)) in_pixel.push_back(&solid);
-      }
-      Colour sum = Colour::Zero();
-      for (int i = 0; i < kSamplesPerSide * kSamplesPerSide; ++i) {
-        const int row_of_sample = i / kSamplesPerSide, column = i % kSamplesPerSide;
-        const Eigen::Vector2d offset((column + 0.5) / kSamplesPerSide - 0.5,
-                                     (row_of_sample + 0.5) / kSamplesPerSide - 0.5);
-        sum += RayColour(camera_.Ray(Eigen::Vector2d(u, v) + offset), in_pixel);
-      }
-      const Colour colour = sum / (kSamplesPerSide * kSamplesPerSide);
-      for (int channel = 0; channel < 3; ++channel) {
-        row[u][channel] = cv::saturate_cast<uchar>(colour[channel]);
-      }
-    }
+  if (!nearest) {
+    return surroundings.BackgroundColour(world_from_camera.translation,
+                                         world_from_camera.rotation * ray_in_camera);
   }
-
- private:
-  Colour RayColour(const Eigen::Vector3d& ray_in_camera, const Solids& solids) const {
-    double depth = std::numeric_limits<double>::infinity();
-    const Solid* nearest = nullptr;
-    for (const Solid* solid : solids) {
-      const auto hit =
-          NearestIntersection(solid->body_in_camera, Eigen::Vector3d::Zero(), ray_in_camera);
-      if (hit && *hit < depth) {
-        depth = *hit;
-        nearest = solid;
-      }
-    }
-    if (!nearest) {
-      return surroundings_.BackgroundColour(world_from_camera_.translation,
-                                            world_from_camera_.rotation * ray_in_camera);
-    }
-    const Eigen::Vector3d point_in_camera = depth * ray_in_camera;
-    const Eigen::Vector3d point_in_object = nearest->object_from_camera * point_in_camera;
-    const Eigen::Vector3d normal_in_camera =
-        nearest->body_in_camera.frame_from_object.rotation *
-        OutwardNormal(nearest->body_in_camera, point_in_object);
-    const Eigen::Vector3d normal_in_world = world_from_camera_.rotation * normal_in_camera;
-    if (!nearest->texture) {
-      return surroundings_.TableColour(world_from_camera_ * point_in_camera, normal_in_world);
-    }
-    return surroundings_.Light(normal_in_world) * nearest->texture->Colour(point_in_object);
+  const Eigen::Vector3d point_in_camera = depth * ray_in_camera;
+  const Eigen::Vector3d point_in_object = nearest->object_from_camera * point_in_camera;
+  const Eigen::Vector3d normal_in_camera = nearest->body_in_camera.frame_from_object.rotation *
+                                           OutwardNormal(nearest->body_in_camera, point_in_object);
+  const Eigen::Vector3d normal_in_world = world_from_camera.rotation * normal_in_camera;
+  if (!nearest->texture) {
+    return surroundings.TableColour(world_from_camera * point_in_camera, normal_in_world);
   }
-
-  Camera camera_;
-  Surroundings surroundings_;
-  Rigid3d world_from_camera_;
-  std::vector<Solid> solids_;
-};
+  return surroundings.Light(normal_in_world) * nearest->texture->Colour(point_in_object);
+}
 
 }  // namespace
 
 cv::Mat RenderFrame(const Scene& scene, const Rigid3d& world_from_camera) {
-  const FrameRenderer renderer(scene, world_from_camera);
-  cv::Mat image(scene.camera.height, scene.camera.width, CV_8UC3);
-  for (int v = 0; v < image.rows; ++v) renderer.RenderRow(v, image.ptr<cv::Vec3b>(v));
+  const Camera& camera = scene.camera;
+  const Surroundings surroundings(scene);
+  const std::vector<Solid> solids = SolidsOf(scene, world_from_camera);
+  cv::Mat image(camera.height, camera.width, CV_8UC3);
+  Solids in_pixel;
+  for (int v = 0; v < camera.height; ++v) {
+    for (int u = 0; u < camera.width; ++u) {
+      in_pixel.clear();
+      for (const Solid& solid : solids) {
+        if (solid.MayCover(u, v)) in_pixel.push_back(&solid);
+      }
+      Colour sum = Colour::Zero();
+      for (int i = 0; i < kSamplesPerSide * kSamplesPerSide; ++i) {
+        const int row = i / kSamplesPerSide, column = i % kSamplesPerSide;
+        const Eigen::Vector2d offset((column + 0.5) / kSamplesPerSide - 0.5,
+                                     (row + 0.5) / kSamplesPerSide - 0.5);
+        sum += RayColour(surroundings, world_from_camera, in_pixel,
+                         camera.Ray(Eigen::Vector2d(u, v) + offset));
+      }
+      const Colour colour = sum / (kSamplesPerSide * kSamplesPerSide);
+      for (int channel = 0; channel < 3; ++channel) {
+        image.at<cv::Vec3b>(v, u)[channel] = cv::saturate_cast<uchar>(colour[channel]);
+      }
+    }
+  }
   return image;
 }
 
