@@ -101,14 +101,6 @@ void DatasetFolder::CheckReplaceable() const {
   }
 }
 
-void DatasetFolder::WriteSums() const {
-  std::string text;
-  for (const fs::path& file : FilesIn(temporary_)) {
-    text += fmt::format("{}  {}\n", Sha256OfFile(temporary_ / file), file.string());
-  }
-  Write(kSums, text);
-}
-
 void DatasetFolder::Write(const std::string& name, std::string_view bytes) const {
   const fs::path path = temporary_ / name;
   std::ofstream file(path, std::ios::binary);
@@ -120,7 +112,11 @@ void DatasetFolder::Write(const std::string& name, std::string_view bytes) const
 void DatasetFolder::Commit() {
   CheckInputsUnchanged();
   CheckReplaceable();
-  WriteSums();
+  std::string sums;
+  for (const fs::path& file : FilesIn(temporary_)) {
+    sums += fmt::format("{}  {}\n", Sha256OfFile(temporary_ / file), file.string());
+  }
+  Write(kSums, sums);
   if (const int error = SyncWith(::syncfs, temporary_)) {
     Refuse(folder_, fmt::format("cannot be written: {}", std::strerror(error)));
   }
@@ -128,24 +124,22 @@ void DatasetFolder::Commit() {
   // systems support it.
   const bool is_exchanged = Exists(folder_) && ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD,
                                                            folder_.c_str(), RENAME_EXCHANGE) == 0;
-  if (!is_exchanged) Replace();
+  if (!is_exchanged) {
+    const fs::path old = Sibling(folder_, "old");
+    std::error_code error;
+    const bool replaces = Exists(folder_);
+    if (replaces) fs::rename(folder_, old, error);
+    if (!error) fs::rename(temporary_, folder_, error);
+    if (error) {
+      const std::string why = "cannot be written: " + error.message();
+      if (replaces && !Exists(folder_)) fs::rename(old, folder_, error);
+      Refuse(folder_, why);
+    }
+    fs::remove_all(old, error);
+  }
   for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
     if (entry.is_regular_file()) RecordOutput(entry.path());
   }
-}
-
-void DatasetFolder::Replace() {
-  const fs::path old = Sibling(folder_, "old");
-  std::error_code error;
-  const bool replaces = Exists(folder_);
-  if (replaces) fs::rename(folder_, old, error);
-  if (!error) fs::rename(temporary_, folder_, error);
-  if (error) {
-    const std::string why = "cannot be written: " + error.message();
-    if (replaces && !Exists(folder_)) fs::rename(old, folder_, error);
-    Refuse(folder_, why);
-  }
-  fs::remove_all(old, error);
 }
 
 }  // namespace soslam

@@ -35,8 +35,6 @@ class DatasetFolder {
 
  private:
   void CheckReplaceable() const;
-  void WriteSums() const;
-  void Replace();
 
   std::filesystem::path folder_;
   std::string writer_;

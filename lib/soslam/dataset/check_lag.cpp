@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "soslam/dataset/tracked_rays.h"
+#include "soslam/dataset/dataset_checks.h"
 #include "soslam/evaluation/statistics.h"
 #include "soslam/geometry/rigid3.h"
 

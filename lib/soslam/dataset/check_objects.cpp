@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "soslam/dataset/dataset_checks.h"
-#include "soslam/dataset/tracked_rays.h"
 #include "soslam/evaluation/statistics.h"
 #include "soslam/geometry/angles.h"
 

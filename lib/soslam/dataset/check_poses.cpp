@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "soslam/dataset/dataset_checks.h"
-#include "soslam/dataset/tracked_rays.h"
 #include "soslam/evaluation/trajectory_error.h"
 #include "soslam/geometry/angles.h"
 #include "soslam/geometry/rigid3.h"

@@ -12,7 +12,6 @@
 #include "soslam/base/text.h"
 #include "soslam/dataset/dataset_checks.h"
 #include "soslam/dataset/image_path.h"
-#include "soslam/dataset/tracked_rays.h"
 #include "soslam/evaluation/statistics.h"
 #include "soslam/geometry/angles.h"
 #include "soslam/image/frame_choice.h"

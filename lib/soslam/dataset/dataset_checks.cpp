@@ -17,14 +17,10 @@
 #include "soslam/model/reasons.h"
 
 namespace soslam {
-namespace {
-
-using Check = std::vector<Finding> (*)(const ImportView&);
-
-}  // namespace
 
 std::vector<Finding> CheckDataset(const ImportView& view) {
   std::vector<Finding> findings = view.content.findings;
+  using Check = std::vector<Finding> (*)(const ImportView&);
   const auto add = [&](std::initializer_list<Check> checks) {
     for (const Check check : checks) std::ranges::move(check(view), std::back_inserter(findings));
   };

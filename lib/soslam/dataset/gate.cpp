@@ -73,29 +73,12 @@ std::vector<DetectionRow> WithoutDuplicates(std::vector<DetectionRow> rows, Reje
   return rows;
 }
 
-std::vector<DetectionRow> WithEnoughObservations(std::vector<DetectionRow> rows,
-                                                 int min_observations, Rejections* rejected) {
-  std::map<int, int> observations;
-  for (const DetectionRow& row : rows) ++observations[row.object_id];
-  std::erase_if(rows, [&](const DetectionRow& row) {
-    if (observations[row.object_id] >= min_observations) return false;
-    rejected->Add(row, RejectReason::kTooFewObservations);
-    return true;
-  });
-  return rows;
-}
-
-namespace {
-
-// Edges this close to the image border count as cut by it: detectors end cut boxes a few pixels
-// before the border, and more where boxes are large. Fractions of the image's shorter side and of
-// the box's width or height; the larger one counts.
-constexpr double kCutAtBorderOfImage = 0.01;
-constexpr double kCutAtBorderOfBox = 0.02;
-
-}  // namespace
-
 std::array<bool, 4> EdgesCutByBorder(const Box& box, const Camera& camera) {
+  // Edges this close to the image border count as cut by it: detectors end cut boxes a few pixels
+  // before the border, and more where boxes are large. Fractions of the image's shorter side and of
+  // the box's width or height; the larger one counts.
+  constexpr double kCutAtBorderOfImage = 0.01;
+  constexpr double kCutAtBorderOfBox = 0.02;
   const double of_image_px = kCutAtBorderOfImage * std::min(camera.width, camera.height);
   const double x_margin_px = std::max(of_image_px, kCutAtBorderOfBox * box.Width());
   const double y_margin_px = std::max(of_image_px, kCutAtBorderOfBox * box.Height());

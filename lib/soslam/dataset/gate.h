@@ -105,10 +105,6 @@ std::optional<RejectReason> GateRow(const DetectionRow& row, const Camera& camer
 // by frame, then object.
 std::vector<DetectionRow> WithoutDuplicates(std::vector<DetectionRow> rows, Rejections* rejected);
 
-// Drops all rows of objects that have fewer than `min_observations`.
-std::vector<DetectionRow> WithEnoughObservations(std::vector<DetectionRow> rows,
-                                                 int min_observations, Rejections* rejected);
-
 // Marks edges of boxes that are one-sided (Detection::is_one_sided): edges cut by the image border,
 // and lower edges occluded by nearer objects.
 

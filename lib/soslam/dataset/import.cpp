@@ -85,7 +85,13 @@ class DetectionImporter {
     Sequence all_in_view = *sequence_;
     usable = WithoutDuplicates(std::move(usable), &rejected);
     if (content_.has_object_ids) {
-      usable = WithEnoughObservations(std::move(usable), options_.min_observations, &rejected);
+      std::map<int, int> observations;  // by object
+      for (const DetectionRow& row : usable) ++observations[row.object_id];
+      std::erase_if(usable, [&](const DetectionRow& row) {
+        if (observations[row.object_id] >= options_.min_observations) return false;
+        rejected.Add(row, RejectReason::kTooFewObservations);
+        return true;
+      });
     }
     sequence_->detections = Detections(usable);
 

@@ -68,20 +68,12 @@ bool HaveObjectIds(const std::vector<LabelledBox>& boxes) {
                              [](const LabelledBox& box) { return box.object_id.has_value(); });
 }
 
-namespace {
-
-struct Votes {
-  int rows = 0;
-  double score = 0.0;
-};
-
-// Votes of the rows of one object, keyed by label.
-using Ballot = std::map<std::string, Votes>;
-
-}  // namespace
-
 int UnifyLabels(const std::vector<ListedObject>& objects, std::vector<DetectionRow>* rows) {
-  std::map<int, Ballot> ballots;
+  struct Votes {
+    int rows = 0;
+    double score = 0.0;
+  };
+  std::map<int, std::map<std::string, Votes>> ballots;  // by object and label
   for (const DetectionRow& row : *rows) {
     Votes& votes = ballots[row.object_id][row.label];
     ++votes.rows;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "soslam/dataset/tracked_rays.h"
-
 #include <Eigen/Geometry>
 #include <map>
 #include <set>
 #include <string>
 
+#include "soslam/dataset/dataset_checks.h"
 #include "soslam/evaluation/statistics.h"
 #include "soslam/geometry/angles.h"
 #include "soslam/geometry/triangulation.h"

@@ -2,19 +2,6 @@
 #include "soslam/evaluation/true_views.h"
 
 namespace soslam {
-namespace {
-
-// Assumed shape exponent of true objects, whose shape is unknown: between a cuboid and an
-// ellipsoid, like most things.
-constexpr double kOutlineShapeExponent = 1.25;
-
-// A raw detection, used or not.
-struct RawBox {
-  TrueView view;
-  Box box;
-};
-
-}  // namespace
 
 TrueViews::TrueViews(const Sequence& sequence) : sequence_(sequence) {
   for (const TruthInFrame& truth : sequence.truth_in_frames) {
@@ -50,6 +37,14 @@ std::optional<Landmark> TrueViews::InCamera(int frame_index, int true_index) con
 }
 
 ViewsOfTruth FindViews(const Sequence& sequence, const TrueViews& views) {
+  // Assumed shape exponent of true objects, whose shape is unknown: between a cuboid and an
+  // ellipsoid, like most things.
+  constexpr double kOutlineShapeExponent = 1.25;
+  // A raw detection, used or not.
+  struct RawBox {
+    TrueView view;
+    Box box;
+  };
   ViewsOfTruth found;
   found.of_object.resize(sequence.true_objects.size());
   found.detected_frames.resize(sequence.true_objects.size());

@@ -12,15 +12,6 @@
 #include "soslam/base/error.h"
 
 namespace soslam {
-namespace {
-
-// One axis: from the input to the image, where the first pixel's centre is 0.
-double ToImageAxis(double in_input, int start, int filled, int image) {
-  const double from_corner = (in_input - start) * image / filled;
-  return std::clamp(from_corner, 0.0, static_cast<double>(image)) - 0.5;
-}
-
-}  // namespace
 
 Letterbox::Letterbox(const cv::Size& image, const cv::Size& input, bool is_stretched)
     : image_(image), input_(input), filled_({0, 0}, input) {
@@ -43,10 +34,15 @@ cv::Mat Letterbox::Fit(const cv::Mat& image) const {
 }
 
 Box Letterbox::ToImage(const Box& box) const {
-  return {ToImageAxis(box.x_min, filled_.x, filled_.width, image_.width),
-          ToImageAxis(box.y_min, filled_.y, filled_.height, image_.height),
-          ToImageAxis(box.x_max, filled_.x, filled_.width, image_.width),
-          ToImageAxis(box.y_max, filled_.y, filled_.height, image_.height)};
+  // One axis: from the input to the image, where the first pixel's centre is 0.
+  const auto to_image = [](double in_input, int start, int filled, int image) {
+    const double from_corner = (in_input - start) * image / filled;
+    return std::clamp(from_corner, 0.0, static_cast<double>(image)) - 0.5;
+  };
+  return {to_image(box.x_min, filled_.x, filled_.width, image_.width),
+          to_image(box.y_min, filled_.y, filled_.height, image_.height),
+          to_image(box.x_max, filled_.x, filled_.width, image_.width),
+          to_image(box.y_max, filled_.y, filled_.height, image_.height)};
 }
 
 Detector::Detector(const NetworkFile& file, const NetworkFormat& format, std::vector<int> groups,
