@@ -21,38 +21,6 @@ namespace {
 
 using nlohmann::json;
 
-// Parser callback that rejects duplicate keys, of which nlohmann silently keeps the last, and deep
-// nesting, which would exhaust the stack in recursive code.
-class StructureCheck {
- public:
-  static constexpr int kMaxDepth = 100;
-
-  explicit StructureCheck(const std::string& file) : file_(file) {}
-
-  bool operator()(int depth, json::parse_event_t event, const json& parsed) {
-    const bool begins =
-        event == json::parse_event_t::object_start || event == json::parse_event_t::array_start;
-    if (begins && depth >= kMaxDepth) {
-      throw InputError(
-          fmt::format("{}: is nested more than {} levels deep; expected less", file_, kMaxDepth));
-    }
-    if (event == json::parse_event_t::object_start) {
-      keys_of_open_objects_.emplace_back();
-    } else if (event == json::parse_event_t::object_end) {
-      keys_of_open_objects_.pop_back();
-    } else if (event == json::parse_event_t::key &&
-               !keys_of_open_objects_.back().insert(parsed.get<std::string>()).second) {
-      throw InputError(
-          fmt::format("{}: key {} twice in one object; expected once", file_, parsed.dump()));
-    }
-    return true;
-  }
-
- private:
-  std::string file_;
-  std::vector<std::set<std::string>> keys_of_open_objects_;
-};
-
 void RefuseNonFinite(const json& value, const json::json_pointer& place, const std::string& file) {
   if (value.is_number_float() && !std::isfinite(value.get<double>())) {
     throw NumericalError(fmt::format("{}: {} would be {}; expected a finite number", file,
@@ -85,8 +53,30 @@ json ParseJsonText(std::istream& text, const std::string& name) {
   if (text.peek() == std::istream::traits_type::eof()) {
     throw InputError(name + ": is empty; expected JSON");
   }
+  // Rejects duplicate keys, of which nlohmann silently keeps the last, and deep nesting, which
+  // would exhaust the stack in recursive code.
+  std::vector<std::set<std::string>> keys_of_open_objects;
+  const auto check = [&](int depth, json::parse_event_t event, const json& parsed) {
+    constexpr int kMaxDepth = 100;
+    const bool begins =
+        event == json::parse_event_t::object_start || event == json::parse_event_t::array_start;
+    if (begins && depth >= kMaxDepth) {
+      throw InputError(
+          fmt::format("{}: is nested more than {} levels deep; expected less", name, kMaxDepth));
+    }
+    if (event == json::parse_event_t::object_start) {
+      keys_of_open_objects.emplace_back();
+    } else if (event == json::parse_event_t::object_end) {
+      keys_of_open_objects.pop_back();
+    } else if (event == json::parse_event_t::key &&
+               !keys_of_open_objects.back().insert(parsed.get<std::string>()).second) {
+      throw InputError(
+          fmt::format("{}: key {} twice in one object; expected once", name, parsed.dump()));
+    }
+    return true;
+  };
   try {
-    return json::parse(text, StructureCheck(name));
+    return json::parse(text, check);
   } catch (const json::exception& error) {
     std::string begin(kFileKindSize, '\0');
     text.clear();

@@ -82,9 +82,7 @@ namespace {
 
 // True if the field's name denotes distortion, and not the size of a matrix.
 bool IsOfDistortion(const std::string& plain_key) {
-  for (const char* end : {".rows", ".cols"}) {
-    if (plain_key.ends_with(end)) return false;
-  }
+  if (plain_key.ends_with(".rows") || plain_key.ends_with(".cols")) return false;
   const std::string last = plain_key.substr(plain_key.rfind('.') + 1);
   return plain_key.find("distort") != plain_key.npos ||
          plain_key.find("distcoef") != plain_key.npos ||

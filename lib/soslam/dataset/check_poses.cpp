@@ -154,30 +154,31 @@ bool DoCamerasTurn(const ImportView& view) {
   return false;
 }
 
-// A possible mistake in the input that explains why objects are not where they are seen.
-struct Explanation {
-  const char* name;
-  const char* cause;
-  const char* remedy;
-  bool is_order;   // a mistake in the order of frames
-  RayError error;  // remaining error once it is corrected
-};
-
 // Searches for the best reading of the poses or order of the frames. Under a wrong one the rays to
 // objects diverge; under the right one they meet to within a degree.
-std::optional<Explanation> BestExplanation(const ImportView& view,
-                                           const std::vector<TrackedObject>& objects,
-                                           const RayError& as_read) {
-  constexpr double kFitsDeg = 1.0;
-  constexpr double kMuchBetter = 0.25;
-  if (as_read.median_deg <= kFitsDeg) return std::nullopt;
-  std::optional<Explanation> best;
+std::vector<Finding> CheckReadings(const ImportView& view,
+                                   const std::vector<TrackedObject>& objects,
+                                   const RayError& as_read) {
+  constexpr double kFitsDeg = 1.0, kMuchBetter = 0.25;
+  if (as_read.median_deg <= kFitsDeg) return {};
+  // Rays that meet behind the cameras may come from objects that move faster than the cameras.
+  const bool is_of_still_things = as_read.median_deg <= 90.0 || DoCamerasTurn(view);
+  std::vector<Finding> best;
   double best_deg = std::min(kFitsDeg, kMuchBetter * as_read.median_deg);
+  // `error`: what remains once the mistake is corrected.
   const auto consider = [&](const char* name, const char* cause, const char* remedy, bool is_order,
                             const std::optional<RayError>& error) {
     if (!IsComparable(error, as_read) || error->median_deg >= best_deg) return;
     best_deg = error->median_deg;
-    best = Explanation{name, cause, remedy, is_order, *error};
+    best = {{is_order ? kFrameOrder : kPoseConvention,
+             !is_order && is_of_still_things ? Severity::kError : Severity::kWarning,
+             fmt::format("things are {:.2f} degrees from where they are seen (median), but {:.2f} "
+                         "if {}",
+                         as_read.median_deg, best_deg, name),
+             is_order ? "images, poses and boxes in the order in which the camera took them"
+                      : "poses world_from_camera, camera z forward, quaternion qx qy qz qw; "
+                        "things that stand still",
+             cause, remedy}};
   };
   std::vector<TrackedObject> mirrored = objects;
   for (TrackedObject& object : mirrored) {
@@ -216,24 +217,6 @@ std::optional<Explanation> BestExplanation(const ImportView& view,
                  "sort the images or poses by number, or write numbers with leading zeros",
                  from_strings);
   return best;
-}
-
-std::vector<Finding> CheckReadings(const ImportView& view,
-                                   const std::vector<TrackedObject>& objects,
-                                   const RayError& as_read) {
-  const auto best = BestExplanation(view, objects, as_read);
-  if (!best) return {};
-  // Rays that meet behind the cameras may come from objects that move faster than the cameras.
-  const bool is_certain = !best->is_order && (as_read.median_deg <= 90.0 || DoCamerasTurn(view));
-  return {{best->is_order ? kFrameOrder : kPoseConvention,
-           is_certain ? Severity::kError : Severity::kWarning,
-           fmt::format("things are {:.2f} degrees from where they are seen (median), but {:.2f} if "
-                       "{}",
-                       as_read.median_deg, best->error.median_deg, best->name),
-           best->is_order ? "images, poses and boxes in the order in which the camera took them"
-                          : "poses world_from_camera, camera z forward, quaternion qx qy qz qw; "
-                            "things that stand still",
-           best->cause, best->remedy}};
 }
 
 std::string InWords(const TrajectoryGap& gap) {

@@ -315,8 +315,7 @@ std::vector<ColmapImage> ReadImagesText(const std::filesystem::path& path) {
 }
 
 std::vector<ColmapCamera> ReadCameras(const std::filesystem::path& path) {
-  constexpr size_t kLeastBytes = 24;
-  auto cameras = IsBinary(path) ? ReadBinary(path, "camera", kLeastBytes, &TakeCamera)
+  auto cameras = IsBinary(path) ? ReadBinary(path, "camera", /*least_bytes=*/24, &TakeCamera)
                                 : ParseTextLines(path, &ParseColmapCamera);
   if (!cameras.empty()) return cameras;
   throw InputError(path.string() + ": has no camera; expected COLMAP's cameras.txt or cameras.bin");
@@ -345,9 +344,8 @@ LensCamera FindCamera(const std::vector<ColmapImage>& images,
 }
 
 std::vector<ColmapImage> ReadImages(const std::filesystem::path& path) {
-  constexpr size_t kLeastBytes = 73;
-  auto images =
-      IsBinary(path) ? ReadBinary(path, "image", kLeastBytes, &TakeImage) : ReadImagesText(path);
+  auto images = IsBinary(path) ? ReadBinary(path, "image", /*least_bytes=*/73, &TakeImage)
+                               : ReadImagesText(path);
   if (images.empty()) {
     throw InputError(path.string() + ": has no pose; expected COLMAP's images.txt or images.bin");
   }
@@ -438,8 +436,7 @@ std::vector<NamedPose> ReadColmapPoses(const std::filesystem::path& path) {
 }
 
 std::vector<ColmapPoint> ReadColmapPoints(const std::filesystem::path& path) {
-  constexpr size_t kLeastBytes = 51;
-  if (IsBinary(path)) return ReadBinary(path, "point", kLeastBytes, &TakePoint);
+  if (IsBinary(path)) return ReadBinary(path, "point", /*least_bytes=*/51, &TakePoint);
   return ParseTextLines(path, &ParsePoint);
 }
 

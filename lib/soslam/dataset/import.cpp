@@ -8,7 +8,6 @@
 #include <utility>
 #include <variant>
 
-#include "soslam/artefact/json_file.h"
 #include "soslam/base/error.h"
 #include "soslam/base/paths.h"
 #include "soslam/dataset/class_names.h"

@@ -221,10 +221,6 @@ std::map<std::string, size_t> FindColumns(const CsvColumns& columns,
 
 }  // namespace
 
-double CsvRow::Real(const std::string& column) const {
-  return ParseReal(fields.at(column), place, column);
-}
-
 void ForEachCsvRow(const std::filesystem::path& path, const CsvColumns& columns,
                    const std::function<void(const CsvRow&)>& use) {
   const std::string text = ReadWholeFile(path);

@@ -88,7 +88,9 @@ struct CsvRow {
   std::string place_of_header;
   std::map<std::string, std::string> fields;  // trimmed, by the names of the columns
 
-  double Real(const std::string& column) const;
+  double Real(const std::string& column) const {
+    return ParseReal(fields.at(column), place, column);
+  }
 };
 
 // Reads a table in CSV whose first line names its columns, in any order and among others; names are

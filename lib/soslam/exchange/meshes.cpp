@@ -11,66 +11,51 @@
 namespace soslam {
 namespace {
 
-constexpr int kCellsAcrossFace = 16;
-
-// A grid on the surface of the cube |x_i| <= 1, moved onto the body: first in the horizontal
-// section, then between the axis and the section's rim.
-class SurfaceGrid {
- public:
-  // A node (i, j, k), each from 0 to Cells(axis); at least one of them is at an end.
-  using Node = std::array<int, 3>;
-
-  SurfaceGrid(const Eigen::Vector3d& half_axes, const ShapeExponents& exponents)
-      : half_axes_(half_axes), dual_(DualExponents(exponents)) {
-    const double roundest = std::min(dual_.horizontal, dual_.vertical);
-    for (const size_t axis : {0, 1, 2})
-      lines_[axis] = LinesFor(axis < 2 ? roundest : dual_.vertical);
+// Lines across a face of the cube |x_i| <= 1 at equally spaced angles of superquadrics, which are
+// dense where the surface is curved (Barr, "Superquadrics and angle-preserving transformations",
+// 1981): x / z = tan(angle)^(2 / q).
+std::vector<double> LinesAcrossFace(double q) {
+  constexpr int kCells = 16;
+  if (std::isinf(q)) return {-1.0, 1.0};
+  std::vector<double> lines;
+  for (int i = 0; i <= kCells; ++i) {
+    const double tangent = std::tan((2.0 * i / kCells - 1.0) * std::numbers::pi / 4.0);
+    lines.push_back(std::copysign(std::pow(std::abs(tangent), 2.0 / q), tangent));
   }
-
-  int Cells(size_t axis) const { return static_cast<int>(lines_[axis].size()) - 1; }
-
-  Eigen::Vector3d Point(const Node& node) const {
-    const Eigen::Array3d on_cube(lines_[0][node[0]], lines_[1][node[1]], lines_[2][node[2]]);
-    const double rim = on_cube.head<2>().abs().maxCoeff();
-    Eigen::Array3d in_section(on_cube.x(), on_cube.y(), 0.0);
-    if (rim > 0.0) in_section *= rim / SuperquadricNorm(in_section, dual_).value;
-    const Eigen::Array3d point(in_section.x(), in_section.y(), on_cube.z());
-    return half_axes_.cwiseProduct((point / SuperquadricNorm(point, dual_).value).matrix());
-  }
-
- private:
-  // Equally spaced angles of superquadrics, which are dense where the surface is curved (Barr,
-  // "Superquadrics and angle-preserving transformations", 1981): x / z = tan(angle)^(2 / q).
-  static std::vector<double> LinesFor(double q) {
-    if (std::isinf(q)) return {-1.0, 1.0};
-    std::vector<double> lines;
-    for (int i = 0; i <= kCellsAcrossFace; ++i) {
-      const double tangent = std::tan((2.0 * i / kCellsAcrossFace - 1.0) * std::numbers::pi / 4.0);
-      lines.push_back(std::copysign(std::pow(std::abs(tangent), 2.0 / q), tangent));
-    }
-    return lines;
-  }
-
-  Eigen::Vector3d half_axes_;
-  ShapeExponents dual_;
-  std::array<std::vector<double>, 3> lines_;
-};
+  return lines;
+}
 
 }  // namespace
 
 TriangleMesh BodyMesh(const Eigen::Vector3d& half_axes, const ShapeExponents& shape_exponents) {
-  const SurfaceGrid grid(half_axes, shape_exponents);
+  // A node (i, j, k) of a grid on the surface of the cube, each from 0 to cells(axis); at least one
+  // of them is at an end.
+  using Node = std::array<int, 3>;
+  const ShapeExponents dual = DualExponents(shape_exponents);
+  const auto horizontal = LinesAcrossFace(std::min(dual.horizontal, dual.vertical));
+  const std::array lines = {horizontal, horizontal, LinesAcrossFace(dual.vertical)};
+  const auto cells = [&](size_t axis) { return static_cast<int>(lines[axis].size()) - 1; };
+  // The node moved onto the body: first in the horizontal section, then between the axis and the
+  // section's rim.
+  const auto point = [&](const Node& node) -> Eigen::Vector3d {
+    const Eigen::Array3d on_cube(lines[0][node[0]], lines[1][node[1]], lines[2][node[2]]);
+    const double rim = on_cube.head<2>().abs().maxCoeff();
+    Eigen::Array3d in_section(on_cube.x(), on_cube.y(), 0.0);
+    if (rim > 0.0) in_section *= rim / SuperquadricNorm(in_section, dual).value;
+    const Eigen::Array3d on_body(in_section.x(), in_section.y(), on_cube.z());
+    return half_axes.cwiseProduct((on_body / SuperquadricNorm(on_body, dual).value).matrix());
+  };
   TriangleMesh mesh;
-  std::map<SurfaceGrid::Node, std::uint32_t> vertices;
-  const auto vertex = [&](const SurfaceGrid::Node& node) {
+  std::map<Node, std::uint32_t> vertices;
+  const auto vertex = [&](const Node& node) {
     const auto [found, is_new] =
         vertices.try_emplace(node, static_cast<std::uint32_t>(mesh.vertices.size()));
-    if (is_new) mesh.vertices.push_back(grid.Point(node));
+    if (is_new) mesh.vertices.push_back(point(node));
     return found->second;
   };
   const auto add_cell = [&](size_t axis, int side, int i, int j) {
     const auto corner = [&](int di, int dj) {
-      SurfaceGrid::Node node;
+      Node node;
       node[axis] = side;
       node[(axis + 1) % 3] = i + di;
       node[(axis + 2) % 3] = j + dj;
@@ -83,9 +68,9 @@ TriangleMesh BodyMesh(const Eigen::Vector3d& half_axes, const ShapeExponents& sh
     mesh.triangles.push_back({quad[0], quad[2], quad[3]});
   };
   for (size_t axis = 0; axis < 3; ++axis) {
-    for (const int side : {0, grid.Cells(axis)}) {
-      for (int i = 0; i < grid.Cells((axis + 1) % 3); ++i) {
-        for (int j = 0; j < grid.Cells((axis + 2) % 3); ++j) add_cell(axis, side, i, j);
+    for (const int side : {0, cells(axis)}) {
+      for (int i = 0; i < cells((axis + 1) % 3); ++i) {
+        for (int j = 0; j < cells((axis + 2) % 3); ++j) add_cell(axis, side, i, j);
       }
     }
   }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <exception>
 #include <filesystem>
 #include <memory>
 #include <opencv2/core/mat.hpp>

@@ -8,7 +8,6 @@
 
 #include "soslam/artefact/json_file.h"
 #include "soslam/base/error.h"
-#include "soslam/geometry/angles.h"
 
 namespace soslam {
 
