@@ -16,6 +16,14 @@
 namespace soslam {
 namespace {
 
+constexpr const char* kEdgesKind = "edges";
+constexpr const char* kFrames = "/frames";
+
+std::string FrameGroup(int frame_id) { return fmt::format("{}/{:06d}", kFrames, frame_id); }
+
+constexpr const char* kSymmetryKind = "symmetry";
+constexpr const char* kObservations = "/observations";
+
 // The header as JSON; null where there is none.
 nlohmann::json ReadHdf5Header(const Hdf5File& file) {
   if (!file.HasAttribute("/", kHeaderAttribute)) return {};
@@ -55,16 +63,6 @@ nlohmann::json ReadArtefactHeader(const std::filesystem::path& path) {
   }
   return header;
 }
-
-namespace {
-
-constexpr const char* kEdgesKind = "edges";
-
-constexpr const char* kFrames = "/frames";
-
-std::string FrameGroup(int frame_id) { return fmt::format("{}/{:06d}", kFrames, frame_id); }
-
-}  // namespace
 
 EdgesWriter::EdgesWriter(const std::filesystem::path& path, const ArtefactInfo& info)
     : file_(CreateArtefact(path, kEdgesKind, info)) {}
@@ -125,13 +123,6 @@ EdgeMaps EdgesReader::Read(int frame_id) const {
   maps.corners = file_.ReadRows<Eigen::Vector2f>(group + "/corners");
   return maps;
 }
-
-namespace {
-
-constexpr const char* kSymmetryKind = "symmetry";
-constexpr const char* kObservations = "/observations";
-
-}  // namespace
 
 void WriteSymmetry(const std::filesystem::path& path, const std::vector<SymmetryRecord>& records,
                    const ArtefactInfo& info) {

@@ -176,7 +176,10 @@ void Hdf5File::WriteAttribute(const std::string& owner, const std::string& name,
 
 void Hdf5File::WriteText(const std::string& owner, const std::string& name,
                          const std::string& text) {
-  const Hdf5Handle type = Hdf5TextType(text.size());
+  const Hdf5Handle type{H5Tcopy(H5T_C_S1), &H5Tclose};
+  H5Tset_size(type.id(), std::max<size_t>(text.size(), 1));  // HDF5 has no length 0
+  H5Tset_strpad(type.id(), H5T_STR_NULLPAD);
+  H5Tset_cset(type.id(), H5T_CSET_UTF8);
   WriteAttribute(owner, name, type.id(), text.c_str());
 }
 

@@ -9,11 +9,6 @@
 #include <vector>
 
 namespace soslam {
-namespace {
-
-Hdf5Handle PropertyList(hid_t list_class) { return {H5Pcreate(list_class), &H5Pclose}; }
-
-}  // namespace
 
 Hdf5Element Hdf5ElementOf(int depth) {
   switch (depth) {
@@ -38,13 +33,13 @@ Hdf5Handle Hdf5FileAccess() {
   // Prevents a file from making the library read other files or load plug-ins.
   H5Lunregister(H5L_TYPE_EXTERNAL);
   H5PLset_loading_state(0);
-  Hdf5Handle access = PropertyList(H5P_FILE_ACCESS);
+  Hdf5Handle access{H5Pcreate(H5P_FILE_ACCESS), &H5Pclose};
   H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18);
   return access;
 }
 
 Hdf5Handle Hdf5Timeless(hid_t list_class) {
-  Hdf5Handle creation = PropertyList(list_class);
+  Hdf5Handle creation{H5Pcreate(list_class), &H5Pclose};
   H5Pset_obj_track_times(creation.id(), false);
   return creation;
 }
@@ -61,24 +56,6 @@ Hdf5Handle Hdf5DataSetCreation(const ArrayShape& shape) {
   return creation;
 }
 
-Hdf5Handle Hdf5TextType(size_t length) {
-  Hdf5Handle type{H5Tcopy(H5T_C_S1), &H5Tclose};
-  H5Tset_size(type.id(), std::max<size_t>(length, 1));
-  H5Tset_strpad(type.id(), H5T_STR_NULLPAD);
-  H5Tset_cset(type.id(), H5T_CSET_UTF8);
-  return type;
-}
-
-namespace {
-
-H5Z_filter_t Filter(const Hdf5Handle& creation, unsigned int index) {
-  unsigned int flags = 0;
-  size_t parameters = 0;
-  return H5Pget_filter2(creation.id(), index, &flags, &parameters, nullptr, 0, nullptr, nullptr);
-}
-
-}  // namespace
-
 std::optional<std::string> ReadChunk(const Hdf5Handle& data_set, const ArrayShape& shape,
                                      std::uint64_t max_bytes) {
   // Only what has the properties of Hdf5DataSetCreation is read.
@@ -86,10 +63,15 @@ std::optional<std::string> ReadChunk(const Hdf5Handle& data_set, const ArrayShap
   if (H5Pget_layout(creation.id()) != H5D_CHUNKED || H5Pget_nfilters(creation.id()) != 2) {
     return std::nullopt;
   }
+  const auto filter = [&](unsigned int index) {
+    unsigned int flags = 0;
+    size_t parameters = 0;
+    return H5Pget_filter2(creation.id(), index, &flags, &parameters, nullptr, 0, nullptr, nullptr);
+  };
   std::vector<hsize_t> chunk(shape.size());
   H5Pget_chunk(creation.id(), static_cast<int>(chunk.size()), chunk.data());
-  if (!std::ranges::equal(chunk, shape) || Filter(creation, 0) != H5Z_FILTER_SHUFFLE ||
-      Filter(creation, 1) != H5Z_FILTER_DEFLATE) {
+  if (!std::ranges::equal(chunk, shape) || filter(0) != H5Z_FILTER_SHUFFLE ||
+      filter(1) != H5Z_FILTER_DEFLATE) {
     return std::nullopt;
   }
   const std::vector<hsize_t> begin(shape.size());

@@ -31,9 +31,6 @@ Hdf5Handle Hdf5Timeless(hid_t list_class);
 // For a data set of this shape: one chunk, shuffled and deflated.
 Hdf5Handle Hdf5DataSetCreation(const ArrayShape& shape);
 
-// Texts are of fixed length and UTF-8; HDF5 has no length 0.
-Hdf5Handle Hdf5TextType(size_t length);
-
 // Chunks are read without the HDF5 library's filters: those of version 1.10 do not check that a
 // chunk holds as many values as the data set says, and read beyond it.
 

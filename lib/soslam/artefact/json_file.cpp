@@ -158,24 +158,19 @@ void CheckArtefactHeader(const json& header, const std::string& kind, const std:
   }
 }
 
-namespace {
-
-// A list of a kind of artefact, each of whose rows has other ids under these keys.
-struct RowIds {
-  const char* kind;
-  const char* list;
-  std::vector<const char*> keys;
-};
-const std::vector<RowIds> kRowIds = {{"landmarks", "observations", {"frame", "object"}},
-                                     {"landmarks", "objects", {"object"}},
-                                     {"map", "objects", {"object"}},
-                                     {"metrics", "objects", {"object"}},
-                                     {"planes", "planes", {"plane"}},
-                                     {"planes", "objects", {"object"}}};
-
-}  // namespace
-
 void internal::RefuseRowsTwice(const json& document, const std::string& kind) {
+  // A list of a kind of artefact, each of whose rows has other ids under these keys.
+  struct RowIds {
+    const char* kind;
+    const char* list;
+    std::vector<const char*> keys;
+  };
+  static const std::vector<RowIds> kRowIds = {{"landmarks", "observations", {"frame", "object"}},
+                                              {"landmarks", "objects", {"object"}},
+                                              {"map", "objects", {"object"}},
+                                              {"metrics", "objects", {"object"}},
+                                              {"planes", "planes", {"plane"}},
+                                              {"planes", "objects", {"object"}}};
   for (const RowIds& ids : kRowIds) {
     if (ids.kind != kind) continue;
     const json& rows = document.at(ids.list);

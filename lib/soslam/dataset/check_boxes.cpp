@@ -214,23 +214,6 @@ std::vector<Finding> CheckScores(const ImportView& view) {
            "give scores as probabilities; min_score counts on them"}};
 }
 
-namespace {
-
-// Number of detections whose label is in objects.json, with their class numbers increased by
-// `shift`.
-int CountKnown(const ImportView& view, const std::set<std::string>& known, int shift) {
-  const std::vector<std::string>& names = view.content.class_names;
-  return static_cast<int>(std::ranges::count_if(view.content.rows, [&](const DetectionRow& row) {
-    if (shift == 0) return known.contains(row.label);
-    const auto found = std::ranges::find(names, row.label);
-    const auto index = std::distance(names.begin(), found) + shift;
-    return found != names.end() && index >= 0 && index < std::ssize(names) &&
-           known.contains(names[index]);
-  }));
-}
-
-}  // namespace
-
 std::vector<Finding> CheckClassNumbers(const ImportView& view) {
   constexpr int kFewest = 10;
   std::set<std::string> known;
@@ -238,10 +221,21 @@ std::vector<Finding> CheckClassNumbers(const ImportView& view) {
     if (object.ground_truth) known.insert(object.label);
   }
   const auto all = static_cast<int>(view.content.rows.size());
-  const int as_read = CountKnown(view, known, 0);
+  // Number of detections whose label is in objects.json, with their class numbers increased.
+  const auto count_known = [&](int shift) {
+    const std::vector<std::string>& names = view.content.class_names;
+    return static_cast<int>(std::ranges::count_if(view.content.rows, [&](const DetectionRow& row) {
+      if (shift == 0) return known.contains(row.label);
+      const auto found = std::ranges::find(names, row.label);
+      const auto index = std::distance(names.begin(), found) + shift;
+      return found != names.end() && index >= 0 && index < std::ssize(names) &&
+             known.contains(names[index]);
+    }));
+  };
+  const int as_read = count_known(0);
   if (view.content.class_names.empty() || all < kFewest || 3 * as_read > all) return {};
   for (const int shift : {-1, 1}) {
-    const int shifted = CountKnown(view, known, shift);
+    const int shifted = count_known(shift);
     if (3 * shifted < 2 * all) continue;
     return {{"class_numbers", Severity::kWarning,
              fmt::format("{} of {} detections have a label of objects.json, but {} if their "

@@ -70,6 +70,22 @@ TimedPose ParseTumPose(const TextLine& line) {
   return {t, {UnitQuaternion({qx, qy, qz, qw}, line.place), {x, y, z}}};
 }
 
+TimedPose ParseEurocPose(const TextLine& line) {
+  constexpr double kSecondsPerUnit = 1e-9;
+  constexpr std::array kFields = {"timestamp", "x", "y", "z", "qw", "qx", "qy", "qz"};
+  const auto fields = SplitFields(line.text);
+  if (fields.size() < kFields.size()) {
+    throw InputError(fmt::format("{}: has {} fields; expected {}", line.place, fields.size(),
+                                 fmt::join(kFields, ",")));
+  }
+  const auto [t, x, y, z, qw, qx, qy, qz] = ParseReals(fields, line.place, kFields);
+  if (t != std::floor(t)) {
+    throw InputError(fmt::format("{}: timestamp is {}; expected nanoseconds, an integer",
+                                 line.place, fields[0]));
+  }
+  return {t * kSecondsPerUnit, {UnitQuaternion({qx, qy, qz, qw}, line.place), {x, y, z}}};
+}
+
 // Final step of a trajectory reader: sorts, removes duplicates, checks.
 std::vector<TimedPose> SortedTrajectory(std::vector<TimedPose> trajectory,
                                         const std::filesystem::path& path) {
@@ -168,26 +184,6 @@ std::optional<TimedPose> NearestPose(const std::vector<TimedPose>& trajectory, d
   if (nearest == to || difference(*nearest) > max_difference_s) return std::nullopt;
   return *nearest;
 }
-
-namespace {
-
-TimedPose ParseEurocPose(const TextLine& line) {
-  constexpr double kSecondsPerUnit = 1e-9;
-  constexpr std::array kFields = {"timestamp", "x", "y", "z", "qw", "qx", "qy", "qz"};
-  const auto fields = SplitFields(line.text);
-  if (fields.size() < kFields.size()) {
-    throw InputError(fmt::format("{}: has {} fields; expected {}", line.place, fields.size(),
-                                 fmt::join(kFields, ",")));
-  }
-  const auto [t, x, y, z, qw, qx, qy, qz] = ParseReals(fields, line.place, kFields);
-  if (t != std::floor(t)) {
-    throw InputError(fmt::format("{}: timestamp is {}; expected nanoseconds, an integer",
-                                 line.place, fields[0]));
-  }
-  return {t * kSecondsPerUnit, {UnitQuaternion({qx, qy, qz, qw}, line.place), {x, y, z}}};
-}
-
-}  // namespace
 
 std::vector<TimedPose> ReadEurocTrajectory(const std::filesystem::path& path) {
   return SortedTrajectory(ParseTextLines(path, &ParseEurocPose), path);

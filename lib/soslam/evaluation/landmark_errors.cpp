@@ -51,59 +51,12 @@ double YawInTruth(const Eigen::Quaterniond& frame_from_estimate,
   return std::atan2(x_axis.y(), x_axis.x());
 }
 
-}  // namespace
-
-double RotationError(const Eigen::Quaterniond& frame_from_estimate,
-                     const Eigen::Quaterniond& frame_from_truth) {
-  return FindNearestAxes(frame_from_estimate, frame_from_truth).angle;
-}
-
-double YawError(const Eigen::Quaterniond& frame_from_estimate,
-                const Eigen::Quaterniond& frame_from_truth) {
-  return std::abs(YawDifferenceModuloPi(YawInTruth(frame_from_estimate, frame_from_truth), 0.0));
-}
-
-double AttitudeError(const Landmark& estimate, const Landmark& truth_in_frame) {
-  const Eigen::Quaterniond own_difference =
-      InOwnAxes(truth_in_frame).frame_from_object.rotation.conjugate() *
-      InOwnAxes(estimate).frame_from_object.rotation;
-  // The coefficients of a rotation are the cosines of half the angles that are left after half
-  // turns about x, y and z, and after none.
-  return 2.0 * std::acos(std::min(1.0, own_difference.coeffs().cwiseAbs().maxCoeff()));
-}
-
-namespace {
-
 // The landmark, rotated about its z axis until its x axis points as that of `other` does.
 Landmark AlignYaw(const Landmark& other, const Landmark& landmark) {
   const Eigen::Vector3d front = landmark.frame_from_object.rotation.conjugate() *
                                 (other.frame_from_object.rotation * Eigen::Vector3d::UnitX());
   return RotatedAboutZ(landmark, std::atan2(front.y(), front.x()));
 }
-
-}  // namespace
-
-LandmarkErrors CompareLandmarks(const Landmark& estimate, const GroundTruth& truth,
-                                const Landmark& truth_in_frame) {
-  LandmarkErrors errors;
-  errors.centre_m = (estimate.Centre() - truth_in_frame.Centre()).norm();
-  if (truth.rotationally_symmetric) {
-    errors.iou = BoxIou(estimate, AlignYaw(estimate, truth_in_frame));
-    return errors;
-  }
-  const Eigen::Quaterniond& estimated = estimate.frame_from_object.rotation;
-  const Eigen::Quaterniond& exact = truth_in_frame.frame_from_object.rotation;
-  errors.iou = BoxIou(estimate, truth_in_frame);
-  errors.rotation_deg = kDegPerRad * RotationError(estimated, exact);
-  errors.yaw_deg = kDegPerRad * YawError(estimated, exact);
-  errors.attitude_deg = kDegPerRad * AttitudeError(estimate, truth_in_frame);
-  return errors;
-}
-
-namespace {
-
-// Minimal gain in IoU by the correction of a part.
-constexpr double kLeastGain = 1e-6;
 
 Eigen::Vector3d Up(const Landmark& landmark) {
   return landmark.frame_from_object.rotation * Eigen::Vector3d::UnitZ();
@@ -131,6 +84,42 @@ Landmark NamedLike(const Landmark& estimate, const Landmark& truth) {
 }
 
 }  // namespace
+
+double RotationError(const Eigen::Quaterniond& frame_from_estimate,
+                     const Eigen::Quaterniond& frame_from_truth) {
+  return FindNearestAxes(frame_from_estimate, frame_from_truth).angle;
+}
+
+double YawError(const Eigen::Quaterniond& frame_from_estimate,
+                const Eigen::Quaterniond& frame_from_truth) {
+  return std::abs(YawDifferenceModuloPi(YawInTruth(frame_from_estimate, frame_from_truth), 0.0));
+}
+
+double AttitudeError(const Landmark& estimate, const Landmark& truth_in_frame) {
+  const Eigen::Quaterniond own_difference =
+      InOwnAxes(truth_in_frame).frame_from_object.rotation.conjugate() *
+      InOwnAxes(estimate).frame_from_object.rotation;
+  // The coefficients of a rotation are the cosines of half the angles that are left after half
+  // turns about x, y and z, and after none.
+  return 2.0 * std::acos(std::min(1.0, own_difference.coeffs().cwiseAbs().maxCoeff()));
+}
+
+LandmarkErrors CompareLandmarks(const Landmark& estimate, const GroundTruth& truth,
+                                const Landmark& truth_in_frame) {
+  LandmarkErrors errors;
+  errors.centre_m = (estimate.Centre() - truth_in_frame.Centre()).norm();
+  if (truth.rotationally_symmetric) {
+    errors.iou = BoxIou(estimate, AlignYaw(estimate, truth_in_frame));
+    return errors;
+  }
+  const Eigen::Quaterniond& estimated = estimate.frame_from_object.rotation;
+  const Eigen::Quaterniond& exact = truth_in_frame.frame_from_object.rotation;
+  errors.iou = BoxIou(estimate, truth_in_frame);
+  errors.rotation_deg = kDegPerRad * RotationError(estimated, exact);
+  errors.yaw_deg = kDegPerRad * YawError(estimated, exact);
+  errors.attitude_deg = kDegPerRad * AttitudeError(estimate, truth_in_frame);
+  return errors;
+}
 
 BodyErrors CompareBodies(const Landmark& estimate, const GroundTruth& truth,
                          const Landmark& truth_in_frame) {
@@ -208,6 +197,7 @@ bool StandsOffItsPlane(const Landmark& estimate, const Plane& plane, const Landm
 std::optional<WrongPart> FindDominantError(const Landmark& estimate, const GroundTruth& truth,
                                            const Landmark& truth_in_frame,
                                            const Eigen::Vector3d& camera_centre) {
+  constexpr double kLeastGain = 1e-6;  // in IoU by the correction of a part
   const Landmark named = NamedLike(estimate, truth_in_frame);
   const auto iou = [&](const Landmark& corrected) {
     return CompareLandmarks(corrected, truth, truth_in_frame).iou;

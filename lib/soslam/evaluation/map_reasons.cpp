@@ -16,15 +16,6 @@
 #include "soslam/model/label_groups.h"
 
 namespace soslam {
-namespace {
-
-bool IsIn(const Landmark& volume, const Landmark& landmark) {
-  const double landmark_m3 = 8.0 * landmark.half_axes.prod();
-  return 2.0 * IntersectionVolume(volume, landmark) >= landmark_m3 ||
-         BoxIou(volume, landmark) >= kMapIous.front();
-}
-
-}  // namespace
 
 Eigen::MatrixXd WorldIous(const Sequence& sequence, const AlignedMap& map) {
   Eigen::MatrixXd ious =
@@ -53,17 +44,19 @@ std::vector<int> MatchByIou(const Eigen::MatrixXd& ious, double min_iou) {
 
 bool IsIgnored(const Sequence& sequence, const std::string& label,
                const AlignedLandmark& landmark) {
-  return std::ranges::any_of(sequence.ignored,
-                             [&](const IgnoredThings& things) {
-                               if (things.label && !AreSameLabel(*things.label, label)) {
-                                 return false;
-                               }
-                               return !things.volume_in_world ||
-                                      IsIn(*things.volume_in_world, landmark.landmark_in_world);
-                             }) ||
+  const auto is_in = [estimate = landmark.landmark_in_world](const Landmark& volume) {
+    const double landmark_m3 = 8.0 * estimate.half_axes.prod();
+    return 2.0 * IntersectionVolume(volume, estimate) >= landmark_m3 ||
+           BoxIou(volume, estimate) >= kMapIous.front();
+  };
+  const auto has_ignored = [&](const IgnoredThings& things) {
+    if (things.label && !AreSameLabel(*things.label, label)) return false;
+    return !things.volume_in_world || is_in(*things.volume_in_world);
+  };
+  return std::ranges::any_of(sequence.ignored, has_ignored) ||
          std::ranges::any_of(sequence.true_objects, [&](const TrueObject& object) {
            return object.is_static && object.is_ignored && object.segment == landmark.segment &&
-                  IsIn(object.truth.landmark_in_world, landmark.landmark_in_world);
+                  is_in(object.truth.landmark_in_world);
          });
 }
 

@@ -77,34 +77,21 @@ TriangleMesh BodyMesh(const Eigen::Vector3d& half_axes, const ShapeExponents& sh
   return mesh;
 }
 
-namespace {
-
-constexpr double kSaturation = 0.65;
-constexpr double kValue = 0.9;
-
-// `hue` in turns: 0 red, 1/3 green, 2/3 blue.
-Colour ColourOfHue(double hue) {
-  const Eigen::Array3d offset(5.0, 3.0, 1.0);
-  Colour colour;
-  for (int channel = 0; channel < 3; ++channel) {
-    const double sector = std::fmod(6.0 * hue + offset[channel], 6.0);
-    const double missing = std::clamp(std::min(sector, 4.0 - sector), 0.0, 1.0);
-    colour[channel] = kValue * (1.0 - kSaturation * missing);
-  }
-  return colour;
-}
-
-}  // namespace
-
 LabelColours ColoursOfLabels(const std::vector<World>& worlds) {
   LabelColours colours;
   for (const World& world : worlds) {
     for (const WorldObject& object : world.objects) colours[object.label];
   }
+  constexpr double kSaturation = 0.65, kValue = 0.9;
+  const Eigen::Array3d offset(5.0, 3.0, 1.0);
   // Steps of the golden ratio keep their distance from the hues of the last few steps.
-  double hue = 0.0;
+  double hue = 0.0;  // in turns: 0 red, 1/3 green, 2/3 blue
   for (auto& [label, colour] : colours) {
-    colour = ColourOfHue(hue);
+    for (int channel = 0; channel < 3; ++channel) {
+      const double sector = std::fmod(6.0 * hue + offset[channel], 6.0);
+      const double missing = std::clamp(std::min(sector, 4.0 - sector), 0.0, 1.0);
+      colour[channel] = kValue * (1.0 - kSaturation * missing);
+    }
     hue = std::fmod(hue + 1.0 / std::numbers::phi, 1.0);
   }
   return colours;

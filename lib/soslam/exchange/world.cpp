@@ -15,6 +15,8 @@
 namespace soslam {
 namespace {
 
+using nlohmann::json;
+
 // The frames that have a pose, one world per segment.
 std::vector<World> WorldsOfFrames(const Sequence& sequence,
                                   const std::vector<std::optional<Rigid3d>>& world_from_camera) {
@@ -151,21 +153,6 @@ double ComputeYaw(const WorldObject& object) {
   return Yaw(object.support_normal, object.estimate.landmark_in_world->frame_from_object.rotation);
 }
 
-namespace {
-
-using nlohmann::json;
-
-// Covariance of rotation, centre and log half axes in the moved world.
-Covariance9 TransformCovariance(const Covariance9& covariance, const Alignment& alignment) {
-  const Eigen::Matrix3d rotation = alignment.truth_from_scaled.rotation.toRotationMatrix();
-  Covariance9 jacobian = Covariance9::Identity();
-  jacobian.block<3, 3>(0, 0) = rotation;
-  jacobian.block<3, 3>(3, 3) = alignment.scale * rotation;
-  return jacobian * covariance * jacobian.transpose();
-}
-
-}  // namespace
-
 void AddVerdicts(const json& quality, std::vector<World>* worlds) {
   std::map<int, LandmarkVerdict> of_object;
   for (const json& row : quality.at("landmarks")) {
@@ -193,6 +180,11 @@ void AlignWorlds(const json& quality, std::vector<World>* worlds) {
   }
   for (World& world : *worlds) {
     const Alignment& alignment = of_segment.at(world.segment);
+    // That of rotation, centre and log half axes in the moved world.
+    const Eigen::Matrix3d rotation = alignment.truth_from_scaled.rotation.toRotationMatrix();
+    Covariance9 jacobian = Covariance9::Identity();
+    jacobian.block<3, 3>(0, 0) = rotation;
+    jacobian.block<3, 3>(3, 3) = alignment.scale * rotation;
     for (WorldFrame& frame : world.frames) {
       frame.world_from_camera = alignment.Apply(frame.world_from_camera);
     }
@@ -202,8 +194,9 @@ void AlignWorlds(const json& quality, std::vector<World>* worlds) {
       if (estimate.landmark_in_world) {
         estimate.landmark_in_world = alignment.Apply(*estimate.landmark_in_world);
       }
-      if (estimate.covariance)
-        estimate.covariance = TransformCovariance(*estimate.covariance, alignment);
+      if (estimate.covariance) {
+        estimate.covariance = Covariance9(jacobian * *estimate.covariance * jacobian.transpose());
+      }
     }
   }
 }

@@ -135,15 +135,6 @@ std::optional<int> OrientationIn(const TiffDirectory& directory) {
   return static_cast<int>(*orientation);
 }
 
-}  // namespace
-
-std::optional<int> ExifOrientation(std::string_view exif) {
-  const auto directory = TiffDirectory::Read(ImageBytes(exif));
-  return directory ? OrientationIn(*directory) : std::nullopt;
-}
-
-namespace {
-
 // EXIF 2.32, section 4.6.
 constexpr std::uint64_t kExifDirectory = 0x8769;
 constexpr std::uint64_t kDateTimeOriginal = 0x9003, kSubSecTimeOriginal = 0x9291;
@@ -165,15 +156,6 @@ std::string TimeTakenIn(const TiffDirectory& first) {
   if (time.size() != 14 || time.starts_with("0000")) return "";
   return time + "." + digits(kSubSecTimeOriginal, 9);
 }
-
-}  // namespace
-
-std::string ExifTimeTaken(std::string_view exif) {
-  const auto directory = TiffDirectory::Read(ImageBytes(exif));
-  return directory ? TimeTakenIn(*directory) : "";
-}
-
-namespace {
 
 // TIFF 6.0, section 8 and "Tiled images".
 constexpr std::uint64_t kWidth = 256, kHeight = 257, kBitsPerSample = 258, kCompression = 259;
@@ -291,6 +273,16 @@ double ComputeAspect(const ImageSize& size) {
 }
 
 }  // namespace
+
+std::optional<int> ExifOrientation(std::string_view exif) {
+  const auto directory = TiffDirectory::Read(ImageBytes(exif));
+  return directory ? OrientationIn(*directory) : std::nullopt;
+}
+
+std::string ExifTimeTaken(std::string_view exif) {
+  const auto directory = TiffDirectory::Read(ImageBytes(exif));
+  return directory ? TimeTakenIn(*directory) : "";
+}
 
 constexpr ImageFormat kTiffFormat = {
     "TIFF", &IsTiff, &Header, &Length, "with all of its strips or tiles", &ClearOrientation,
