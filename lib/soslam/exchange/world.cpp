@@ -180,7 +180,7 @@ void AlignWorlds(const json& quality, std::vector<World>* worlds) {
   }
   for (World& world : *worlds) {
     const Alignment& alignment = of_segment.at(world.segment);
-    // That of rotation, centre and log half axes in the moved world.
+    // Derivative of rotation, centre and log half axes in the moved world by those in the world.
     const Eigen::Matrix3d rotation = alignment.truth_from_scaled.rotation.toRotationMatrix();
     Covariance9 jacobian = Covariance9::Identity();
     jacobian.block<3, 3>(0, 0) = rotation;
