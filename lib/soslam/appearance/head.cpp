@@ -5,14 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/core.hpp>
 #include <utility>
 
-#include "soslam/appearance/inner_layers.h"
 #include "soslam/artefact/hdf5_artefact.h"
 #include "soslam/artefact/json_file.h"
 #include "soslam/base/error.h"
 #include "soslam/base/text.h"
 #include "soslam/model/label_groups.h"
+#include "soslam/system/hash.h"
 
 namespace soslam {
 namespace {
@@ -71,7 +72,7 @@ Eigen::Map<const RowMajor> AsMatrix(const cv::Mat& features) {
 
 }  // namespace
 
-Head::Head(const std::filesystem::path& path) {
+Head::Head(const std::filesystem::path& path) : path_(path.string()) {
   const Hdf5File file = OpenArtefact(path, "head");
   network_sha256_ = file.ReadText("/", "network_sha256");
   const std::string layers = file.ReadText("/", "layers");
@@ -83,7 +84,7 @@ Head::Head(const std::filesystem::path& path) {
   is_rgb_ = ReadNumber(file, "rgb_0_1", 0, 1) != 0.0;
   floor_ = static_cast<float>(ReadNumber(file, "floor", 1e-6, 1.0 - 1e-6));
   correlation_deg_ = static_cast<float>(ReadNumber(file, "direction_correlation_deg", 0, 180));
-  const std::string of_groups = path.string() + ": groups";
+  const std::string of_groups = path_ + ": groups";
   const auto groups = ReadDocument<std::vector<HeadGroup>>(
       nlohmann::json::parse(file.ReadText("/", "groups"), nullptr, /*allow_exceptions=*/false),
       of_groups);
@@ -220,6 +221,38 @@ Eigen::VectorXf Head::Descriptor(const cv::Mat& features) const {
 float Head::Distance(const cv::Mat& features) const {
   const Eigen::VectorXf means = ScaledMeans(features);
   return std::sqrt(means.squaredNorm() / static_cast<float>(means.size()));
+}
+
+InnerLayers LayersOf(const NetworkFile& network, const Head& head) {
+  return {network.bytes, network.name, head.Layers(), head.IsRgb()};
+}
+
+bool IsNetworkOf(const NetworkFile& network, const Head& head) {
+  if (Sha256OfText(network.bytes) == head.NetworkSha256()) return true;
+  try {
+    return head.KnowsFeatures(LayersOf(network, head).Features(ProbeImage(head.Side())));
+  } catch (const InputError&) {  // it has no such layers
+    return false;
+  }
+}
+
+AppearanceRecord RecordOf(const Sequence& sequence, const Detection& detection,
+                          const cv::Mat& image, const Head& head, InnerLayers* layers) {
+  const Object& object = sequence.ObjectOf(detection);
+  const Crop crop = RenderCrop(image, sequence.CameraOf(detection), detection.box,
+                               detection.plane_in_camera.normal, head.Side());
+  const auto [features, of_mirror] = layers->FeaturesOfBoth(crop.image);
+  if (!cv::checkRange(features) || !cv::checkRange(of_mirror)) {
+    throw InputError(
+        fmt::format("{}: gives values that are not finite: a damaged file", layers->name()));
+  }
+  if (features.rows != head.Channels()) {
+    throw InputError(fmt::format("{}: has {} channels in these layers; {} expects {}",
+                                 layers->name(), features.rows, head.path(), head.Channels()));
+  }
+  return {sequence.FrameOf(detection).id, object.id,
+          head.Appearance(features, of_mirror, crop.direction, *head.FindGroup(object.label)),
+          head.Descriptor(features), head.Distance(features)};
 }
 
 }  // namespace soslam

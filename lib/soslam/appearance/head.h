@@ -9,8 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "soslam/appearance/appearance_file.h"
 #include "soslam/appearance/crop.h"
+#include "soslam/appearance/inner_layers.h"
+#include "soslam/image/network.h"
 #include "soslam/model/appearance.h"
+#include "soslam/model/sequence.h"
 
 namespace soslam {
 
@@ -21,6 +25,7 @@ class Head {
   // Throws InputError when the file is missing, damaged, not of kind "head" or too new.
   explicit Head(const std::filesystem::path& path);
 
+  const std::string& path() const { return path_; }
   const std::string& NetworkSha256() const { return network_sha256_; }
   // True if the features of the ProbeImage are those of the network that the head was trained on,
   // but for rounding: files of the same weights by other programs differ in their bytes.
@@ -56,6 +61,7 @@ class Head {
   std::optional<LogRatios> RatioLikelihood(const LogRatios& relative, int group) const;
   Eigen::VectorXf ScaledMeans(const cv::Mat& features) const;
 
+  std::string path_;
   std::string network_sha256_;
   std::vector<std::string> layers_;
   int side_ = 0;
@@ -74,5 +80,17 @@ class Head {
   Eigen::MatrixXf probe_;  // features of the ProbeImage
   Eigen::VectorXf narrow_bias_, hidden_bias_, output_bias_, feature_mean_, feature_scale_;
 };
+
+// The layers of a network that a head reads. Throws InputError where there are none.
+InnerLayers LayersOf(const NetworkFile& network, const Head& head);
+
+// True for the network that the head was trained on, also in a file of another program.
+bool IsNetworkOf(const NetworkFile& network, const Head& head);
+
+// What a head says of a detection with a label that it knows, in the image of its frame (see
+// RenderCrop), by the layers of its network. Throws InputError for features that are not finite or
+// of another number of channels than the head expects.
+AppearanceRecord RecordOf(const Sequence& sequence, const Detection& detection,
+                          const cv::Mat& image, const Head& head, InnerLayers* layers);
 
 }  // namespace soslam

@@ -132,4 +132,11 @@ cv::Mat InnerLayers::Features(const cv::Mat& image) {
   return features;
 }
 
+std::pair<cv::Mat, cv::Mat> InnerLayers::FeaturesOfBoth(const cv::Mat& image) {
+  cv::Mat mirrored;
+  cv::flip(image, mirrored, /*flipCode=*/1);
+  const cv::Mat features = Features(image);
+  return {features, Features(mirrored)};
+}
+
 }  // namespace soslam

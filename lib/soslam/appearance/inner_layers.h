@@ -5,6 +5,7 @@
 #include <opencv2/dnn/dnn.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace soslam {
@@ -38,6 +39,10 @@ class InnerLayers {
   // Means over 7 x 7 cells of all channels of all tensors, [channels x 49], 32-bit floats.
   // Throws InputError where the network cannot be run on an image of this size.
   cv::Mat Features(const cv::Mat& image);
+  // Those of an image and of its mirror image.
+  std::pair<cv::Mat, cv::Mat> FeaturesOfBoth(const cv::Mat& image);
+
+  const std::string& name() const { return name_; }
 
  private:
   std::string name_;

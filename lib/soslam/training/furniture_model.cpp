@@ -81,7 +81,7 @@ std::array<int, 3> CornerIndices(const std::string& word, const std::array<size_
 }  // namespace
 
 std::vector<FurnitureEntry> ReadFurnitureLibrary(const fs::path& folder) {
-  const fs::path path = folder / "PluginFurnitureCatalog.properties";
+  const fs::path path = folder / kCatalogueFile;
   std::ifstream stream = Open(path);
   std::map<int, std::map<std::string, std::string>> fields;  // by the entry's number
   for (std::string text; std::getline(stream, text);) {
@@ -114,18 +114,29 @@ std::vector<FurnitureEntry> ReadFurnitureLibrary(const fs::path& folder) {
   return entries;
 }
 
-FurnitureModel ReadFurnitureModel(const FurnitureEntry& entry) {
-  // From OBJ's axes (y up, z front) to the object's.
-  Eigen::Matrix3f object_from_obj;
-  object_from_obj << 0, 0, 1, 1, 0, 0, 0, 1, 0;
-  const Eigen::Matrix3f object_from_file = object_from_obj * entry.own_from_file.cast<float>();
+namespace {
 
+// A mesh as in its file, but with the axes of the object; three corners of each triangle.
+struct ObjMesh {
   std::vector<Eigen::Vector3f> positions, normals;
   std::vector<Eigen::Vector2f> textures;
+  std::vector<std::array<int, 3>> corners;  // see CornerIndices
+  std::vector<int> materials_of_triangles;
+  std::vector<Material> materials;
+
+  Eigen::Vector3f FaceNormal(size_t first) const {  // its length is twice the area
+    const Eigen::Vector3f& a = positions[corners[first][0]];
+    return (positions[corners[first + 1][0]] - a).cross(positions[corners[first + 2][0]] - a);
+  }
+};
+
+ObjMesh ReadMesh(const FurnitureEntry& entry) {
+  Eigen::Matrix3f object_from_obj;  // from y up, z front
+  object_from_obj << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+  const Eigen::Matrix3f object_from_file = object_from_obj * entry.own_from_file.cast<float>();
+  ObjMesh mesh;
   std::map<std::string, Material> materials;
   std::map<std::string, int> index_of_material;
-  FurnitureModel model{entry.name, entry.size.cast<float>(), {}, {}, {}};
-  std::vector<std::array<int, 3>> indices;  // of all corners
   int material = -1;
   std::ifstream stream = Open(entry.mesh);
   for (std::string text; std::getline(stream, text);) {
@@ -135,66 +146,71 @@ FurnitureModel ReadFurnitureModel(const FurnitureEntry& entry) {
     if (key == "v" || key == "vn") {
       Eigen::Vector3f v = Eigen::Vector3f::Zero();
       line >> v.x() >> v.y() >> v.z();
-      (key == "v" ? positions : normals).push_back(object_from_file * v);
+      (key == "v" ? mesh.positions : mesh.normals).push_back(object_from_file * v);
     } else if (key == "vt") {
       Eigen::Vector2f v = Eigen::Vector2f::Zero();
       line >> v.x() >> v.y();
-      textures.push_back(v);
+      mesh.textures.push_back(v);
     } else if (key == "mtllib") {
       materials.merge(ReadMaterials(entry.mesh.parent_path() / Rest(line)));
     } else if (key == "usemtl") {
       const std::string name = Rest(line);
       const auto [found, is_new] =
-          index_of_material.try_emplace(name, static_cast<int>(model.materials.size()));
-      if (is_new) model.materials.push_back(materials[name]);
+          index_of_material.try_emplace(name, static_cast<int>(mesh.materials.size()));
+      if (is_new) mesh.materials.push_back(materials[name]);
       material = found->second;
     } else if (key == "f") {
       if (material < 0) {
-        material = static_cast<int>(model.materials.size());
-        model.materials.emplace_back();
+        material = static_cast<int>(mesh.materials.size());
+        mesh.materials.emplace_back();
       }
       std::vector<std::array<int, 3>> polygon;
       for (std::string word; line >> word;) {
-        polygon.push_back(CornerIndices(word, {positions.size(), textures.size(), normals.size()}));
+        polygon.push_back(CornerIndices(
+            word, {mesh.positions.size(), mesh.textures.size(), mesh.normals.size()}));
       }
       std::erase_if(polygon, [](const std::array<int, 3>& corner) { return corner[0] < 0; });
       for (size_t i = 2; i < polygon.size(); ++i) {
-        indices.insert(indices.end(), {polygon[0], polygon[i - 1], polygon[i]});
-        model.materials_of_triangles.push_back(material);
+        mesh.corners.insert(mesh.corners.end(), {polygon[0], polygon[i - 1], polygon[i]});
+        mesh.materials_of_triangles.push_back(material);
       }
     }
   }
-  if (indices.empty()) throw InputError(entry.mesh.string() + ": has no triangle");
+  if (mesh.corners.empty()) throw InputError(entry.mesh.string() + ": has no triangle");
+  return mesh;
+}
 
+}  // namespace
+
+FurnitureModel ReadFurnitureModel(const FurnitureEntry& entry) {
+  const ObjMesh mesh = ReadMesh(entry);
+  FurnitureModel model{
+      entry.name, entry.size.cast<float>(), {}, mesh.materials_of_triangles, mesh.materials};
   // Normals of corners that have none: the mean of the faces about the point, or the face's own
   // where these differ much (an edge).
-  std::vector<Eigen::Vector3f> means(positions.size(), Eigen::Vector3f::Zero());
-  const auto face_normal = [&](size_t first) -> Eigen::Vector3f {
-    const Eigen::Vector3f& a = positions[indices[first][0]];
-    return (positions[indices[first + 1][0]] - a).cross(positions[indices[first + 2][0]] - a);
-  };
-  for (size_t i = 0; i < indices.size(); i += 3) {
-    for (size_t j = i; j < i + 3; ++j) means[indices[j][0]] += face_normal(i);
-  }
+  std::vector<Eigen::Vector3f> means(mesh.positions.size(), Eigen::Vector3f::Zero());
   Eigen::AlignedBox3f extent;
-  for (const auto& corner : indices) extent.extend(positions[corner[0]]);
+  for (size_t i = 0; i < mesh.corners.size(); ++i) {
+    means[mesh.corners[i][0]] += mesh.FaceNormal(i - i % 3);
+    extent.extend(mesh.positions[mesh.corners[i][0]]);
+  }
   const Eigen::Vector3f scale =
       model.size.cwiseQuotient(extent.sizes().cwiseMax(Eigen::Vector3f::Constant(1e-6f)));
   const Eigen::Vector3f origin(extent.center().x(), extent.center().y(), extent.min().z());
-  for (size_t i = 0; i < indices.size(); ++i) {
-    const auto [position, texture, normal] = indices[i];
+  for (size_t i = 0; i < mesh.corners.size(); ++i) {
+    const auto [position, texture, normal] = mesh.corners[i];
     Eigen::Vector3f n;
-    if (normal >= 0 && normals[normal].norm() > 1e-6f) {
-      n = normals[normal];
+    if (normal >= 0 && mesh.normals[normal].norm() > 1e-6f) {
+      n = mesh.normals[normal];
     } else {
       constexpr float kSmooth = 0.75f;  // cosine of the angle between faces that count as one
-      const Eigen::Vector3f own = face_normal(i - i % 3).stableNormalized();
+      const Eigen::Vector3f own = mesh.FaceNormal(i - i % 3).stableNormalized();
       const Eigen::Vector3f mean = means[position].stableNormalized();
       n = mean.dot(own) > kSmooth ? mean : own;
     }
-    model.corners.push_back({(positions[position] - origin).cwiseProduct(scale),
+    model.corners.push_back({(mesh.positions[position] - origin).cwiseProduct(scale),
                              n.cwiseQuotient(scale).stableNormalized(),
-                             texture >= 0 ? textures[texture] : Eigen::Vector2f::Zero()});
+                             texture >= 0 ? mesh.textures[texture] : Eigen::Vector2f::Zero()});
   }
   return model;
 }

@@ -20,8 +20,9 @@ struct FurnitureEntry {
   Eigen::Matrix3d own_from_file = Eigen::Matrix3d::Identity();  // rotation of the file's axes
 };
 
-// The entries of an unpacked library: a folder with PluginFurnitureCatalog.properties. Throws
-// InputError.
+inline constexpr const char* kCatalogueFile = "PluginFurnitureCatalog.properties";
+
+// The entries of an unpacked library, which is a folder with a kCatalogueFile. Throws InputError.
 std::vector<FurnitureEntry> ReadFurnitureLibrary(const std::filesystem::path& folder);
 
 struct Material {

@@ -218,6 +218,57 @@ Eigen::Affine3f Placed(const Eigen::Vector2d& position, double height, double ya
 
 Eigen::Vector3f RandomStretch(Random* random) { return random->Normals(0.08).array().exp(); }
 
+// Draws and adds others that stand about a target of this size, some between it and the camera.
+void DrawOthers(const std::vector<const FurnitureModel*>& others, const Eigen::Vector3d& size,
+                const Lighting& lighting, Random* random, std::vector<PlacedModel>* placed,
+                Rasteriser* canvas) {
+  const double diagonal = size.norm();
+  const size_t count = random->Index(6);
+  const Eigen::Vector3d camera_centre = canvas->CentreInWorld().cast<double>();
+  for (size_t i = 0; i < count; ++i) {
+    const FurnitureModel& other = *others[random->Index(others.size())];
+    const double own_size = other.size.cast<double>().norm();
+    if (own_size > 3.0 * diagonal || own_size < 0.15 * diagonal) continue;
+    const bool is_in_front = random->Chance(0.35);
+    const double towards = std::atan2(camera_centre.y(), camera_centre.x());
+    const double direction =
+        is_in_front ? towards + random->Normal(0.5) : random->Uniform(-kPi, kPi);
+    const double away = random->Uniform(0.25, 0.6) * (own_size + diagonal) *
+                        (is_in_front ? 1.0 : random->Uniform(1.0, 2.5));
+    const Eigen::Vector2d position =
+        away * Eigen::Vector2d(std::cos(direction), std::sin(direction));
+    if ((position - camera_centre.head<2>()).norm() < 0.7 * own_size) continue;
+    const double height = random->Chance(0.25) ? random->Uniform(0.0, size.z()) : 0.0;
+    placed->push_back({&other,
+                       Placed(position, height, random->Uniform(-kPi, kPi), RandomStretch(random)),
+                       RandomMaterials(other, random)});
+    canvas->Draw(placed->back(), lighting, 2);
+  }
+}
+
+// The part of an image whose border cuts the box; camera and box become those of the part.
+cv::Rect CutByBorder(Random* random, Camera* camera, Box* box) {
+  const int width = camera->width, height = camera->height;
+  const double cut = random->Uniform(-0.1, 0.35);
+  const int left = static_cast<int>(box->x_min + cut * box->Width());
+  const int top = static_cast<int>(box->y_min + cut * box->Height());
+  const int right = static_cast<int>(box->x_max - cut * box->Width());
+  const int bottom = static_cast<int>(box->y_max - cut * box->Height());
+  const cv::Rect parts[] = {{left, 0, width - left, height},
+                            {0, top, width, height - top},
+                            {0, 0, right, height},
+                            {0, 0, width, bottom}};
+  const cv::Rect part = parts[random->Index(4)] & cv::Rect(0, 0, width, height);
+  camera->cx -= part.x;
+  camera->cy -= part.y;
+  camera->width = part.width;
+  camera->height = part.height;
+  *box = {std::max(box->x_min - part.x, -0.5), std::max(box->y_min - part.y, -0.5),
+          std::min(box->x_max - part.x, part.width - 0.5),
+          std::min(box->y_max - part.y, part.height - 0.5)};
+  return part;
+}
+
 }  // namespace
 
 std::optional<FurnitureView> RandomView(const FurnitureModel& target,
@@ -254,28 +305,7 @@ std::optional<FurnitureView> RandomView(const FurnitureModel& target,
   canvas.Draw(placed.front(), lighting, 1);
   const int all_pixels = cv::countNonZero(canvas.number == 1);
 
-  // Others stand about it, some between it and the camera.
-  const size_t count = random->Index(6);
-  const Eigen::Vector3d camera_centre = canvas.CentreInWorld().cast<double>();
-  for (size_t i = 0; i < count; ++i) {
-    const FurnitureModel& other = *others[random->Index(others.size())];
-    const double own_size = other.size.cast<double>().norm();
-    if (own_size > 3.0 * diagonal || own_size < 0.15 * diagonal) continue;
-    const bool is_in_front = random->Chance(0.35);
-    const double towards = std::atan2(camera_centre.y(), camera_centre.x());
-    const double direction =
-        is_in_front ? towards + random->Normal(0.5) : random->Uniform(-kPi, kPi);
-    const double away = random->Uniform(0.25, 0.6) * (own_size + diagonal) *
-                        (is_in_front ? 1.0 : random->Uniform(1.0, 2.5));
-    const Eigen::Vector2d position =
-        away * Eigen::Vector2d(std::cos(direction), std::sin(direction));
-    if ((position - camera_centre.head<2>()).norm() < 0.7 * own_size) continue;
-    const double height = random->Chance(0.25) ? random->Uniform(0.0, size.z()) : 0.0;
-    placed.push_back({&other,
-                      Placed(position, height, random->Uniform(-kPi, kPi), RandomStretch(random)),
-                      RandomMaterials(other, random)});
-    canvas.Draw(placed.back(), lighting, 2);
-  }
+  DrawOthers(others, size, lighting, random, &placed, &canvas);
   const int visible_pixels = cv::countNonZero(canvas.number == 1);
   constexpr double kLeastVisible = 0.4;
   if (visible_pixels < kLeastVisible * all_pixels || all_pixels < 200) return std::nullopt;
@@ -287,7 +317,6 @@ std::optional<FurnitureView> RandomView(const FurnitureModel& target,
   cv::GaussianBlur(shadow, shadow, {}, random->Uniform(0.5, 6.0));
   DrawRoom(others, diagonal, shadow, random->Uniform(0.0, 0.7), random, &canvas);
 
-  // The box of what is seen of the target.
   cv::Mat colours;
   cv::resize(canvas.colour, colours, {width, width}, 0, 0, cv::INTER_AREA);
   const cv::Rect outline = cv::boundingRect(canvas.number == 1);
@@ -296,29 +325,8 @@ std::optional<FurnitureView> RandomView(const FurnitureModel& target,
   };
   Box box{to_pixel(outline.x), to_pixel(outline.y), to_pixel(outline.x + outline.width),
           to_pixel(outline.y + outline.height)};
-
-  // The image's border cuts it sometimes.
   cv::Rect part(0, 0, width, width);
-  if (random->Chance(0.3)) {
-    const double cut = random->Uniform(-0.1, 0.35);
-    const int left = static_cast<int>(box.x_min + cut * box.Width());
-    const int top = static_cast<int>(box.y_min + cut * box.Height());
-    const int right = static_cast<int>(box.x_max - cut * box.Width());
-    const int bottom = static_cast<int>(box.y_max - cut * box.Height());
-    const size_t which = random->Index(4);
-    if (which == 0) part = {left, 0, width - left, width};
-    if (which == 1) part = {0, top, width, width - top};
-    if (which == 2) part = {0, 0, right, width};
-    if (which == 3) part = {0, 0, width, bottom};
-    part &= cv::Rect(0, 0, width, width);
-    camera.cx -= part.x;
-    camera.cy -= part.y;
-    camera.width = part.width;
-    camera.height = part.height;
-    box = {std::max(box.x_min - part.x, -0.5), std::max(box.y_min - part.y, -0.5),
-           std::min(box.x_max - part.x, part.width - 0.5),
-           std::min(box.y_max - part.y, part.height - 0.5)};
-  }
+  if (random->Chance(0.3)) part = CutByBorder(random, &camera, &box);
   if (box.Width() < 10.0 || box.Height() < 10.0) return std::nullopt;
   const double w = box.Width(), h = box.Height();
   constexpr double kBoxError = 0.035;  // of a side

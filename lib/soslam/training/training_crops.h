@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <filesystem>
 #include <map>
+#include <opencv2/core/mat.hpp>
 #include <string>
 #include <vector>
 
 #include "soslam/base/description.h"
 #include "soslam/base/options.h"
+#include "soslam/training/furniture_model.h"
+#include "soslam/training/furniture_view.h"
 
 namespace soslam {
 
@@ -62,6 +66,58 @@ struct TrainingCropsOptions {
     visit.Group("To look at");
     visit.Text("sheets", &sheets, "folder for pictures of 40 views of each group; empty: none");
   }
+};
+
+struct TrainingModel {
+  int group;  // index
+  FurnitureEntry entry;
+  FurnitureModel model;
+};
+
+// The parametric models of all groups, then their models in the furniture libraries that are in a
+// folder. Throws InputError, also where there is no library, or no such parametric kind.
+std::vector<TrainingModel> ReadTrainingModels(const std::filesystem::path& folder,
+                                              const std::vector<TrainingGroup>& groups);
+
+// How much the model turned about its z axis by 0, 10, 20 ... 350 degrees differs from itself: mean
+// difference of grey levels where either is seen, over views from all sides.
+std::vector<float> DifferenceFromTurned(const FurnitureModel& model);
+
+struct TrainingView {
+  int model = 0;  // index
+  FurnitureView view;
+};
+
+// Random views of the models of groups, which have at least one each, among each other. Views are
+// numbered; each depends only on its number and the options. The arguments must outlive this.
+class TrainingViews {
+ public:
+  TrainingViews(const std::vector<TrainingModel>& models, const std::vector<TrainingGroup>& groups,
+                const TrainingCropsOptions& options);
+
+  // Thread-safe. Throws InputError for a model that cannot be seen.
+  TrainingView At(int number) const;
+
+ private:
+  const std::vector<TrainingModel>& models_;
+  const std::vector<TrainingGroup>& groups_;
+  const TrainingCropsOptions& options_;
+  std::vector<std::vector<int>> of_group_;  // indices of models
+  std::vector<const FurnitureModel*> all_;
+};
+
+// A picture of the first views that are added, in whole rows, with arrows where the fronts point.
+class ViewSheet {
+ public:
+  void Add(const FurnitureView& view);
+  cv::Mat Picture() const;  // empty without a whole row
+
+ private:
+  static constexpr size_t kPictures = 40;
+  static constexpr int kInRow = 8;
+  static constexpr int kSide = 140;  // pixels of a view
+
+  std::vector<cv::Mat> pictures_;
 };
 
 }  // namespace soslam

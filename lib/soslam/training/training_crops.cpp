@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "soslam/training/training_crops.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "soslam/base/error.h"
+#include "soslam/base/text.h"
+#include "soslam/training/parametric_models.h"
+
+namespace soslam {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> LibrariesIn(const fs::path& folder) {
+  std::vector<fs::path> libraries;
+  std::error_code not_listed;
+  for (const auto& item : fs::directory_iterator(folder, not_listed)) {
+    if (fs::exists(item.path() / kCatalogueFile)) libraries.push_back(item.path());
+  }
+  std::ranges::sort(libraries);
+  if (libraries.empty()) {
+    throw InputError(fmt::format("{}: has no folder with {}", folder.string(), kCatalogueFile));
+  }
+  return libraries;
+}
+
+}  // namespace
+
+std::vector<TrainingModel> ReadTrainingModels(const fs::path& folder,
+                                              const std::vector<TrainingGroup>& groups) {
+  const std::vector<fs::path> libraries = LibrariesIn(folder);
+  std::vector<TrainingModel> models;
+  for (size_t i = 0; i < groups.size(); ++i) {
+    for (const auto& [kind, count] : groups[i].parametric) {
+      for (int k = 0; k < count; ++k) {
+        Random random(static_cast<std::uint64_t>(k) + 1);
+        const auto model = ParametricModel(kind, &random);
+        if (!model) throw InputError("group '" + groups[i].name + "': no such kind: " + kind);
+        const FurnitureEntry entry{
+            "parametric", kind, "", "soslam", fmt::format("{} {}", kind, k), {}};
+        models.push_back({static_cast<int>(i), entry, *model});
+      }
+    }
+  }
+  for (const fs::path& library : libraries) {
+    for (const FurnitureEntry& entry : ReadFurnitureLibrary(library)) {
+      const auto group = std::ranges::find_if(groups, [&](const TrainingGroup& candidate) {
+        return std::ranges::find(candidate.models, LowerCase(entry.name), LowerCase) !=
+               candidate.models.end();
+      });
+      if (group == groups.end()) continue;
+      models.push_back(
+          {static_cast<int>(group - groups.begin()), entry, ReadFurnitureModel(entry)});
+    }
+  }
+  return models;
+}
+
+std::vector<float> DifferenceFromTurned(const FurnitureModel& model) {
+  constexpr int kTurns = 36;
+  constexpr int kSide = 64;
+  constexpr double kElevation = 0.35;
+  std::vector<cv::Mat> views;
+  for (int i = 0; i < kTurns; ++i) {
+    cv::Mat view = PlainView(model, 2.0 * std::numbers::pi * i / kTurns, kElevation, kSide);
+    cv::GaussianBlur(view, view, {}, 1.0);
+    view.convertTo(view, CV_32F);
+    views.push_back(view);
+  }
+  std::vector<float> differences;
+  for (int turn = 0; turn < kTurns; ++turn) {
+    double sum = 0.0;
+    for (int i = 0; i < kTurns; ++i) {
+      const cv::Mat &one = views[i], &other = views[(i + turn) % kTurns];
+      const cv::Mat seen = (one != 128.0f) | (other != 128.0f);
+      sum += cv::mean(cv::abs(one - other), seen)[0] / kTurns;
+    }
+    differences.push_back(static_cast<float>(sum));
+  }
+  return differences;
+}
+
+TrainingViews::TrainingViews(const std::vector<TrainingModel>& models,
+                             const std::vector<TrainingGroup>& groups,
+                             const TrainingCropsOptions& options)
+    : models_(models), groups_(groups), options_(options), of_group_(groups.size()) {
+  for (size_t i = 0; i < models.size(); ++i) {
+    of_group_[models[i].group].push_back(static_cast<int>(i));
+    all_.push_back(&models[i].model);
+  }
+}
+
+TrainingView TrainingViews::At(int number) const {
+  constexpr int kTries = 200;
+  const auto seed = static_cast<std::uint64_t>(options_.seed) * 1000003ULL;
+  Random look(seed + static_cast<std::uint64_t>(number / options_.views));
+  Random random(seed + static_cast<std::uint64_t>(number) + (1ULL << 40));
+  double place = look.Uniform(0.0, 1.0);
+  size_t group = 0;
+  while (group + 1 < of_group_.size() && place > groups_[group].share) {
+    place -= groups_[group++].share;
+  }
+  const int index = of_group_[group][look.Index(of_group_[group].size())];
+  const TrainingModel& model = models_[index];
+  for (int tries = 0; tries < kTries; ++tries) {
+    if (auto view = RandomView(model.model, all_, options_.side, look, &random)) {
+      return {index, std::move(*view)};
+    }
+  }
+  throw InputError(fmt::format(
+      "{}: cannot be seen in any of {} views; expected a model of triangles that have areas",
+      model.entry.mesh.string(), kTries));
+}
+
+void ViewSheet::Add(const FurnitureView& view) {
+  if (pictures_.size() == kPictures) return;
+  cv::Mat picture = view.crop.image.clone();
+  const cv::Point middle(picture.cols / 2, picture.rows / 2);
+  const double length = 0.35 * picture.cols;
+  const cv::Point front(cvRound(-length * std::sin(view.azimuth)),
+                        cvRound(length * std::cos(view.azimuth) *
+                                std::sin(std::max(0.25, view.crop.direction.elevation))));
+  cv::arrowedLine(picture, middle, middle + front, {0, 0, 255}, 2);
+  cv::resize(picture, picture, {kSide, kSide}, 0, 0, cv::INTER_AREA);
+  pictures_.push_back(picture);
+}
+
+cv::Mat ViewSheet::Picture() const {
+  const int rows = static_cast<int>(pictures_.size()) / kInRow;
+  cv::Mat sheet(rows * kSide, kInRow * kSide, CV_8UC3);
+  for (int i = 0; i < rows * kInRow; ++i) {
+    pictures_[i].copyTo(sheet({i % kInRow * kSide, i / kInRow * kSide, kSide, kSide}));
+  }
+  return sheet;
+}
+
+}  // namespace soslam
