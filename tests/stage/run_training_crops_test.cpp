@@ -15,7 +15,7 @@
 #include "soslam/geometry/angles.h"
 #include "soslam/stage/stages.h"
 #include "soslam/system/hash.h"
-#include "soslam/training/parametric_models.h"
+#include "soslam/training/furniture_model.h"
 #include "soslam/training/training_crops.h"
 #include "support/expect_error.h"
 #include "support/folder_test.h"

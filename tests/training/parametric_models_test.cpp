@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "soslam/training/parametric_models.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <string>
 #include <vector>
+
+#include "soslam/training/furniture_model.h"
 
 namespace soslam {
 namespace {

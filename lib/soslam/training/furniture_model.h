@@ -4,8 +4,11 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "soslam/training/random.h"
 
 namespace soslam {
 
@@ -48,5 +51,10 @@ struct FurnitureModel {
 // Reads the mesh of an entry (Wavefront OBJ, with materials and textures beside it), scaled to its
 // size. Throws InputError for one without triangles.
 FurnitureModel ReadFurnitureModel(const FurnitureEntry& entry);
+
+// A random model of a kind of which libraries have few, of boxes and cylinders: "office chair",
+// "cantilever chair", "shell chair", "sofa", "monitor", "laptop", "keyboard", "cabinet",
+// "refrigerator", "desk", "bed". None for another kind.
+std::optional<FurnitureModel> ParametricModel(const std::string& kind, Random* random);
 
 }  // namespace soslam

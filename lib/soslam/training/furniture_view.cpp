@@ -6,6 +6,7 @@
 #include <numbers>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "soslam/geometry/angles.h"
 #include "soslam/training/rasterise.h"
@@ -156,6 +157,47 @@ Rigid3d CameraFromWorld(double azimuth, double elevation, double distance, doubl
   return {camera_from_world, -(camera_from_world * centre)};
 }
 
+// A square image and its focal length, seen so that a thing of this diagonal has so many pixels.
+Camera SquareCamera(int width, double pixels, double distance, double diagonal) {
+  const double middle = 0.5 * (width - 1), focal_px = pixels * distance / diagonal;
+  return {width, width, focal_px, focal_px, middle, middle};
+}
+
+// A camera, with its pose, that sees a target of this size in the world of the target, whose front
+// is the x axis.
+std::pair<Camera, Rigid3d> RandomCamera(const Eigen::Vector3d& size, Random* look, Random* random) {
+  constexpr double kArc = 25.0 / kDegPerRad;
+  const double diagonal = size.norm();
+  const double azimuth = look->Uniform(-kPi, kPi) + random->Uniform(-kArc, kArc);
+  const double elevation = look->Uniform(-5.0, 48.0) / kDegPerRad;
+  const double distance = diagonal * look->Uniform(1.1, 5.0);
+  const double pixels = std::exp(random->Uniform(std::log(45.0), std::log(280.0)));
+  const Eigen::Vector3d aim = Eigen::Vector3d(0.0, 0.0, 0.5 * size.z()) +
+                              0.1 * diagonal * random->Normals(1.0).cast<double>();
+  return {SquareCamera(static_cast<int>(1.6 * pixels) + 16, pixels, distance, diagonal),
+          CameraFromWorld(azimuth, elevation, distance, random->Normal(0.1), aim)};
+}
+
+constexpr int kOversampling = 2;
+
+Camera Oversampled(Camera camera) {
+  camera.width = camera.height = kOversampling * camera.width;
+  camera.fx *= kOversampling;
+  camera.fy *= kOversampling;
+  camera.cx = camera.cy = 0.5 * (camera.width - 1);
+  return camera;
+}
+
+// The box of what is seen of the target, in pixels of the image without oversampling.
+Box BoxOfTarget(const cv::Mat& numbers) {
+  const cv::Rect outline = cv::boundingRect(numbers == 1);
+  const auto to_pixel = [](int fine_edge) {
+    return static_cast<double>(fine_edge) / kOversampling - 0.5;
+  };
+  return {to_pixel(outline.x), to_pixel(outline.y), to_pixel(outline.x + outline.width),
+          to_pixel(outline.y + outline.height)};
+}
+
 Lighting RandomLighting(Random* random) {
   Lighting lighting;
   const size_t lights = 1 + random->Index(3);
@@ -274,57 +316,31 @@ cv::Rect CutByBorder(Random* random, Camera* camera, Box* box) {
 std::optional<FurnitureView> RandomView(const FurnitureModel& target,
                                         const std::vector<const FurnitureModel*>& others, int side,
                                         Random look, Random* random) {
-  constexpr int kOversampling = 2;
   const Eigen::Vector3f stretch = RandomStretch(&look);
   const Eigen::Vector3d size = target.size.cwiseProduct(stretch).cast<double>();
-  const double diagonal = size.norm();
-
-  // The camera, in the world of the target: its front is the x axis.
-  constexpr double kArc = 25.0 / kDegPerRad;
-  const double azimuth = look.Uniform(-kPi, kPi) + random->Uniform(-kArc, kArc);
-  const double elevation = look.Uniform(-5.0, 48.0) / kDegPerRad;
-  const double distance = diagonal * look.Uniform(1.1, 5.0);
-  const double pixels = std::exp(random->Uniform(std::log(45.0), std::log(280.0)));
-  const int width = static_cast<int>(1.6 * pixels) + 16;
-  Camera camera{width, width, 0.0, 0.0, 0.5 * (width - 1), 0.5 * (width - 1)};
-  camera.fx = camera.fy = pixels * distance / diagonal;
-  const Eigen::Vector3d aim = Eigen::Vector3d(0.0, 0.0, 0.5 * size.z()) +
-                              0.1 * diagonal * random->Normals(1.0).cast<double>();
-  const Rigid3d camera_from_world =
-      CameraFromWorld(azimuth, elevation, distance, random->Normal(0.1), aim);
-  Camera fine = camera;
-  fine.width = fine.height = kOversampling * width;
-  fine.fx *= kOversampling;
-  fine.fy *= kOversampling;
-  fine.cx = fine.cy = 0.5 * (fine.width - 1);
-  Rasteriser canvas(fine, camera_from_world);
-
+  auto [camera, camera_from_world] = RandomCamera(size, &look, random);
+  const int width = camera.width;
+  Rasteriser canvas(Oversampled(camera), camera_from_world);
   const Lighting lighting = RandomLighting(&look);
   std::vector<PlacedModel> placed;
   placed.push_back({&target, Placed({0, 0}, 0.0, 0.0, stretch), RandomMaterials(target, &look)});
   canvas.Draw(placed.front(), lighting, 1);
   const int all_pixels = cv::countNonZero(canvas.number == 1);
-
   DrawOthers(others, size, lighting, random, &placed, &canvas);
   const int visible_pixels = cv::countNonZero(canvas.number == 1);
   constexpr double kLeastVisible = 0.4;
   if (visible_pixels < kLeastVisible * all_pixels || all_pixels < 200) return std::nullopt;
 
-  cv::Mat shadow(fine.height, fine.width, CV_8U, cv::Scalar(0));
+  cv::Mat shadow(canvas.number.size(), CV_8U, cv::Scalar(0));
   for (const PlacedModel& model : placed) {
     canvas.DrawShadow(model, lighting.lights.front().towards_in_world, &shadow);
   }
   cv::GaussianBlur(shadow, shadow, {}, random->Uniform(0.5, 6.0));
-  DrawRoom(others, diagonal, shadow, random->Uniform(0.0, 0.7), random, &canvas);
-
+  DrawRoom(others, size.norm(), shadow, random->Uniform(0.0, 0.7), random, &canvas);
   cv::Mat colours;
   cv::resize(canvas.colour, colours, {width, width}, 0, 0, cv::INTER_AREA);
-  const cv::Rect outline = cv::boundingRect(canvas.number == 1);
-  const auto to_pixel = [](int fine_edge) {
-    return static_cast<double>(fine_edge) / kOversampling - 0.5;
-  };
-  Box box{to_pixel(outline.x), to_pixel(outline.y), to_pixel(outline.x + outline.width),
-          to_pixel(outline.y + outline.height)};
+
+  Box box = BoxOfTarget(canvas.number);
   cv::Rect part(0, 0, width, width);
   if (random->Chance(0.3)) part = CutByBorder(random, &camera, &box);
   if (box.Width() < 10.0 || box.Height() < 10.0) return std::nullopt;
@@ -352,10 +368,9 @@ std::optional<FurnitureView> RandomView(const FurnitureModel& target,
 cv::Mat PlainView(const FurnitureModel& model, double azimuth, double elevation, int side) {
   const double diagonal = model.size.cast<double>().norm();
   const double distance = 3.0 * diagonal;
-  Camera camera{side, side, 0.0, 0.0, 0.5 * (side - 1), 0.5 * (side - 1)};
-  camera.fx = camera.fy = 0.8 * side * distance / diagonal;
   Rasteriser canvas(
-      camera, CameraFromWorld(azimuth, elevation, distance, 0.0, {0.0, 0.0, 0.5 * model.size.z()}));
+      SquareCamera(side, 0.8 * side, distance, diagonal),
+      CameraFromWorld(azimuth, elevation, distance, 0.0, {0.0, 0.0, 0.5 * model.size.z()}));
   canvas.colour.setTo(cv::Scalar::all(128.0));
   const Eigen::Vector3f towards =
       (canvas.CentreInWorld() - Eigen::Vector3f(0, 0, 0.5f * model.size.z())).normalized();

@@ -7,7 +7,6 @@
 
 #include "soslam/appearance/crop.h"
 #include "soslam/training/furniture_model.h"
-#include "soslam/training/random.h"
 
 namespace soslam {
 
@@ -16,8 +15,8 @@ struct FurnitureView {
   Crop crop;
   double azimuth = 0.0;        // rad, see AzimuthOfCamera
   Eigen::Vector2d log_ratios;  // log(depth / height), log(width / height)
-  double visible_share =
-      1.0;  // of the model's pixels that nothing hides; the border does not count
+  // Share of the model's pixels that nothing hides; the border does not count.
+  double visible_share = 1.0;
 };
 
 // A random view of a model among others in a random room: stretched, in random colours and light,

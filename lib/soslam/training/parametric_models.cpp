@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "soslam/training/parametric_models.h"
-
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <numbers>
+#include <utility>
+
+#include "soslam/training/furniture_model.h"
 
 namespace soslam {
 namespace {
@@ -424,18 +426,17 @@ void Bed(Assembly* a) {
   a->AddLegs(frame, {0.47f * length, 0.45f * width}, 0.5f * seat, 0.03f, 0.0f);
 }
 
-const std::map<std::string, std::function<void(Assembly*)>> kKinds = {
-    {"office chair", &OfficeChair},
-    {"cantilever chair", &CantileverChair},
-    {"shell chair", &ShellChair},
-    {"sofa", &Sofa},
-    {"monitor", &Monitor},
-    {"laptop", &Laptop},
-    {"keyboard", &Keyboard},
-    {"cabinet", &Cabinet},
-    {"refrigerator", &Refrigerator},
-    {"desk", &Desk},
-    {"bed", &Bed}};
+const std::map<std::string, void (*)(Assembly*)> kKinds = {{"office chair", &OfficeChair},
+                                                           {"cantilever chair", &CantileverChair},
+                                                           {"shell chair", &ShellChair},
+                                                           {"sofa", &Sofa},
+                                                           {"monitor", &Monitor},
+                                                           {"laptop", &Laptop},
+                                                           {"keyboard", &Keyboard},
+                                                           {"cabinet", &Cabinet},
+                                                           {"refrigerator", &Refrigerator},
+                                                           {"desk", &Desk},
+                                                           {"bed", &Bed}};
 
 }  // namespace
 

@@ -14,7 +14,6 @@
 
 #include "soslam/base/error.h"
 #include "soslam/base/text.h"
-#include "soslam/training/parametric_models.h"
 
 namespace soslam {
 namespace {
