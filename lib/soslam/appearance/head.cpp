@@ -22,25 +22,6 @@ constexpr int kCells = kPooledSide * kPooledSide;
 
 using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// A group of things of which a head knows which way they face.
-struct HeadGroup {
-  std::string name;
-  std::vector<std::string> labels;
-  double exponent = 0.0;
-  double ratio_sigma_scale = 0.0;
-};
-template <typename Visitor>
-void Describe(Visitor& visit, HeadGroup& group) {
-  visit.Field("name", &group.name, "what people call it", kNotEmpty);
-  visit.Field("labels", &group.labels, "labels of detections that belong to it");
-  visit.Field("exponent", &group.exponent,
-              "of likelihoods, which are less sure than they say; 0: the head tells nothing",
-              Limits{0.0, 1e3});
-  visit.Field("ratio_sigma_scale", &group.ratio_sigma_scale,
-              "of what the head says of the spread of ratios; 0: it tells no ratios",
-              Limits{0.0, 1e3});
-}
-
 [[noreturn]] void Refuse(const Hdf5File& file, const std::string& name, const std::string& words) {
   throw InputError(fmt::format("{}: {}: {}", file.path().string(), name, words));
 }
@@ -85,21 +66,19 @@ Head::Head(const std::filesystem::path& path) : path_(path.string()) {
   floor_ = static_cast<float>(ReadNumber(file, "floor", 1e-6, 1.0 - 1e-6));
   correlation_deg_ = static_cast<float>(ReadNumber(file, "direction_correlation_deg", 0, 180));
   const std::string of_groups = path_ + ": groups";
-  const auto groups = ReadDocument<std::vector<HeadGroup>>(
+  groups_ = ReadDocument<std::vector<HeadGroup>>(
       nlohmann::json::parse(file.ReadText("/", "groups"), nullptr, /*allow_exceptions=*/false),
       of_groups);
-  for (const HeadGroup& group : groups) {
-    const auto number = static_cast<int>(groups_.size());
-    for (const std::string& label : group.labels) {
-      const auto [other, is_new] = group_of_label_.emplace(NormalisedLabel(label), number);
+  for (size_t i = 0; i < groups_.size(); ++i) {
+    for (const std::string& label : groups_[i].labels) {
+      const auto [other, is_new] =
+          group_of_label_.emplace(NormalisedLabel(label), static_cast<int>(i));
       if (is_new) continue;
       throw InputError(fmt::format("{}: '{}' is a label of {} and of {}; expected one group of it",
-                                   of_groups, label, groups[other->second].name, group.name));
+                                   of_groups, label, groups_[other->second].name, groups_[i].name));
     }
-    groups_.push_back(
-        {static_cast<float>(group.ratio_sigma_scale), static_cast<float>(group.exponent)});
   }
-  const auto groups_count = static_cast<Eigen::Index>(groups.size());
+  const auto groups_count = static_cast<Eigen::Index>(groups_.size());
   narrow_weights_ = ReadWeights(file, "/narrow/weights");
   narrow_bias_ = ReadValues(file, "/narrow/bias", narrow_weights_.rows());
   probe_ = ReadWeights(file, "/probe", Channels(), kCells);
@@ -112,6 +91,10 @@ Head::Head(const std::filesystem::path& path) : path_(path.string()) {
   ratio_sigma_ = ReadWeights(file, "/ratio_sigma", groups_count, 2);
   feature_mean_ = ReadValues(file, "/feature_mean", Channels());
   feature_scale_ = ReadValues(file, "/feature_scale", Channels());
+  CheckNumbers(file);
+}
+
+void Head::CheckNumbers(const Hdf5File& file) const {
   const std::pair<const char*, bool> finite[] = {{"/narrow/weights", narrow_weights_.allFinite()},
                                                  {"/narrow/bias", narrow_bias_.allFinite()},
                                                  {"/hidden/weights", hidden_weights_.allFinite()},
@@ -127,14 +110,14 @@ Head::Head(const std::filesystem::path& path) : path_(path.string()) {
     Refuse(file, "/feature_scale",
            fmt::format("has {}; expected positive numbers", feature_scale_.minCoeff()));
   }
-  for (Eigen::Index i = 0; i < groups_count; ++i) {
-    if (groups_[i].ratio_sigma_scale == 0.0F) continue;
+  for (Eigen::Index i = 0; i < std::ssize(groups_); ++i) {
+    if (groups_[i].ratio_sigma_scale == 0.0) continue;
     if (!ratio_mean_.row(i).allFinite() || !ratio_sigma_.row(i).allFinite() ||
         !(ratio_sigma_.row(i).minCoeff() > 0.0F)) {
       Refuse(file, "/ratio_mean, /ratio_sigma",
              fmt::format("row {} has numbers that are not finite, or sigmas that are not positive, "
                          "and the head tells ratios of {}",
-                         i, groups[i].name));
+                         i, groups_[i].name));
     }
   }
 }
@@ -150,7 +133,7 @@ std::optional<int> Head::FindGroup(const std::string& label) const {
   const auto group = group_of_label_.find(NormalisedLabel(label));
   const bool is_told =
       group != group_of_label_.end() &&
-      (groups_[group->second].exponent > 0.0F || groups_[group->second].ratio_sigma_scale > 0.0F);
+      (groups_[group->second].exponent > 0.0 || groups_[group->second].ratio_sigma_scale > 0.0);
   return is_told ? std::optional(group->second) : std::nullopt;
 }
 
@@ -182,13 +165,14 @@ BoxAppearance Head::Appearance(const cv::Mat& features, const cv::Mat& mirrored,
   const Output mirror = Evaluate(mirrored, direction, group);
   BoxAppearance appearance;
   appearance.direction_correlation_deg = correlation_deg_;
+  const auto exponent = static_cast<float>(groups_[group].exponent);
   for (int i = 0; i < kAzimuthBins; ++i) {
     // A mirror image is seen from the opposite azimuth.
     const float probability =
         0.5F * (std::exp(plain.log_probabilities[i]) +
                 std::exp(mirror.log_probabilities[(kAzimuthBins - i) % kAzimuthBins]));
     appearance.azimuth_costs[i] =
-        -groups_[group].exponent * std::log((1.0F - floor_) * probability + floor_ / kAzimuthBins);
+        -exponent * std::log((1.0F - floor_) * probability + floor_ / kAzimuthBins);
   }
   appearance.azimuth_costs.array() -= appearance.azimuth_costs.minCoeff();
   appearance.log_ratios =
@@ -199,7 +183,7 @@ BoxAppearance Head::Appearance(const cv::Mat& features, const cv::Mat& mirrored,
 }
 
 std::optional<LogRatios> Head::RatioLikelihood(const LogRatios& relative, int group) const {
-  const float scale = groups_[group].ratio_sigma_scale;
+  const auto scale = static_cast<float>(groups_[group].ratio_sigma_scale);
   if (scale == 0.0F) return std::nullopt;
   const Eigen::Vector2f of_head = (scale * relative.sigma).cwiseAbs2().cwiseInverse();
   const Eigen::Vector2f of_prior = ratio_sigma_.row(group).cwiseAbs2().cwiseInverse();

@@ -12,11 +12,32 @@
 #include "soslam/appearance/appearance_file.h"
 #include "soslam/appearance/crop.h"
 #include "soslam/appearance/inner_layers.h"
+#include "soslam/artefact/hdf5_file.h"
+#include "soslam/base/description.h"
 #include "soslam/image/network.h"
 #include "soslam/model/appearance.h"
 #include "soslam/model/sequence.h"
 
 namespace soslam {
+
+// A group of things of which a head knows which way they face.
+struct HeadGroup {
+  std::string name;
+  std::vector<std::string> labels;
+  double exponent = 0.0;
+  double ratio_sigma_scale = 0.0;
+};
+template <typename Visitor>
+void Describe(Visitor& visit, HeadGroup& group) {
+  visit.Field("name", &group.name, "what people call it", kNotEmpty);
+  visit.Field("labels", &group.labels, "labels of detections that belong to it");
+  visit.Field("exponent", &group.exponent,
+              "of likelihoods, which are less sure than they say; 0: the head tells nothing",
+              Limits{0.0, 1e3});
+  visit.Field("ratio_sigma_scale", &group.ratio_sigma_scale,
+              "of what the head says of the spread of ratios; 0: it tells no ratios",
+              Limits{0.0, 1e3});
+}
 
 // A small network on the inner layers of a detector network, trained on rendered furniture
 // (docs/appearance.md). File: kind "head", layout in schemas/hdf5-layout.md.
@@ -50,6 +71,8 @@ class Head {
   float Distance(const cv::Mat& features) const;
 
  private:
+  // Throws InputError for numbers that are not finite, and for scales that are not positive.
+  void CheckNumbers(const Hdf5File& file) const;
   struct Output {
     AzimuthCosts log_probabilities;
     LogRatios log_ratios;  // relative to the mean of the group's models
@@ -67,11 +90,7 @@ class Head {
   int side_ = 0;
   bool is_rgb_ = false;
   std::map<std::string, int> group_of_label_;
-  struct Group {
-    float ratio_sigma_scale = 0.0F;  // of sigmas; 0: tells no ratios
-    float exponent = 0.0F;  // of likelihoods, which are less sure than they say; 0: tell nothing
-  };
-  std::vector<Group> groups_;
+  std::vector<HeadGroup> groups_;
   float floor_ = 0.0F;            // probability that the head is wrong altogether
   float correlation_deg_ = 0.0F;  // see BoxAppearance
   Eigen::MatrixXf narrow_weights_, hidden_weights_, output_weights_;

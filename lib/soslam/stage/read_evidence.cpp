@@ -15,6 +15,7 @@
 #include "soslam/base/paths.h"
 #include "soslam/dataset/image_path.h"
 #include "soslam/geometry/angles.h"
+#include "soslam/image/distort_pixels.h"
 #include "soslam/planes/scene_axis.h"
 
 namespace soslam {
@@ -106,6 +107,14 @@ cv::Mat FrameImageReader::Read(const FrameImage& image, int mode) const {
   return undistorter_ ? undistorter_->Undistort(pixels) : pixels;
 }
 
+PointObservation StoredObservation(const Sequence& sequence, const Frame& frame,
+                                   const Eigen::Vector2d& pixel) {
+  const auto& distortion = sequence.image_distortion;
+  return {frame.id, distortion
+                        ? DistortPixels(sequence.CameraOf(frame), *distortion, {pixel}).front()
+                        : pixel};
+}
+
 namespace {
 
 bool HasImages(const Sequence& sequence) {
@@ -145,17 +154,6 @@ std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, const Vertica
         ReadSegmentView(sequence, reader, image, options.min_length_px);
   });
   return views;
-}
-
-void CheckOneSegment(const Sequence& sequence, const std::filesystem::path& path) {
-  const int first = sequence.frames.front().segment;
-  for (size_t i = 0; i < sequence.frames.size(); ++i) {
-    if (sequence.frames[i].segment == first) continue;
-    throw InputError(fmt::format(
-        "{}: /frames/{} is of segment {}, the frames before of segment {}; expected one segment "
-        "where planes are estimated, or planes = given or camera_height",
-        path.string(), i, sequence.frames[i].segment, first));
-  }
 }
 
 void AddSceneAxes(const std::filesystem::path& folder, int threads, Sequence* sequence,

@@ -62,16 +62,16 @@ class FrameImageReader {
   std::optional<ImageUndistorter> undistorter_;
 };
 
+// An undistorted pixel of a frame as points are stored: of the image file.
+PointObservation StoredObservation(const Sequence& sequence, const Frame& frame,
+                                   const Eigen::Vector2d& pixel);
+
 // Line segments in the images of folder "dataset", per frame; none if vertical edges are not used
 // or no frame has an image. The images are added to `inputs`. Throws SettingsError without a
 // folder.
 std::vector<SegmentView> ViewsOfSegments(const Sequence& sequence, const VerticalOptions& options,
                                          const StageFiles& files, int threads,
                                          std::vector<std::filesystem::path>* inputs);
-
-// Throws InputError, naming the file, if there are several segments: every segment has its own
-// world, up direction and planes.
-void CheckOneSegment(const Sequence& sequence, const std::filesystem::path& path);
 
 // Sets the scene axes of a sequence's planes from images of the dataset folder, if the sequence has
 // one world. Images that are missing or damaged are left out. Those read are added to `inputs`.

@@ -212,6 +212,28 @@ std::vector<std::string> NamesIn(const NetworkFile& network) {
   }
 }
 
+// The boxes with labels that are kept. Throws NothingUsableError if there are none.
+std::vector<LabelledBox> KeptBoxes(const AllDetections& all, const DetectorLabels& labels,
+                                   const DetectorOptions& options, const NetworkFile& network,
+                                   const NetworkFormat& format) {
+  std::vector<LabelledBox> boxes;
+  for (size_t i = 0; i < all.of_image.size(); ++i) {
+    for (const NetworkDetection& found : all.of_image[i]) {
+      const int index = found.class_index;
+      if (!labels.are_kept[index]) continue;
+      boxes.push_back({"", static_cast<int>(i), labels.names[index], found.score, found.box});
+    }
+  }
+  if (!boxes.empty()) return boxes;
+  throw NothingUsableError(fmt::format(
+      "{}: nothing was detected in {} images with a score of at least {}{}; taken for {}: do "
+      "these and the labels suit the network?",
+      network.name, all.of_image.size(), options.min_score,
+      all.tally.boxes > 0 ? fmt::format(" ({} boxes of labels that are not kept)", all.tally.boxes)
+                          : "",
+      format.Text()));
+}
+
 }  // namespace
 
 void RunDetect(const DetectorOptions& options, const StageFiles& files, int threads) {
@@ -247,24 +269,7 @@ void RunDetect(const DetectorOptions& options, const StageFiles& files, int thre
   DetectorOptions found = options;
   const AllDetections all = DetectInBoth(images, detect, &found.image_orientation);
   CheckBoxesArePossible(all.tally, format, network.name);
-  std::vector<LabelledBox> boxes;
-  for (size_t i = 0; i < images.size(); ++i) {
-    for (const NetworkDetection& found : all.of_image[i]) {
-      const int index = found.class_index;
-      if (!labels.are_kept[index]) continue;
-      boxes.push_back({"", static_cast<int>(i), labels.names[index], found.score, found.box});
-    }
-  }
-  if (boxes.empty()) {
-    throw NothingUsableError(fmt::format(
-        "{}: nothing was detected in {} images with a score of at least {}{}; taken for {}: do "
-        "these and the labels suit the network?",
-        network.name, images.size(), options.min_score,
-        all.tally.boxes > 0
-            ? fmt::format(" ({} boxes of labels that are not kept)", all.tally.boxes)
-            : "",
-        format.Text()));
-  }
+  const std::vector<LabelledBox> boxes = KeptBoxes(all, labels, options, network, format);
   std::vector<fs::path> inputs = images;
   inputs.insert(inputs.end(), {list, files.at("network")});
   if (files.contains("labels")) inputs.push_back(files.at("labels"));
@@ -272,12 +277,9 @@ void RunDetect(const DetectorOptions& options, const StageFiles& files, int thre
   found.pixel_values = format.pixel_values;
   found.input_width = format.input.width;
   found.input_height = format.input.height;
-  WriteTextFile(files.at("output"),
-                Comments({OptionsToJson(found), inputs, {}, "detect"}, options.backend) +
-                    LabelledBoxesText(boxes));
-  if (files.contains("turns")) {
-    WriteTurns(files.at("turns"), turns, {OptionsToJson(found), inputs, {}, "detect"});
-  }
+  const ArtefactInfo info = {OptionsToJson(found), inputs, {}, "detect"};
+  WriteTextFile(files.at("output"), Comments(info, options.backend) + LabelledBoxesText(boxes));
+  if (files.contains("turns")) WriteTurns(files.at("turns"), turns, info);
   fmt::print("{}: {}\n{}: {} images{}, {} detections\n", network.name, format.Text(),
              dataset.string(), images.size(),
              turns.upright_turn_deg == 0

@@ -99,6 +99,31 @@ void WriteJpeg(const cv::Mat& image, int max_image_px,
   output.Write(name, jpeg);
 }
 
+void WriteFramesOfVideo(const fs::path& path, const std::vector<SourceFrame>& frames,
+                        int max_image_px, const DatasetFolder& output) {
+  VideoReader video(path);
+  for (const SourceFrame& frame : frames) {
+    if (!video.Next()) throw InputError(path.string() + ": cannot be decoded a second time");
+    if (IsLeftOut(frame)) continue;
+    WriteJpeg(video.Image(cv::IMREAD_COLOR), max_image_px, {}, frame.image, output);
+  }
+}
+
+void WritePhotos(const std::vector<Photo>& photos, const std::vector<SourceFrame>& frames,
+                 const FrameOptions& options, int threads, const DatasetFolder& output) {
+  ParallelFor("images", photos.size(), threads, [&](size_t i) {
+    if (IsLeftOut(frames[i])) return;
+    const Photo& photo = photos[i];
+    const std::string& name = frames[i].image;
+    if (IsCopied(photo, options)) {
+      output.Write(name, ReadWholeFile(photo.path, "photo"));
+    } else {
+      WriteJpeg(ReadImage(photo.path, cv::IMREAD_COLOR), options.max_image_px,
+                photo.header.focal_over_diagonal, name, output);
+    }
+  });
+}
+
 constexpr const char* kReadme =
     "; the next run into this folder replaces it. -->\n\n"
     "Images that were chosen from photos or a video: `rgb/`, listed in `rgb.txt` in the order\n"
@@ -128,24 +153,10 @@ void RunFrames(const FrameOptions& options, const StageFiles& files, int threads
   ReportFindings("frames", findings);
   fs::create_directory(output.Temporary() / "rgb");
   if (is_video) {
-    VideoReader video(images);
-    for (const SourceFrame& frame : record.frames) {
-      if (!video.Next()) throw InputError(images.string() + ": cannot be decoded a second time");
-      if (IsLeftOut(frame)) continue;
-      WriteJpeg(video.Image(cv::IMREAD_COLOR), options.max_image_px, {}, frame.image, output);
-    }
+    WriteFramesOfVideo(images, record.frames, options.max_image_px, output);
+  } else {
+    WritePhotos(photos, record.frames, options, threads, output);
   }
-  ParallelFor("images", photos.size(), threads, [&](size_t i) {
-    if (IsLeftOut(record.frames[i])) return;
-    const Photo& photo = photos[i];
-    const std::string& name = record.frames[i].image;
-    if (IsCopied(photo, options)) {
-      output.Write(name, ReadWholeFile(photo.path, "photo"));
-    } else {
-      WriteJpeg(ReadImage(photo.path, cv::IMREAD_COLOR), options.max_image_px,
-                photo.header.focal_over_diagonal, name, output);
-    }
-  });
   if (files.contains("detections")) {
     output.Write("detections.csv", FrameBoxesText(files.at("detections"), chosen));
     chosen.inputs.push_back(files.at("detections"));
@@ -155,8 +166,7 @@ void RunFrames(const FrameOptions& options, const StageFiles& files, int threads
   int count = 0;
   for (const SourceFrame& frame : record.frames) {
     if (IsLeftOut(frame)) continue;
-    list += fmt::format("{} {}\n", frame.time_s.value_or(count), frame.image);
-    ++count;
+    list += fmt::format("{} {}\n", frame.time_s.value_or(count++), frame.image);
   }
   output.Write("rgb.txt", list);
   output.Write("frames.json",

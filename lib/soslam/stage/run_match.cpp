@@ -10,7 +10,6 @@
 #include "soslam/cli/command_line.h"
 #include "soslam/evaluation/statistics.h"
 #include "soslam/image/box_colours.h"
-#include "soslam/image/distort_pixels.h"
 #include "soslam/image/feature_matches.h"
 #include "soslam/model/occlusion.h"
 #include "soslam/stage/read_evidence.h"
@@ -47,16 +46,12 @@ void RunMatch(const MatchOptions& options, const StageFiles& files, int threads)
   ParallelFor("pairs", pairs.size(), threads, [&](size_t i) {
     matches[i] = MatchFeatures(views[pairs[i].first], views[pairs[i].second], options);
   });
-  std::vector<PointTrack>& tracks = found.tracks;  // with the pixels as they are stored
-  const auto& distortion = sequence.image_distortion;
+  std::vector<PointTrack>& tracks = found.tracks;
   for (const FeatureTrack& track : JoinMatches(views, pairs, matches, options)) {
     PointTrack& stored = tracks.emplace_back();
     for (const FeatureTrack::Place& place : track.places) {
-      const Frame& frame = *images[place.image].frame;
       stored.observations.push_back(
-          {frame.id,
-           distortion ? DistortPixels(sequence.CameraOf(frame), *distortion, {place.pixel}).front()
-                      : place.pixel});
+          StoredObservation(sequence, *images[place.image].frame, place.pixel));
     }
   }
   if (tracks.empty()) {
@@ -69,14 +64,14 @@ void RunMatch(const MatchOptions& options, const StageFiles& files, int threads)
   }
   ReportFindings("match", info.findings);
   WriteMatches(files.at("output"), found, info);
-  std::vector<double> lengths;
-  for (const PointTrack& track : tracks) {
-    lengths.push_back(static_cast<double>(track.observations.size()));
-  }
-  fmt::print(
-      "{}: {} points from {} pairs of {} images{}\n", sequence.name, tracks.size(), pairs.size(),
-      images.size(),
-      tracks.empty() ? "" : fmt::format(", each in {:.0f} images (median)", *MedianOf(lengths)));
+  const auto length = [](const PointTrack& track) {
+    return static_cast<double>(track.observations.size());
+  };
+  fmt::print("{}: {} points from {} pairs of {} images{}\n", sequence.name, tracks.size(),
+             pairs.size(), images.size(),
+             tracks.empty() ? ""
+                            : fmt::format(", each in {:.0f} images (median)",
+                                          *MedianOf(CollectValues(tracks, length))));
 }
 
 }  // namespace soslam

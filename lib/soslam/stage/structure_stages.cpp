@@ -68,6 +68,20 @@ PairEvidence ReadPairs(bool shared_points, const Sequence& sequence, const Stage
   return {sequence, matches};
 }
 
+// Throws InputError for an edit that gives a label which the table does not have.
+void CheckEditedLabels(const Edits& edits, const SemanticTable& table) {
+  for (size_t i = 0; i < edits.edits.size(); ++i) {
+    const std::string label = NormalisedLabel(edits.edits[i].label);
+    if (label.empty() || table.priors.contains(label)) continue;
+    std::vector<std::string> known;
+    for (const auto& [name, prior] : table.priors) known.push_back(name);
+    const auto meant = LikelyMeant(label, known);
+    throw InputError(fmt::format(
+        "{}: /edits/{}/label is \"{}\"; expected a label of the semantic table{}", edits.file, i,
+        edits.edits[i].label, meant ? fmt::format(", as \"{}\"", *meant) : ""));
+  }
+}
+
 }  // namespace
 
 void RunAssociate(const AssociateOptions& settings, const StageFiles& files, int threads) {
@@ -82,16 +96,7 @@ void RunAssociate(const AssociateOptions& settings, const StageFiles& files, int
   if (!options.use_planes) sequence = WithoutPlanes(std::move(sequence));
   const PairEvidence pairs = ReadPairs(options.shared_points, sequence, files);
   const Edits edits = files.contains("edits") ? ReadEdits(files.at("edits")) : Edits();
-  for (size_t i = 0; i < edits.edits.size(); ++i) {
-    const std::string label = NormalisedLabel(edits.edits[i].label);
-    if (label.empty() || table.priors.contains(label)) continue;
-    std::vector<std::string> known;
-    for (const auto& [name, prior] : table.priors) known.push_back(name);
-    const auto meant = LikelyMeant(label, known);
-    throw InputError(fmt::format(
-        "{}: /edits/{}/label is \"{}\"; expected a label of the semantic table{}", edits.file, i,
-        edits.edits[i].label, meant ? fmt::format(", as \"{}\"", *meant) : ""));
-  }
+  CheckEditedLabels(edits, table);
   const Association association = Associate(sequence, table, pairs, options, threads, edits);
   if (association.objects.empty()) {
     throw NothingUsableError(fmt::format("{}: no object in {} detections; tracks: {}",
@@ -204,6 +209,19 @@ Result FromSequence(const Sequence& sequence) {
     given.reason = object.plane_index == kNoPlane ? SupportReason::kNone : SupportReason::kGiven;
   }
   return result;
+}
+
+// Throws InputError, naming the file, if there are several segments: every segment has its own
+// world, up direction and planes.
+void CheckOneSegment(const Sequence& sequence, const std::filesystem::path& path) {
+  const int first = sequence.frames.front().segment;
+  for (size_t i = 0; i < sequence.frames.size(); ++i) {
+    if (sequence.frames[i].segment == first) continue;
+    throw InputError(fmt::format(
+        "{}: /frames/{} is of segment {}, the frames before of segment {}; expected one segment "
+        "where planes are estimated, or planes = given or camera_height",
+        path.string(), i, sequence.frames[i].segment, first));
+  }
 }
 
 Result FromBoxes(const Sequence& sequence, const PlanesOptions& options, const StageFiles& files,

@@ -13,7 +13,6 @@
 #include "soslam/geometry/angles.h"
 #include "soslam/geometry/triangulation.h"
 #include "soslam/image/box_mask.h"
-#include "soslam/image/distort_pixels.h"
 #include "soslam/model/moving_things.h"
 
 namespace soslam {
@@ -88,11 +87,8 @@ std::optional<MapPoint> TriangulateTrack(const Sequence& sequence,
   MapPoint result{point->position_in_world, point->mean_error_px, {}};
   for (size_t i = 0; i < all.size(); ++i) {
     if (is_far_from(*first)(all[i])) continue;
-    const Frame& frame = *images[track.places[i].image].frame;
-    const auto& distortion = sequence.image_distortion;
     result.observations.push_back(
-        {frame.id, distortion ? DistortPixels(all[i].camera, *distortion, {all[i].pixel}).front()
-                              : all[i].pixel});
+        StoredObservation(sequence, *images[track.places[i].image].frame, all[i].pixel));
   }
   return result;
 }
