@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "soslam/stage/export_images.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -11,7 +11,6 @@
 #include "soslam/artefact/files.h"
 #include "soslam/artefact/hdf5_artefact.h"
 #include "soslam/base/error.h"
-#include "soslam/base/parallel.h"
 #include "soslam/base/paths.h"
 #include "soslam/dataset/image_path.h"
 #include "soslam/geometry/angles.h"

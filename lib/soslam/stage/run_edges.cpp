@@ -10,8 +10,6 @@
 #include "soslam/artefact/hdf5_artefact.h"
 #include "soslam/artefact/options_json.h"
 #include "soslam/base/error.h"
-#include "soslam/base/parallel.h"
-#include "soslam/base/progress.h"
 #include "soslam/image/edge_maps.h"
 #include "soslam/stage/read_evidence.h"
 #include "soslam/stage/stages.h"
@@ -39,20 +37,12 @@ void RunEdges(const EdgesOptions& options, const StageFiles& files, int threads)
   EdgesWriter writer(files.at("output"), {OptionsToJson(options), inputs, {}, "edges"});
 
   const FrameImageReader reader(sequence);
-  const int frames = static_cast<int>(images.size());
-  Progress progress("frames", frames);
-  const int batch = 4 * threads;  // limits the maps in memory that wait to be written
-  for (int begin = 0; begin < frames; begin += batch) {
-    std::vector<EdgeMaps> maps(static_cast<size_t>(std::min(batch, frames - begin)));
-    ParallelFor(maps.size(), threads, [&](size_t i) {
-      const cv::Mat grey = reader.Read(images[begin + i], cv::IMREAD_GRAYSCALE);
-      maps[i] = ComputeEdgeMaps(grey, options);
-      progress.Step();
-    });
-    for (size_t i = 0; i < maps.size(); ++i) {
-      writer.Write(images[static_cast<size_t>(begin) + i].frame->id, maps[i]);
-    }
-  }
+  MakeInOrder(
+      "frames", images.size(), threads,
+      [&](size_t i) {
+        return ComputeEdgeMaps(reader.Read(images[i], cv::IMREAD_GRAYSCALE), options);
+      },
+      [&](size_t i, const EdgeMaps& maps) { writer.Write(images[i].frame->id, maps); });
   writer.Commit();
   if (images.size() < sequence.frames.size()) {
     fmt::print("{} of {} frames have an image\n", images.size(), sequence.frames.size());

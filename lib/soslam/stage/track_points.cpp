@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "soslam/base/parallel.h"
-#include "soslam/base/progress.h"
 #include "soslam/base/text.h"
 #include "soslam/geometry/angles.h"
 #include "soslam/geometry/triangulation.h"
@@ -24,31 +23,25 @@ std::vector<FeatureTrack> FollowFeatures(const Sequence& sequence,
   const FrameImageReader reader(sequence);
   const std::vector<std::vector<Box>> moving = BoxesOfMovingThings(sequence);
   FeatureTracker tracker(options);
-  Progress progress("images", static_cast<int>(images.size()));
-  const size_t batch = 4 * static_cast<size_t>(threads);  // limits the images in memory
-  for (size_t begin = 0; begin < images.size(); begin += batch) {
-    std::vector<cv::Mat> grey(std::min(batch, images.size() - begin));
-    ParallelFor(grey.size(), threads,
-                [&](size_t i) { grey[i] = reader.Read(images[begin + i], cv::IMREAD_GRAYSCALE); });
-    for (size_t i = 0; i < grey.size(); ++i) {
-      const size_t index = begin + i;
-      const Frame& frame = *images[index].frame;
-      const Frame& last = index > 0 ? *images[index - 1].frame : frame;
-      const Camera &camera = sequence.CameraOf(frame), &before = sequence.CameraOf(last);
-      const bool may_share_features = last.segment == frame.segment &&
-                                      before.width == camera.width &&
-                                      before.height == camera.height;
-      if (!may_share_features) tracker.Cut();
-      // Homography between two images of a camera that only turns: where points at infinity move.
-      const Eigen::Quaterniond frame_from_last =
-          frame.world_from_camera.rotation.conjugate() * last.world_from_camera.rotation;
-      tracker.Add(
-          grey[i],
-          camera.Intrinsics() * frame_from_last.toRotationMatrix() * before.Intrinsics().inverse(),
-          MaskOutBoxes(moving[&frame - sequence.frames.data()], grey[i].size()));
-      progress.Step();
-    }
-  }
+  MakeInOrder(
+      "images", images.size(), threads,
+      [&](size_t i) { return reader.Read(images[i], cv::IMREAD_GRAYSCALE); },
+      [&](size_t i, const cv::Mat& grey) {
+        const Frame& frame = *images[i].frame;
+        const Frame& last = i > 0 ? *images[i - 1].frame : frame;
+        const Camera &camera = sequence.CameraOf(frame), &before = sequence.CameraOf(last);
+        const bool may_share_features = last.segment == frame.segment &&
+                                        before.width == camera.width &&
+                                        before.height == camera.height;
+        if (!may_share_features) tracker.Cut();
+        // Homography between two images of a camera that only turns: where points at infinity move.
+        const Eigen::Quaterniond frame_from_last =
+            frame.world_from_camera.rotation.conjugate() * last.world_from_camera.rotation;
+        tracker.Add(grey,
+                    camera.Intrinsics() * frame_from_last.toRotationMatrix() *
+                        before.Intrinsics().inverse(),
+                    MaskOutBoxes(moving[&frame - sequence.frames.data()], grey.size()));
+      });
   return tracker.Tracks();
 }
 

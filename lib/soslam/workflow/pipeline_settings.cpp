@@ -15,7 +15,6 @@
 #include "soslam/cli/command_line.h"
 #include "soslam/report/results_tree.h"
 #include "soslam/workflow/pipeline_stages.h"
-#include "soslam/workflow/unused_settings.h"
 
 namespace soslam {
 namespace {

@@ -12,7 +12,6 @@
 #include "soslam/system/hash.h"
 #include "soslam/workflow/pipeline_settings.h"
 #include "soslam/workflow/pipeline_stages.h"
-#include "soslam/workflow/unused_settings.h"
 
 namespace soslam {
 namespace {

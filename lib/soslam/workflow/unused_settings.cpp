@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "soslam/workflow/unused_settings.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include "soslam/base/paths.h"
 #include "soslam/base/text.h"
 #include "soslam/cli/command_line.h"
+#include "soslam/workflow/pipeline_settings.h"
 #include "soslam/workflow/pipeline_stages.h"
 
 namespace soslam {
