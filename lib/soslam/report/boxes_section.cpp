@@ -38,6 +38,10 @@ struct Sheet {
   std::optional<SheetBox> kept_out = {};  // of the nearest track that was not taken in
 };
 
+std::string CountedBoxes(size_t count) {
+  return count == 1 ? "1 box" : fmt::format("{} boxes", count);
+}
+
 std::string PointsInWords(const Associations::Evidence& evidence) {
   return fmt::format("{} of {} points", evidence.points_in_both, evidence.points_in_any);
 }
@@ -63,7 +67,7 @@ std::string EvidenceInWords(const Associations& associations, int object) {
                      "colours {:.1f}, body {:.1f}, labels {:.1f}); {} with both.",
                      other == associations.objects.end() ? box->label + ", left out"
                                                          : ObjectName(other->label, other->object),
-                     nearest->boxes == 1 ? "1 box" : fmt::format("{} boxes", nearest->boxes),
+                     CountedBoxes(static_cast<size_t>(nearest->boxes)),
                      points + colours + body + labels, PointsInWords(nearest->evidence), points,
                      colours, body, labels,
                      Counted(static_cast<size_t>(nearest->frames_with_both), "frame"));
@@ -124,13 +128,13 @@ void Thin(size_t count, std::vector<Sheet>* sheets) {
 }
 
 std::string SheetHtml(const Sheet& sheet, const Sequence& sequence) {
-  std::string html = fmt::format("<h3>{}</h3>\n<p class=\"faint\">{}", HtmlText(sheet.name),
-                                 sheet.boxes == 1 ? "1 box" : fmt::format("{} boxes", sheet.boxes));
-  if (sheet.unused > 0) html += fmt::format(", {} not used", sheet.unused);
+  std::string counts = CountedBoxes(sheet.boxes);
+  if (sheet.unused > 0) counts += fmt::format(", {} not used", sheet.unused);
   if (sheet.shown.size() < sheet.boxes) {
-    html += fmt::format("; {} of them are shown", sheet.shown.size());
+    counts += fmt::format("; {} of them are shown", sheet.shown.size());
   }
-  html += ". " + HtmlText(sheet.evidence) + "</p>\n<div class=\"sheet\">\n";
+  std::string html = fmt::format("<h3>{}</h3>\n{}<div class=\"sheet\">\n", HtmlText(sheet.name),
+                                 Faint(counts + ". " + sheet.evidence));
   const auto figure = [&](const SheetBox& shown) {
     const auto& [mark, box, picture] = shown;
     const Frame& frame = sequence.frames[picture.frame_index];
@@ -172,17 +176,17 @@ std::string BoxesSection(const fs::path& folder, const Sequence& sequence,
   for (size_t count = kMaxCrops; count > 0; count /= 2) {
     Thin(count, &sheets);
     std::string html =
-        "<section id=\"boxes\">\n<h2>Boxes of each object</h2>\n<p class=\"faint\">All that "
-        "association took to be of one object. Marked ones are not used: second: another box of "
+        "<p class=\"faint\">All that association took to be of one object. Marked ones are not "
+        "used: second: another box of "
         "the frame fits better; unexplained: far from where the object's body would be; duplicate: "
         "another box covers it. The last one is of the track that came nearest and was kept out. "
         "Numbers and names of frames open the text that names the box.</p>\n";
     for (const Sheet& sheet : sheets) html += SheetHtml(sheet, sequence);
     if (sheets.size() < associations.objects.size()) {
-      html += fmt::format("<p class=\"faint\">And {} more objects.</p>\n",
-                          associations.objects.size() - sheets.size());
+      html +=
+          Faint(fmt::format("And {} more objects.", associations.objects.size() - sheets.size()));
     }
-    html += "</section>\n";
+    html = Section("boxes", "Boxes of each object", html);
     if (html.size() <= max_bytes) return html;
   }
   return "";

@@ -30,10 +30,12 @@ std::vector<Cell> MakeRow(const std::string& name, const Metrics& metrics) {
           metrics.trajectory ? kTrajectoryError.TextOf(*metrics.trajectory) : kNoValue};
 }
 
-// Adds columns of fronts to a table with these rows, unless no row has any.
-void AddFronts(const std::vector<std::optional<FrontSummary>>& of_rows, Table* table) {
-  if (std::ranges::none_of(of_rows, &std::optional<FrontSummary>::has_value)) return;
-  for (const auto& metric : kFrontMetrics) {
+// Adds a column for each metric of a part that rows may have, unless no row has it.
+template <typename Metrics, typename Part>
+void AddColumns(const Metrics& metrics, const std::vector<std::optional<Part>>& of_rows,
+                Table* table) {
+  if (std::ranges::none_of(of_rows, &std::optional<Part>::has_value)) return;
+  for (const auto& metric : metrics) {
     table->header.push_back(metric.Header());
     for (size_t i = 0; i < of_rows.size(); ++i) {
       table->rows[i].emplace_back(of_rows[i] ? metric.TextOf(*of_rows[i]) : kNoValue);
@@ -75,7 +77,7 @@ Table DatasetTable(const DatasetResult& dataset) {
     odometry.insert(fmt::format("{} {}", kTrajectoryError.Text(trajectory->odometry_ate_rmse_m),
                                 kTrajectoryError.unit));
   }
-  AddFronts(fronts, &table);
+  AddColumns(kFrontMetrics, fronts, &table);
   // One value, unless variants started from different trajectories.
   if (!odometry.empty()) {
     table.notes.push_back(fmt::format("ATE of the odometry alone: {}", fmt::join(odometry, ", ")));
@@ -135,31 +137,41 @@ std::string AlignmentInWords(const std::vector<VariantResult>& maps) {
   return text;
 }
 
-// The kind of a map's first alignment.
-std::string KindOfAlignment(const VariantResult& map) {
+// The alignment of a map's first segment; none without segments.
+std::optional<Alignment> FirstAlignment(const VariantResult& map) {
   const auto& of_segment = map.metrics->map_quality->alignments.of_segment;
-  return of_segment.empty() ? kNoValue : NameOf(of_segment.begin()->second.kind);
+  return of_segment.empty() ? std::nullopt : std::optional(of_segment.begin()->second);
+}
+
+std::string KindOfAlignment(const VariantResult& map) {
+  const auto first = FirstAlignment(map);
+  return first ? NameOf(first->kind) : kNoValue;
 }
 
 // Adds how up and scale of maps with a world of their own differ from the truth, by the first
 // segment; nothing where no map has such a world.
 void AddWorlds(const std::vector<VariantResult>& maps, Table* table) {
-  std::vector<Alignment> worlds;
+  std::vector<std::optional<Alignment>> worlds;
   for (const VariantResult& map : maps) {
-    const auto& of_segment = map.metrics->map_quality->alignments.of_segment;
-    worlds.push_back(of_segment.empty() ? Alignment() : of_segment.begin()->second);
+    worlds.push_back(FirstAlignment(map).value_or(Alignment()));
   }
-  const auto has_own_up = [](const Alignment& world) { return world.up_error_deg.has_value(); };
+  const auto has_own_up = [](const auto& world) { return world->up_error_deg.has_value(); };
   if (std::ranges::none_of(worlds, has_own_up)) return;
-  for (const auto& metric : kWorldMetrics) {
-    table->header.push_back(metric.Header());
-    for (size_t i = 0; i < worlds.size(); ++i) {
-      table->rows[i].emplace_back(metric.TextOf(worlds[i]));
-    }
-  }
+  AddColumns(kWorldMetrics, worlds, table);
   table->notes.emplace_back(
       "Up of map: the angle between its up and the true one. True / map scale: what the map has to "
       "be multiplied by.");
+}
+
+std::vector<Cell> RowOfErrors(const std::string& name, const MapQuality& map) {
+  const MapScore& score = map.scores.front();
+  const FoundSummary& found = score.of_found;
+  std::vector<Cell> row = {name};
+  for (const auto& metric : kFoundMetrics) row.emplace_back(metric.TextOf(found));
+  row.emplace_back(fmt::format("{} of {}", found.labels_agree, score.found));
+  row.emplace_back(fmt::format("{} of {}", found.ids_agree, found.ids_known));
+  for (const auto& metric : kDriftMetrics) row.emplace_back(metric.TextOf(map.in_frames));
+  return row;
 }
 
 }  // namespace
@@ -201,17 +213,11 @@ std::vector<Table> QualityTables(const DatasetResult& dataset) {
       for (const auto& metric : kScoreMetrics) row.emplace_back(metric.TextOf(score));
     }
     quality.rows.push_back(row);
-    const FoundSummary& found = first.of_found;
-    row = {name};
-    for (const auto& metric : kFoundMetrics) row.emplace_back(metric.TextOf(found));
-    row.emplace_back(fmt::format("{} of {}", found.labels_agree, first.found));
-    row.emplace_back(fmt::format("{} of {}", found.ids_agree, found.ids_known));
-    for (const auto& metric : kDriftMetrics) row.emplace_back(metric.TextOf(of_map.in_frames));
-    errors.rows.push_back(row);
-    fronts.push_back(found.fronts);
+    errors.rows.push_back(RowOfErrors(name, of_map));
+    fronts.push_back(first.of_found.fronts);
     odometry_sources.insert(map.metrics->odometry_source);
   }
-  AddFronts(fronts, &errors);
+  AddColumns(kFrontMetrics, fronts, &errors);
   odometry_sources.erase("");
   quality.notes = {
       "True objects (detectable ones), landmarks (ignored ones), recall of the detectable at IoU "

@@ -71,7 +71,7 @@ std::string EntriesHtml(const std::vector<Entry>& entries, const Sequence& seque
 }
 
 std::string AndMore(size_t more) {
-  return more == 0 ? "" : fmt::format("<p class=\"faint\">And {} more.</p>\n", more);
+  return more == 0 ? "" : Faint(fmt::format("And {} more.", more));
 }
 
 // The map of a variant with the pictures of its objects.
@@ -113,11 +113,11 @@ class MapSectionBuilder {
       for (Entry& entry : *entries) pictures.push_back(&entry.picture);
     }
     AddJpegs(pictures, kPicturePx, images_, threads);
-    std::string html = Section(title, placed, not_placed, "");
+    std::string html = SectionOf(title, placed, not_placed, "");
     for (std::vector<Entry>* entries : {&not_placed.entries, &placed}) {
       if (html.size() <= max_bytes) break;
       for (Entry& entry : *entries) entry.picture.jpeg.clear();
-      html = Section(title, placed, not_placed, "For lack of room pictures are left out.");
+      html = SectionOf(title, placed, not_placed, "For lack of room pictures are left out.");
     }
     return html.size() <= max_bytes ? html : "";
   }
@@ -130,26 +130,24 @@ class MapSectionBuilder {
     size_t single = 0;  // things seen once
   };
 
-  std::string Section(const std::string& title, const std::vector<Entry>& entries,
-                      const NotPlacedEntries& not_placed, const std::string& note) const {
+  std::string SectionOf(const std::string& title, const std::vector<Entry>& entries,
+                        const NotPlacedEntries& not_placed, const std::string& note) const {
     constexpr size_t kMaxNames = 100;
-    std::string html = "<section id=\"overview\">\n";
-    html +=
-        fmt::format("<h2>{}</h2>\n<p>{} in {}.", HtmlText(title), Counted(placed_.size(), "object"),
-                    Counted(sequence_.frames.size(), "image"));
+    std::string html = fmt::format("<p>{} in {}.", Counted(placed_.size(), "object"),
+                                   Counted(sequence_.frames.size(), "image"));
     if (!scale_.sentence.empty()) html += " " + HtmlText(scale_.sentence);
     if (sequence_.edits) html += " " + HtmlText(InWords(*sequence_.edits)) + ".";
     html += "</p>\n";
     if (!scale_.warning.empty()) {
       html += fmt::format("<p class=\"warning\">{}</p>\n", HtmlText(scale_.warning));
     }
-    if (!note.empty()) html += fmt::format("<p class=\"faint\">{}</p>\n", note);
+    if (!note.empty()) html += Faint(note);
     if (!placed_.empty()) {
-      html += PlanHtml(entries) +
-              "<h3>Objects</h3>\n<p class=\"faint\">Width × depth × height, and by how "
-              "much each may be off (95 %) if the label is right.</p>\n" +
-              EntriesHtml(entries, sequence_);
-      html += AndMore(placed_.size() - entries.size());
+      html += PlanHtml(entries) + "<h3>Objects</h3>\n" +
+              Faint(
+                  "Width × depth × height, and by how much each may be off (95 %) if the label "
+                  "is right.") +
+              EntriesHtml(entries, sequence_) + AndMore(placed_.size() - entries.size());
     }
     const auto& [seen, more, single] = not_placed;
     if (!seen.empty() || single > 0) {
@@ -158,9 +156,9 @@ class MapSectionBuilder {
       html += AndMore(more);
     }
     if (single > 0) {
-      html += fmt::format(
-          "<p class=\"faint\">{} detected in one image only.</p>\n",
-          single == 1 ? "One more thing was" : fmt::format("{} more things were", single));
+      html += Faint(fmt::format(
+          "{} detected in one image only.",
+          single == 1 ? "One more thing was" : fmt::format("{} more things were", single)));
     }
     const std::vector<std::string>& names = sequence_.images_without_pose;
     if (!names.empty()) {
@@ -170,7 +168,7 @@ class MapSectionBuilder {
           names.size() == 1 ? "a photo was" : fmt::format("{} photos were", names.size()),
           HtmlText(NamesInWords(names, kMaxNames)));
     }
-    return html + "</section>\n";
+    return Section("overview", title, html);
   }
 
   std::vector<Entry> PlacedEntries() const {

@@ -74,10 +74,25 @@ class PageMaker {
     const ImageSource source = images_(first.sequence);
     const bool has_images = std::ranges::any_of(first.selection.shown, source.has);
     // The section of the map has at most a quarter of a page.
-    const std::string map_section = SectionOfBestMap(max_bytes / 4, threads);
+    const std::string map_section = SectionOfBest(
+        "the map from above",
+        [&](const PageVariant& variant, const fs::path& folder, const Sequence& sequence) {
+          if (variant.kind != VariantKind::kMap) return std::string();
+          const std::string title = folders_.size() == 1 ? "Map" : "Map of " + variant.name;
+          std::string section =
+              MapSection(title, folder, sequence, images_(sequence), max_bytes / 4, threads);
+          if (section.empty()) {
+            page_.notes.emplace_back("For lack of room the map from above is left out.");
+          }
+          return section;
+        });
     max_bytes -= std::min(max_bytes, map_section.size());
     // The boxes of its objects have at most an eighth.
-    const std::string boxes_section = SectionOfBoxes(max_bytes / 8, threads);
+    const std::string boxes_section = SectionOfBest(
+        "the boxes of objects",
+        [&](const PageVariant&, const fs::path& folder, const Sequence& sequence) {
+          return BoxesSection(folder, sequence, images_(sequence), max_bytes / 8, threads);
+        });
     max_bytes -= std::min(max_bytes, boxes_section.size());
     // Images shrink to an eighth of a page before anything else is left out.
     FitPage(max_bytes - (has_images ? max_bytes / 8 : 0), PageBytes, &page_);
@@ -128,35 +143,15 @@ class PageMaker {
     page_.unfinished.push_back({Utf8(result.name), Utf8(state), is_shown});
   }
 
-  // The section of the map that is of most interest; empty without one.
-  std::string SectionOfBestMap(size_t max_bytes, int threads) {
+  // What `make` makes of the variant of most interest; empty where its files are not valid.
+  template <typename Make>
+  std::string SectionOfBest(const char* what, const Make& make) {
     const size_t index = DetailedVariants(page_).front();
     const PageVariant& variant = page_.variants[index];
-    if (variant.kind != VariantKind::kMap) return "";
-    const Sequence& sequence = page_.sequences[variant.sequence].sequence;
-    const std::string title = folders_.size() == 1 ? "Map" : "Map of " + variant.name;
     try {
-      std::string section =
-          MapSection(title, folders_[index], sequence, images_(sequence), max_bytes, threads);
-      if (section.empty()) {
-        page_.notes.emplace_back("For lack of room the map from above is left out.");
-      }
-      return section;
+      return make(variant, folders_[index], page_.sequences[variant.sequence].sequence);
     } catch (const InputError& error) {
-      page_.problems.push_back(
-          Utf8(fmt::format("the map from above cannot be shown: {}", error.what())));
-      return "";
-    }
-  }
-
-  std::string SectionOfBoxes(size_t max_bytes, int threads) {
-    const size_t index = DetailedVariants(page_).front();
-    const Sequence& sequence = page_.sequences[page_.variants[index].sequence].sequence;
-    try {
-      return BoxesSection(folders_[index], sequence, images_(sequence), max_bytes, threads);
-    } catch (const InputError& error) {
-      page_.problems.push_back(
-          Utf8(fmt::format("the boxes of objects cannot be shown: {}", error.what())));
+      page_.problems.push_back(Utf8(fmt::format("{} cannot be shown: {}", what, error.what())));
       return "";
     }
   }

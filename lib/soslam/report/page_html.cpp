@@ -72,6 +72,15 @@ std::string HtmlText(const std::string& text) {
   return Escaped(Escaped(Escaped(escaped, '>', "&gt;"), '"', "&quot;"), '\'', "&#39;");
 }
 
+std::string Faint(const std::string& text) {
+  return fmt::format("<p class=\"faint\">{}</p>\n", HtmlText(text));
+}
+
+std::string Section(const std::string& id, const std::string& title, const std::string& content) {
+  return fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n{}</section>\n", HtmlText(id),
+                     HtmlText(title), content);
+}
+
 std::string HtmlTable(const Table& table, const std::vector<size_t>& indices) {
   std::string html = fmt::format("<div class=\"scroll {}\"><table>\n<thead><tr>", table.name);
   for (const std::string& name : table.header) html += fmt::format("<th>{}</th>", HtmlText(name));

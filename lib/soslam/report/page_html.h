@@ -41,6 +41,12 @@ using NamesByKey = nlohmann::ordered_map<std::string, std::vector<std::string>>;
 // Text escaped for HTML, also within quotes.
 std::string HtmlText(const std::string& text);
 
+// A paragraph of small letters, escaped.
+std::string Faint(const std::string& text);
+
+// A section; `content` is HTML.
+std::string Section(const std::string& id, const std::string& title, const std::string& content);
+
 // A table of class table.name with its header and rows; each row's index, if there are any, becomes
 // its data-index.
 std::string HtmlTable(const Table& table, const std::vector<size_t>& indices = {});

@@ -67,8 +67,39 @@ PageSelection SelectForPage(const Sequence& sequence, const std::set<int>& shown
   return selection;
 }
 
+namespace {
+
+using nlohmann::json;
+
+// Estimates are compared with the cuboid around the object.
+Landmark AsCuboid(Landmark landmark) {
+  landmark.shape_exponents = kCuboidExponent;
+  return landmark;
+}
+
+json PageObject(const Object& object, const json& segment) {
+  const auto& truth = object.ground_truth;
+  return {{"id", object.id},
+          {"label", object.label},
+          {"labels", LabelInWords(object)},
+          {"segment", segment},
+          {"plane", object.plane_index == kNoPlane ? json() : json(object.plane_index)},
+          {"truth", truth ? PageLandmark(AsCuboid(truth->landmark_in_world)) : json()}};
+}
+
+json PageDetection(const Sequence& sequence, const Detection& detection,
+                   const PageSelection& selection) {
+  const auto truth = TrueLandmarkInCamera(sequence, detection);
+  const Box& box = detection.box;
+  return {{"frame", selection.PlaceOfFrame(detection.frame_index)},
+          {"object", detection.object_index},
+          {"box", PagePixels({{box.x_min, box.y_min}, {box.x_max, box.y_max}})},
+          {"truth", truth ? PageOutline(sequence.CameraOf(detection), AsCuboid(*truth)) : json()}};
+}
+
+}  // namespace
+
 nlohmann::json PageSequence(const Sequence& sequence, const PageSelection& selection) {
-  using nlohmann::json;
   const PlaneGrids grids = GridsOfSequence(sequence);
   json page = {{"counts",
                 {{"frames", sequence.frames.size()},
@@ -102,32 +133,13 @@ nlohmann::json PageSequence(const Sequence& sequence, const PageSelection& selec
         sequence, index, grids,
         [&](const Detection& detection) { return CameraAbovePlane(sequence, detection); });
   }
-  // Estimates are compared with the cuboid around the object.
-  const auto as_cuboid = [](Landmark landmark) {
-    landmark.shape_exponents = kCuboidExponent;
-    return landmark;
-  };
   const std::vector<std::optional<int>> segments = SegmentsOfObjects(sequence);
   for (size_t i = 0; i < segments.size(); ++i) {
-    const Object& object = sequence.objects[i];
-    const auto& truth = object.ground_truth;
-    page["objects"].push_back(
-        {{"id", object.id},
-         {"label", object.label},
-         {"labels", LabelInWords(object)},
-         {"segment", segments[i] ? json(place_of_segment.at(*segments[i])) : json()},
-         {"plane", object.plane_index == kNoPlane ? json() : json(object.plane_index)},
-         {"truth", truth ? PageLandmark(as_cuboid(truth->landmark_in_world)) : json()}});
+    page["objects"].push_back(PageObject(
+        sequence.objects[i], segments[i] ? json(place_of_segment.at(*segments[i])) : json()));
   }
   for (const int index : selection.detections) {
-    const Detection& detection = sequence.detections[index];
-    const auto truth = TrueLandmarkInCamera(sequence, detection);
-    const Box& box = detection.box;
-    page["detections"].push_back(
-        {{"frame", selection.PlaceOfFrame(detection.frame_index)},
-         {"object", detection.object_index},
-         {"box", PagePixels({{box.x_min, box.y_min}, {box.x_max, box.y_max}})},
-         {"truth", truth ? PageOutline(sequence.CameraOf(detection), as_cuboid(*truth)) : json()}});
+    page["detections"].push_back(PageDetection(sequence, sequence.detections[index], selection));
   }
   return page;
 }

@@ -41,13 +41,20 @@ std::string ListCounts(const std::map<std::string, Count>& counts) {
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
-std::string Faint(const std::string& text) {
-  return fmt::format("<p class=\"faint\">{}</p>\n", HtmlText(text));
-}
-
-std::string Section(const std::string& id, const std::string& title, const std::string& content) {
-  return fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n{}</section>\n", HtmlText(id),
-                     HtmlText(title), content);
+// Adds a column, unless there is no value. With `marks_best`, values that look equal to the best
+// are bold.
+void AddColumn(const std::string& title, const Metric& metric,
+               const std::vector<std::optional<double>>& values, bool marks_best, Table* table) {
+  std::optional<double> best;
+  for (const std::optional<double>& value : values) {
+    if (value && (!best || metric.IsBetter(*value, *best))) best = value;
+  }
+  if (!best) return;
+  table->header.push_back(title);
+  for (size_t i = 0; i < values.size(); ++i) {
+    const std::string text = metric.Text(values[i], kDash);
+    table->rows[i].emplace_back(text, marks_best && text == metric.Text(best));
+  }
 }
 
 // The numbers of all variants, or of those of a kind. Empty where there is nothing that any of them
@@ -69,19 +76,10 @@ std::string MetricsTable(const DatasetPage& page, const std::optional<VariantKin
       table.rows.back().emplace_back(std::to_string(count));
     }
   }
-  // Adds a column, unless no variant has a value. Values that look equal to the best are bold, too.
   const auto add = [&](const std::string& title, const Metric& metric, const auto& value_of) {
-    std::optional<double> best;
-    for (const PageVariant* variant : variants) {
-      const std::optional<double> value = value_of(variant->metrics);
-      if (value && (!best || metric.IsBetter(*value, *best))) best = value;
-    }
-    if (!best) return;
-    table.header.push_back(title);
-    for (size_t i = 0; i < variants.size(); ++i) {
-      const std::string text = metric.Text(value_of(variants[i]->metrics), kDash);
-      table.rows[i].emplace_back(text, text == metric.Text(best));
-    }
+    std::vector<std::optional<double>> values;
+    for (const PageVariant* variant : variants) values.push_back(value_of(variant->metrics));
+    AddColumn(title, metric, values, /*marks_best=*/true, &table);
   };
   for (const ObjectMetric& metric : kMeanMetrics) {
     add(HeaderOnPage(metric), metric,
@@ -195,15 +193,10 @@ std::string ObjectsTable(const Sequence& sequence, const PageVariant& variant,
     table.rows.push_back({ObjectName(object.label, object.id), std::to_string(observations)});
     indices.push_back(index);
   }
-  // Adds a column, unless no object has a value.
   const auto add = [&](const Metric& metric, const auto& value_of) {
     std::vector<std::optional<double>> values;
     for (const Row& row : rows) values.push_back(value_of(row));
-    if (std::ranges::none_of(values, &std::optional<double>::has_value)) return;
-    table.header.push_back(HeaderOnPage(metric));
-    for (size_t i = 0; i < values.size(); ++i) {
-      table.rows[i].emplace_back(metric.Text(values[i], kDash));
-    }
+    AddColumn(HeaderOnPage(metric), metric, values, /*marks_best=*/false, &table);
   };
   for (const ObjectMetric& metric : kObjectMetrics) {
     if (!has_true_objects) continue;

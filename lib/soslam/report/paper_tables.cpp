@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
-#include <set>
 
 #include "soslam/artefact/json_file.h"
 #include "soslam/evaluation/statistics.h"
@@ -95,20 +94,13 @@ std::vector<Cell> MeasuredRow(const std::string& dataset, const std::string& kin
     objects = std::max(objects, mean->objects);
     if (!best || layout.metric.IsBetter(mean->mean, *best)) best = mean->mean;
   }
-  std::set<int> observations;
-  std::string variant_with_most;
-  for (size_t i = 0; i < means.size(); ++i) {
-    if (!means[i]) continue;
-    if (observations.empty() || means[i]->observations > *observations.rbegin()) {
-      variant_with_most = layout.variants[i];
-    }
-    observations.insert(means[i]->observations);
-  }
-  std::string most = kNoValue;
-  if (!observations.empty() && *observations.rbegin() != 0) {
-    most = std::to_string(*observations.rbegin());
-    if (observations.size() > 1) most += fmt::format(" ({})", variant_with_most);
-  }
+  const auto observations_of = [](const auto& mean) { return mean ? mean->observations : 0; };
+  const auto with_most = std::ranges::max_element(means, {}, observations_of);
+  const int observations = observations_of(*with_most);
+  std::string most = observations == 0 ? kNoValue : std::to_string(observations);
+  const bool are_equal = std::ranges::all_of(
+      means, [&](const auto& mean) { return !mean || mean->observations == observations; });
+  if (!are_equal) most += fmt::format(" ({})", layout.variants[with_most - means.begin()]);
   std::vector<Cell> row = {dataset, kind, FormatMarks(facts, objects), std::to_string(objects),
                            most};
   for (const auto& mean : means) {

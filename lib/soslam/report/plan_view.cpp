@@ -98,6 +98,8 @@ struct Screen {
   Eigen::Vector2d top_left = Eigen::Vector2d::Zero();
   double width = 0.0, height = 0.0;
 
+  // Length of the scale bar in the world.
+  double Bar() const { return RoundLength(0.25 * width / scale); }
   Eigen::Vector2d Place(const Eigen::Vector2d& point) const {
     return {scale * (point.x() - top_left.x()), scale * (top_left.y() - point.y())};
   }
@@ -150,13 +152,12 @@ std::string GridLines(const Screen& screen) {
 }
 
 std::string ScaleBar(const PlanView& plan, const Screen& screen, const PlanFormat& format) {
-  const double length = RoundLength(0.25 * screen.width / screen.scale);
   const double x = format.font, y = screen.height - 0.8 * format.font;
   return fmt::format(
       "<path class=\"bar-line\" d=\"M{:.1f} {:.1f}v-6m0 3h{:.1f}m0 -3v6\"/>\n"
       "<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
-      x, y + 3.0, screen.scale * length, x + 5.0, y - 5.0,
-      HtmlText(LengthInWords(length, plan.in_metres)));
+      x, y + 3.0, screen.scale * screen.Bar(), x + 5.0, y - 5.0,
+      HtmlText(LengthInWords(screen.Bar(), plan.in_metres)));
 }
 
 std::string PathOfCameras(const PlanView& plan, const Screen& screen) {
@@ -261,9 +262,9 @@ struct CardLayout {
 CardLayout LayOut(const PlanView& plan, const Screen& screen, const PlanFormat& format,
                   double picture_height) {
   constexpr double kWidthOfLetter = 0.58, kGap = 3.0;
-  const double bar = screen.scale * RoundLength(0.25 * screen.width / screen.scale);
-  std::vector<Rectangle> footprints, taken = {{0.0, screen.height - 3.0 * format.font,
-                                               bar + 2.0 * format.font, 3.0 * format.font}};
+  std::vector<Rectangle> footprints,
+      taken = {{0.0, screen.height - 3.0 * format.font,
+                screen.scale * screen.Bar() + 2.0 * format.font, 3.0 * format.font}};
   for (const PlanObject& object : plan.objects) {
     footprints.push_back(AsRectangle(FindBounds(screen.Place(object.footprint))));
   }
