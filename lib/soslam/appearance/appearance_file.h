@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <filesystem>
-#include <string>
 #include <vector>
 
 #include "soslam/artefact/json_file.h"

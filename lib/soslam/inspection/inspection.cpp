@@ -6,12 +6,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 
 #include "soslam/artefact/hdf5_artefact.h"
 #include "soslam/artefact/json_file.h"
 #include "soslam/artefact/kinds.h"
 #include "soslam/base/error.h"
-#include "soslam/base/table.h"
 #include "soslam/base/text.h"
 
 namespace soslam {

@@ -3,11 +3,9 @@
 
 #include <filesystem>
 #include <limits>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "soslam/artefact/hdf5_file.h"

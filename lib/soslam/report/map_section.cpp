@@ -7,7 +7,6 @@
 
 #include "soslam/artefact/files.h"
 #include "soslam/artefact/json_file.h"
-#include "soslam/base/parallel.h"
 #include "soslam/base/paths.h"
 #include "soslam/base/text.h"
 #include "soslam/inspection/doubts.h"

@@ -7,7 +7,6 @@
 #include <set>
 #include <vector>
 
-#include "soslam/artefact/files.h"
 #include "soslam/evaluation/result_checks.h"
 #include "soslam/evaluation/statistics.h"
 #include "soslam/ground/ground_checks.h"

@@ -13,7 +13,6 @@
 #include "soslam/inspection/doubts.h"
 #include "soslam/model/associations.h"
 #include "soslam/model/reasons.h"
-#include "soslam/report/page_html.h"
 #include "soslam/report/page_parts.h"
 
 namespace soslam {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "soslam/geometry/landmark.h"
-#include "soslam/inspection/projection.h"
 
 namespace soslam {
 

@@ -59,13 +59,13 @@ void WriteModels(const std::vector<TrainingModel>& models, Hdf5File* file) {
   file->WriteMatrix("/difference_from_turned", turned);
 }
 
-// Renders crops and writes their features in batches, which limit what is in memory. Adds views to
-// the sheets of their groups.
+// Renders crops and writes their features in batches, which limit what is in memory. Adds pictures
+// of views to the sheets of their groups.
 void WriteCrops(const std::vector<TrainingModel>& models, const std::vector<TrainingGroup>& groups,
                 const TrainingCropsOptions& options, std::vector<InnerLayers>* networks,
-                std::vector<ViewSheet>* sheets, Hdf5File* file) {
+                std::vector<std::vector<cv::Mat>>* sheets, Hdf5File* file) {
   constexpr int kBatch = 256;
-  const TrainingViews source(models, groups, options);
+  constexpr size_t kPictures = 40;  // of a group
   Progress progress("crops", options.crops);
   std::vector<int> model_of_crop, look_of_crop;
   cv::Mat facts;  // azimuth, log ratios, elevation, log aspect, visible share
@@ -75,7 +75,7 @@ void WriteCrops(const std::vector<TrainingModel>& models, const std::vector<Trai
     const size_t workers = networks->size();
     ParallelFor(workers, static_cast<int>(workers), [&](size_t worker) {
       for (size_t i = worker; i < views.size(); i += workers) {
-        views[i] = source.At(begin + static_cast<int>(i));
+        views[i] = NumberedView(models, groups, options, begin + static_cast<int>(i));
         features[i] =
             StoredFeatures(views[i].view.crop.image, options.layers, &(*networks)[worker]);
         progress.Step();
@@ -91,7 +91,8 @@ void WriteCrops(const std::vector<TrainingModel>& models, const std::vector<Trai
                    direction.elevation, direction.log_aspect, view.visible_share)));
       look_of_crop.push_back(static_cast<int>(model_of_crop.size()) / options.views);
       model_of_crop.push_back(model);
-      (*sheets)[models[model].group].Add(view);
+      std::vector<cv::Mat>& sheet = (*sheets)[models[model].group];
+      if (sheet.size() < kPictures) sheet.push_back(PictureOf(view));
     }
   }
   file->WriteNumber("/features", "quantum", kQuantum);
@@ -129,14 +130,14 @@ void RunTrainingCrops(const TrainingCropsOptions& options, const StageFiles& fil
   file.WriteNumber("/", "side_px", options.side);
   file.WriteNumber("/", "rgb_0_1", options.is_rgb ? 1.0 : 0.0);
   WriteModels(models, &file);
-  std::vector<ViewSheet> sheets(groups.size());
+  std::vector<std::vector<cv::Mat>> sheets(groups.size());
   WriteCrops(models, groups, options, &networks, &sheets, &file);
   file.Close();
   if (options.sheets.empty()) return;
   const std::filesystem::path folder = options.sheets;
   std::filesystem::create_directories(folder);
   for (size_t i = 0; i < sheets.size(); ++i) {
-    const cv::Mat sheet = sheets[i].Picture();
+    const cv::Mat sheet = SheetOf(sheets[i]);
     if (!sheet.empty()) cv::imwrite((folder / (groups[i].name + ".png")).string(), sheet);
   }
 }

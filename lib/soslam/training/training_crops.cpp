@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
-#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -16,11 +15,10 @@
 #include "soslam/base/text.h"
 
 namespace soslam {
-namespace {
-
 namespace fs = std::filesystem;
 
-std::vector<fs::path> LibrariesIn(const fs::path& folder) {
+std::vector<TrainingModel> ReadTrainingModels(const fs::path& folder,
+                                              const std::vector<TrainingGroup>& groups) {
   std::vector<fs::path> libraries;
   std::error_code not_listed;
   for (const auto& item : fs::directory_iterator(folder, not_listed)) {
@@ -30,14 +28,6 @@ std::vector<fs::path> LibrariesIn(const fs::path& folder) {
   if (libraries.empty()) {
     throw InputError(fmt::format("{}: has no folder with {}", folder.string(), kCatalogueFile));
   }
-  return libraries;
-}
-
-}  // namespace
-
-std::vector<TrainingModel> ReadTrainingModels(const fs::path& folder,
-                                              const std::vector<TrainingGroup>& groups) {
-  const std::vector<fs::path> libraries = LibrariesIn(folder);
   std::vector<TrainingModel> models;
   for (size_t i = 0; i < groups.size(); ++i) {
     for (const auto& [kind, count] : groups[i].parametric) {
@@ -89,40 +79,42 @@ std::vector<float> DifferenceFromTurned(const FurnitureModel& model) {
   return differences;
 }
 
-TrainingViews::TrainingViews(const std::vector<TrainingModel>& models,
-                             const std::vector<TrainingGroup>& groups,
-                             const TrainingCropsOptions& options)
-    : models_(models), groups_(groups), options_(options), of_group_(groups.size()) {
-  for (size_t i = 0; i < models.size(); ++i) {
-    of_group_[models[i].group].push_back(static_cast<int>(i));
-    all_.push_back(&models[i].model);
-  }
-}
-
-TrainingView TrainingViews::At(int number) const {
+TrainingView NumberedView(const std::vector<TrainingModel>& models,
+                          const std::vector<TrainingGroup>& groups,
+                          const TrainingCropsOptions& options, int number) {
   constexpr int kTries = 200;
-  const auto seed = static_cast<std::uint64_t>(options_.seed) * 1000003ULL;
-  Random look(seed + static_cast<std::uint64_t>(number / options_.views));
+  const auto seed = static_cast<std::uint64_t>(options.seed) * 1000003ULL;
+  Random look(seed + static_cast<std::uint64_t>(number / options.views));
   Random random(seed + static_cast<std::uint64_t>(number) + (1ULL << 40));
   double place = look.Uniform(0.0, 1.0);
-  size_t group = 0;
-  while (group + 1 < of_group_.size() && place > groups_[group].share) {
-    place -= groups_[group++].share;
+  int group = 0;
+  while (group + 1 < std::ssize(groups) && place > groups[group].share) {
+    place -= groups[group++].share;
   }
-  const int index = of_group_[group][look.Index(of_group_[group].size())];
-  const TrainingModel& model = models_[index];
+  std::vector<const FurnitureModel*> all;
+  std::vector<int> of_group;  // indices
+  for (const TrainingModel& model : models) {
+    if (model.group == group) of_group.push_back(static_cast<int>(all.size()));
+    all.push_back(&model.model);
+  }
+  const int index = of_group[look.Index(of_group.size())];
   for (int tries = 0; tries < kTries; ++tries) {
-    if (auto view = RandomView(model.model, all_, options_.side, look, &random)) {
+    if (auto view = RandomView(*all[index], all, options.side, look, &random)) {
       return {index, std::move(*view)};
     }
   }
   throw InputError(fmt::format(
       "{}: cannot be seen in any of {} views; expected a model of triangles that have areas",
-      model.entry.mesh.string(), kTries));
+      models[index].entry.mesh.string(), kTries));
 }
 
-void ViewSheet::Add(const FurnitureView& view) {
-  if (pictures_.size() == kPictures) return;
+namespace {
+
+constexpr int kPictureSide = 140;  // pixels
+
+}  // namespace
+
+cv::Mat PictureOf(const FurnitureView& view) {
   cv::Mat picture = view.crop.image.clone();
   const cv::Point middle(picture.cols / 2, picture.rows / 2);
   const double length = 0.35 * picture.cols;
@@ -130,15 +122,17 @@ void ViewSheet::Add(const FurnitureView& view) {
                         cvRound(length * std::cos(view.azimuth) *
                                 std::sin(std::max(0.25, view.crop.direction.elevation))));
   cv::arrowedLine(picture, middle, middle + front, {0, 0, 255}, 2);
-  cv::resize(picture, picture, {kSide, kSide}, 0, 0, cv::INTER_AREA);
-  pictures_.push_back(picture);
+  cv::resize(picture, picture, {kPictureSide, kPictureSide}, 0, 0, cv::INTER_AREA);
+  return picture;
 }
 
-cv::Mat ViewSheet::Picture() const {
-  const int rows = static_cast<int>(pictures_.size()) / kInRow;
-  cv::Mat sheet(rows * kSide, kInRow * kSide, CV_8UC3);
+cv::Mat SheetOf(const std::vector<cv::Mat>& pictures) {
+  constexpr int kInRow = 8;
+  const int rows = static_cast<int>(pictures.size()) / kInRow;
+  cv::Mat sheet(rows * kPictureSide, kInRow * kPictureSide, CV_8UC3);
   for (int i = 0; i < rows * kInRow; ++i) {
-    pictures_[i].copyTo(sheet({i % kInRow * kSide, i / kInRow * kSide, kSide, kSide}));
+    pictures[i].copyTo(
+        sheet({i % kInRow * kPictureSide, i / kInRow * kPictureSide, kPictureSide, kPictureSide}));
   }
   return sheet;
 }

@@ -88,36 +88,17 @@ struct TrainingView {
   FurnitureView view;
 };
 
-// Random views of the models of groups, which have at least one each, among each other. Views are
-// numbered; each depends only on its number and the options. The arguments must outlive this.
-class TrainingViews {
- public:
-  TrainingViews(const std::vector<TrainingModel>& models, const std::vector<TrainingGroup>& groups,
-                const TrainingCropsOptions& options);
+// A random view of one of the models, by the shares of the groups, each of which has models, among
+// all of them. Views are numbered: each depends only on its number and the options. Throws
+// InputError for a model that cannot be seen.
+TrainingView NumberedView(const std::vector<TrainingModel>& models,
+                          const std::vector<TrainingGroup>& groups,
+                          const TrainingCropsOptions& options, int number);
 
-  // Thread-safe. Throws InputError for a model that cannot be seen.
-  TrainingView At(int number) const;
+// The crop of a view in small, with an arrow where the front points.
+cv::Mat PictureOf(const FurnitureView& view);
 
- private:
-  const std::vector<TrainingModel>& models_;
-  const std::vector<TrainingGroup>& groups_;
-  const TrainingCropsOptions& options_;
-  std::vector<std::vector<int>> of_group_;  // indices of models
-  std::vector<const FurnitureModel*> all_;
-};
-
-// A picture of the first views that are added, in whole rows, with arrows where the fronts point.
-class ViewSheet {
- public:
-  void Add(const FurnitureView& view);
-  cv::Mat Picture() const;  // empty without a whole row
-
- private:
-  static constexpr size_t kPictures = 40;
-  static constexpr int kInRow = 8;
-  static constexpr int kSide = 140;  // pixels of a view
-
-  std::vector<cv::Mat> pictures_;
-};
+// Whole rows of such pictures; empty without one.
+cv::Mat SheetOf(const std::vector<cv::Mat>& pictures);
 
 }  // namespace soslam
