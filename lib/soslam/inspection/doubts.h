@@ -34,7 +34,8 @@ std::vector<std::string> DoubtsOfMap(const std::filesystem::path& folder, const 
                                      const Sequence& sequence);
 
 // Why a map of photos should not be trusted, in words: up or scale are wrong as probably as not, or
-// most of them have no place in it. Empty where nothing says so. `world`: null where it is given.
+// most of them have no place in it. Empty where nothing says so. `world`: null where up and scale
+// are given.
 std::string DistrustOfMap(const WorldReport* world, const Sequence& sequence);
 
 }  // namespace soslam

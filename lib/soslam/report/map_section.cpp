@@ -90,8 +90,8 @@ class MapSectionBuilder {
     }
   }
 
-  // Pictures are left out where the section would be too large, first those of what is not placed;
-  // empty where that does not suffice.
+  // The section. Where it would be too large, pictures are left out, first those of what is not
+  // placed; empty where that does not suffice.
   std::string Html(const std::string& title, size_t max_bytes, int threads) {
     std::vector<Entry> placed = PlacedEntries();
     NotPlacedEntries not_placed;

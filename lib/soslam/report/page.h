@@ -77,8 +77,8 @@ std::string CountsOfDataset(const DatasetPage& page);
 std::string DatasetTables(const DatasetPage& page);
 std::string OverviewTables(const std::vector<DatasetPage>& pages);
 
-// The data for the scripts of a page; for programs those of the page of all datasets, with each
-// variant's metrics but without their rows.
+// The data for the scripts of a dataset's page, and those of the page of all datasets for programs:
+// each variant's metrics without their rows.
 nlohmann::json MakePageData(const DatasetPage& page);
 nlohmann::json OverviewData(const std::vector<DatasetPage>& pages);
 

@@ -330,7 +330,7 @@ std::vector<size_t> DetailedVariants(const DatasetPage& page) {
   std::ranges::reverse(names);
   std::ranges::stable_sort(detailed, {}, [&](size_t index) {
     const PageVariant& variant = page.variants[index];
-    // A and R at the end stand for evidence from pictures beside that of the variant without them.
+    // Names that end in A or R are of variants with evidence from pictures as well.
     const size_t end = variant.name.find_last_not_of("AR") + 1;
     const auto known = std::ranges::find(names, variant.name.substr(0, end));
     return std::tuple(variant.kind, known - names.begin(), end == variant.name.size());
@@ -364,7 +364,7 @@ std::string DatasetTables(const DatasetPage& page) {
   if (!rejected.empty()) counts += "; not used: " + ListCounts(ReasonsInWords(rejected));
   std::string notes;
   for (const std::string& note : page.notes) notes += Faint(note);
-  // Where findings are below a map that may need all of the screen, and may be of other variants.
+  // A map may need all of the screen; the findings below it may be of other variants.
   std::string link;
   if (!page.findings.empty() && !page.map_section.empty()) {
     std::vector<std::string> places;

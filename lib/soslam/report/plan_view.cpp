@@ -121,7 +121,7 @@ Screen FitScreen(const PlanView& plan, const PlanFormat& format) {
   Screen screen;
   screen.scale = (room.array() / size.array()).minCoeff();
   screen.width = format.width;
-  // Not much flatter than a strip, so that there is room for names.
+  // No flatter than this, so that there is room for names.
   screen.height = std::max(screen.scale * size.y() + 2.0 * format.margin, 0.35 * format.width);
   screen.top_left = bounds.center() + Eigen::Vector2d(-0.5 * screen.width / screen.scale,
                                                       0.5 * screen.height / screen.scale);

@@ -79,7 +79,7 @@ std::string MakeStamp(const ColmapJob& job, const std::string& version) {
   return text;
 }
 
-// Progress up to a count that lines state.
+// Progress of a program by the lines that it prints.
 class Follower {
  public:
   Follower(const std::string& what, int count) : progress_(what, count), count_(count) {}

@@ -41,7 +41,7 @@ std::vector<std::optional<int>> RowsOfImages(const std::vector<SourceFrame>& fra
   return rows;
 }
 
-// Throws InputError for boxes of soslam-detect, which name their images, of fewer or more images.
+// Throws InputError for a file of soslam-detect, which lists its images, of more or fewer images.
 void CheckCountOfImages(const fs::path& path, size_t expected) {
   std::ifstream stream(path);
   size_t images = 0;

@@ -23,15 +23,15 @@ namespace soslam {
 // Edge maps of a frame. Thread-safe. Throws InputError when the frame is missing, or its maps are
 // not of its camera's size, as those of other images.
 using EdgeSource = std::function<EdgeMaps(const Frame&)>;
-// Those in file "edges". Both arguments must outlive what is returned.
+// The edge maps in file "edges". Both arguments must outlive what is returned.
 EdgeSource EdgesOfSequence(const Sequence& sequence, const StageFiles& files);
 
 // Throws SettingsError if points are to be used and no file "points" is given.
 void CheckHasPoints(const PointOptions& options, const StageFiles& files);
 
-// The file "points". Throws InputError if the sequence has none of the frames that see them: points
-// of another dataset, or of other images, would be no evidence in silence. None at all is what
-// soslam-track has warned of.
+// The file "points". Throws InputError if the frames of the sequence see none of them, as of points
+// of another dataset, which would silently be no evidence. A file without points is no error:
+// soslam-track has warned of it.
 std::vector<MapPoint> ReadCheckedPoints(const Sequence& sequence, const StageFiles& files);
 
 // Gives the detections the parts of file "appearance" that are asked for, and adds it to `inputs`.

@@ -123,9 +123,9 @@ double SumOfScores(const std::vector<NetworkDetection>& detections) {
 using DetectIn =
     std::function<AllDetections(const std::vector<fs::path>& images, ImageOrientation orientation)>;
 
-// The detections in `orientation`, which becomes the one that they were found in if it is kSurer.
-// Networks want upright images, but EXIF may be wrong, as where the camera looked down: they see
-// the images that it turns in both orientations, and the one in which they are surer of these
+// The detections in pixels of images in `orientation`; kSurer becomes the one that they were found
+// in. Networks want upright images, but EXIF may be wrong, as where the camera looked down: they
+// see the images that it turns in both orientations, and the one in which they are surer of these
 // together counts.
 AllDetections DetectInBoth(const std::vector<fs::path>& images, const DetectIn& detect,
                            BoxOrientation* orientation) {

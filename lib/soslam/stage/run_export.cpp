@@ -104,7 +104,7 @@ std::vector<World> ReadWorlds(const Sequence& sequence, const ExportOptions& opt
   return worlds;
 }
 
-// Median reprojection error of points from which poses are not those of their images.
+// Largest median reprojection error of points with which poses are those of their images.
 constexpr double kMaxMedianErrorPx = 4.0;
 
 bool HasImage(const World& world) {

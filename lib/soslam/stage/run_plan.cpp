@@ -82,7 +82,7 @@ FoundFiles FindFiles(const fs::path& dataset) {
     std::error_code ignored;  // a dangling link is no file
     if (!entry.is_regular_file(ignored)) continue;
     const fs::path extension = entry.path().extension();
-    // What is found in turned images tells up, as images do: the import does not read it.
+    // turns.json tells up, as images do; the import does not read it.
     const bool is_table =
         kTables.contains(extension.string()) && entry.path().filename() != "turns.json";
     (is_table ? found.tables : found.others)

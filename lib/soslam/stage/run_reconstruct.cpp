@@ -101,8 +101,8 @@ void CheckReplaceable(const fs::path& camera, bool camera_is_fixed) {
       camera.string()));
 }
 
-// Throws InputError unless the images, read so, have one size, that of a given camera, and unless
-// COLMAP, if it is to run, reads them so.
+// Throws InputError unless the images have one size in this orientation, that of a given camera,
+// and unless COLMAP, if it is to run, reads them in it.
 void CheckImages(const fs::path& dataset, const Given& given, ImageOrientation read_as,
                  bool has_model) {
   const std::string list = (dataset / "rgb.txt").string();
@@ -227,7 +227,8 @@ void CheckPoses(const Reconstruction& reconstruction, const Given& given) {
   }
 }
 
-// Gives a finished model points, if its own ones are seen in no image, as those of networks.
+// Adds points of tracked features to a finished model whose own points no image shows, as those of
+// networks.
 void AddTrackedPoints(const ColmapModel& model, const fs::path& folder, const fs::path& dataset,
                       const std::vector<ListedImage>& listed, ImageOrientation orientation,
                       int threads, Reconstruction* reconstruction, ArtefactInfo* info) {

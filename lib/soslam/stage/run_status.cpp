@@ -173,7 +173,7 @@ void RunStatus(const StatusOptions& options, const StageFiles& files, int /*thre
 
 namespace {
 
-// A finding of a stage's run and the variants that it concerns; of the settings: no variants.
+// A finding of a stage's run and the variants that it concerns; none for findings of the settings.
 struct Diagnosis {
   Finding finding;
   std::string stage;

@@ -157,9 +157,8 @@ Rigid3d CameraFromWorld(double azimuth, double elevation, double distance, doubl
   return {camera_from_world, -(camera_from_world * centre)};
 }
 
-// A square image and its focal length, seen so that a thing of this diagonal has so many pixels.
-Camera SquareCamera(int width, double pixels, double distance, double diagonal) {
-  const double middle = 0.5 * (width - 1), focal_px = pixels * distance / diagonal;
+Camera SquareCamera(int width, double focal_px) {
+  const double middle = 0.5 * (width - 1);
   return {width, width, focal_px, focal_px, middle, middle};
 }
 
@@ -174,19 +173,11 @@ std::pair<Camera, Rigid3d> RandomCamera(const Eigen::Vector3d& size, Random* loo
   const double pixels = std::exp(random->Uniform(std::log(45.0), std::log(280.0)));
   const Eigen::Vector3d aim = Eigen::Vector3d(0.0, 0.0, 0.5 * size.z()) +
                               0.1 * diagonal * random->Normals(1.0).cast<double>();
-  return {SquareCamera(static_cast<int>(1.6 * pixels) + 16, pixels, distance, diagonal),
+  return {SquareCamera(static_cast<int>(1.6 * pixels) + 16, pixels * distance / diagonal),
           CameraFromWorld(azimuth, elevation, distance, random->Normal(0.1), aim)};
 }
 
 constexpr int kOversampling = 2;
-
-Camera Oversampled(Camera camera) {
-  camera.width = camera.height = kOversampling * camera.width;
-  camera.fx *= kOversampling;
-  camera.fy *= kOversampling;
-  camera.cx = camera.cy = 0.5 * (camera.width - 1);
-  return camera;
-}
 
 // The box of what is seen of the target, in pixels of the image without oversampling.
 Box BoxOfTarget(const cv::Mat& numbers) {
@@ -320,7 +311,8 @@ std::optional<FurnitureView> RandomView(const FurnitureModel& target,
   const Eigen::Vector3d size = target.size.cwiseProduct(stretch).cast<double>();
   auto [camera, camera_from_world] = RandomCamera(size, &look, random);
   const int width = camera.width;
-  Rasteriser canvas(Oversampled(camera), camera_from_world);
+  Rasteriser canvas(SquareCamera(kOversampling * width, kOversampling * camera.fx),
+                    camera_from_world);
   const Lighting lighting = RandomLighting(&look);
   std::vector<PlacedModel> placed;
   placed.push_back({&target, Placed({0, 0}, 0.0, 0.0, stretch), RandomMaterials(target, &look)});
@@ -369,7 +361,7 @@ cv::Mat PlainView(const FurnitureModel& model, double azimuth, double elevation,
   const double diagonal = model.size.cast<double>().norm();
   const double distance = 3.0 * diagonal;
   Rasteriser canvas(
-      SquareCamera(side, 0.8 * side, distance, diagonal),
+      SquareCamera(side, 0.8 * side * distance / diagonal),
       CameraFromWorld(azimuth, elevation, distance, 0.0, {0.0, 0.0, 0.5 * model.size.z()}));
   canvas.colour.setTo(cv::Scalar::all(128.0));
   const Eigen::Vector3f towards =

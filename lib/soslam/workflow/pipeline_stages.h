@@ -25,7 +25,8 @@ struct StageOutput {
 struct StageInput {
   std::string argument;             // "landmarks"
   std::vector<std::string> makers;  // the first of these stages that has run writes it
-  // Settings of the reading stage, each of which asks for it with this value; none: always read.
+  // Settings of the reading stage with the values that ask for it, one of which suffices; none: it
+  // is always read.
   std::vector<std::pair<std::string, nlohmann::json>> asked_by = {};
   bool adds_maker = false;  // what asks for it makes its maker run, which 'stages' need not list
 };

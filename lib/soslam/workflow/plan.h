@@ -67,8 +67,8 @@ std::string InstancePath(const std::string& instance, const std::string& file);
 inline constexpr const char* kDatasetListing = "shared/dataset.txt";
 inline constexpr const char* kImagesListing = "shared/images.txt";
 
-// Corrections of the association by hand, in the results of the dataset. Where it is, association
-// reads it; its content is no part of a key, so that changed edits replace the result.
+// Corrections of the association by hand, in the results of the dataset. If it is there,
+// association reads it; its content is no part of a key, so that changed edits replace the result.
 inline constexpr const char* kEditsFile = "edits.json";
 
 // The stage runs needed by these variants of a dataset. Throws SettingsError as ReadVariant;
