@@ -91,9 +91,4 @@ Inspection InspectContents(const nlohmann::ordered_json& schema, const nlohmann:
 // attributes and data sets; data sets of the root are facts. Throws InputError.
 Inspection InspectContents(const Hdf5File& file);
 
-// Adds to the tables of landmarks.json or map.json what no field states: the yaws of landmarks, and
-// the standard deviations of their places, yaws and sizes.
-void AddDerivedColumns(const std::string& kind, const nlohmann::json& document,
-                       Inspection* inspection);
-
 }  // namespace soslam

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "soslam/inspection/projection.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
@@ -76,13 +77,12 @@ std::optional<LineSegment2> ProjectSegment(const Camera& camera, const LineSegme
 Grid GridAround(const Plane& plane, const std::vector<Eigen::Vector3d>& points) {
   const Rigid3d frame_from_plane = {UprightRotation(plane.normal, 0.0),
                                     -plane.offset * plane.normal};
-  Eigen::Array2d low = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity());
-  Eigen::Array2d high = -low;
+  Eigen::AlignedBox2d extent;
   for (const Eigen::Vector3d& point : points) {
-    const Eigen::Array2d place = (frame_from_plane.Inverse() * point).head<2>().array();
-    low = low.min(place - kGridMarginM);
-    high = high.max(place + kGridMarginM);
+    extent.extend((frame_from_plane.Inverse() * point).head<2>());
   }
+  Eigen::Array2d low = extent.min().array() - kGridMarginM;
+  Eigen::Array2d high = extent.max().array() + kGridMarginM;
   const double squares = (high - low).maxCoeff() / kGridSpacingM;
   const double spacing = kGridSpacingM * std::ceil(squares / kMaxGridLines);
   low = (low / spacing).floor() * spacing;

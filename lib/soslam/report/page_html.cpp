@@ -30,13 +30,7 @@ std::string Filled(std::string_view text, const std::map<std::string, std::strin
 
 std::string Escaped(const std::string& text, char what, std::string_view by) {
   std::string escaped;
-  for (const char c : text) {
-    if (c == what) {
-      escaped += by;
-    } else {
-      escaped += c;
-    }
-  }
+  for (const char c : text) escaped += c == what ? by : std::string_view(&c, 1);
   return escaped;
 }
 

@@ -37,9 +37,4 @@ ChosenFrames ChoosePhotos(const FrameOptions& options, const std::filesystem::pa
 // InputError as VideoReader, and when there are none.
 ChosenFrames ChooseFromVideo(const FrameOptions& options, const std::filesystem::path& path);
 
-// The text of a detections.csv of the chosen images, from the file `path` with the boxes of all
-// images, upright. Prints how many boxes there are. Throws InputError as ReadDetectionsCsv, when
-// there are none, and for a file of other images.
-std::string FrameBoxesText(const std::filesystem::path& path, const ChosenFrames& chosen);
-
 }  // namespace soslam

@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "soslam/base/error.h"
+#include "soslam/base/text.h"
 
 namespace soslam {
 namespace {
@@ -28,9 +29,8 @@ std::ifstream Open(const fs::path& path) {
 // The rest of a line without spaces at its ends.
 std::string Rest(std::istream& line) {
   std::string rest;
-  std::getline(line >> std::ws, rest);
-  while (!rest.empty() && std::isspace(static_cast<unsigned char>(rest.back()))) rest.pop_back();
-  return rest;
+  std::getline(line, rest);
+  return std::string(Trimmed(rest));
 }
 
 // Materials in a file of Wavefront's, by name.

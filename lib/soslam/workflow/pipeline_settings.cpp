@@ -22,6 +22,12 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+// A file of settings of stages.
+struct SettingsOfFile {
+  std::filesystem::path file;
+  nlohmann::json settings;
+};
+
 void CheckStageList(const json& stages, const std::string& file) {
   std::set<std::string> seen;
   if (!stages.is_array() || stages.empty()) {
@@ -165,6 +171,50 @@ StageOptions ResolveOptions(const json& merged, const std::string& file) {
   }
   for (const std::string& name : added) options[name] = resolve(*FindStage(name));
   return options;
+}
+
+// The conditions that a setting lacks to have an effect. None if it has one, or if its stage runs
+// only in other variants, which list it in 'stages'.
+OptionVisitor::Conditions FindUnmetConditions(const PipelineStage& stage, const std::string& name,
+                                              const StageOptions& options) {
+  const std::vector<OptionRow> rows = stage.rows();
+  const auto of_stage = options.find(stage.name);
+  if (of_stage != options.end()) return UnmetConditions(rows, of_stage->second, name);
+  if (stage.asked_by == nullptr || name == stage.asked_by) return {};
+  const auto unmet = UnmetConditions(rows, stage.resolve(json::object(), stage.name), name);
+  if (!unmet.empty()) return unmet;
+  std::vector<std::string> asking =
+      std::ranges::find(rows, stage.asked_by, &OptionRow::name)->choices;
+  std::erase(asking, "given");
+  return {{stage.asked_by, asking}};
+}
+
+// Adds the findings on settings without effect of a variant's own file, or of the file of the
+// dataset, to those of the variant. A variant is for all datasets: one may rule out what it has for
+// others. The settings of a dataset are for all variants, unless they rule out each other. `alone`
+// are the options without the dataset's file, or with that file only.
+void CheckUnusedSettings(const SettingsOfFile& layer, const StageOptions& alone, bool is_of_dataset,
+                         VariantSettings* settings) {
+  for (const auto& section : layer.settings.items()) {
+    const std::string& key = section.key();
+    const json& values = section.value();
+    const PipelineStage* stage = FindStage(key);
+    if (stage == nullptr || !values.is_object()) continue;
+    for (const auto& [name, value] : values.items()) {
+      const auto unmet = FindUnmetConditions(*stage, name, settings->options);
+      if (value.is_null() || unmet.empty()) continue;
+      const Finding finding =
+          SettingWithoutEffect(layer.file.string() + ": " + key, name, value, unmet);
+      const bool is_said = !is_of_dataset || std::ranges::any_of(unmet, [&](const auto& condition) {
+        return values.contains(condition.option);
+      });
+      if (is_said && !FindUnmetConditions(*stage, name, alone).empty()) {
+        settings->findings.push_back(finding);
+      } else if (is_of_dataset && !settings->options.contains(key)) {
+        settings->for_others.push_back(finding);
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
 #include <stdexcept>
 
 #include "soslam/base/error.h"
 #include "soslam/base/paths.h"
+#include "soslam/base/text.h"
 #include "soslam/system/hash.h"
 #include "soslam/workflow/pipeline_settings.h"
 #include "soslam/workflow/pipeline_stages.h"
@@ -48,6 +50,28 @@ StageInstance MakeInstance(const std::string& stage, const VariantSettings& sett
   const json identity = {{"stage", stage}, {"settings", instance.settings}, {"inputs", inputs}};
   instance.key = Sha256OfText(identity.dump()).substr(0, kKeyDigits);
   return instance;
+}
+
+// Files in pipelines/datasets that are not read because of the case or the ending of their names,
+// where the dataset has no settings: Room.json, room.json.txt.
+std::vector<Finding> CheckNamesOfSettings(const std::filesystem::path& pipelines,
+                                          const std::string& dataset) {
+  const std::filesystem::path expected = pipelines / "datasets" / (dataset + ".json");
+  if (Exists(expected)) return {};
+  const std::set<std::string> endings = {".json", ".jsonc", ".json5", ".txt"};
+  std::vector<Finding> findings;
+  std::error_code error;  // there are no settings of datasets at all
+  for (const auto& entry : std::filesystem::directory_iterator(expected.parent_path(), error)) {
+    std::filesystem::path name = LowerCase(entry.path().filename().string());
+    while (endings.contains(name.extension().string())) name = name.stem();
+    if (name != LowerCase(dataset)) continue;
+    findings.push_back({"name_of_settings", Severity::kWarning,
+                        fmt::format("{} is not read", entry.path().string()),
+                        fmt::format("the settings of dataset {} in {}", dataset, expected.string()),
+                        "another case or ending of the name; some systems hide endings",
+                        "rename the file"});
+  }
+  return findings;
 }
 
 // True if some variant of the pipelines runs the stage of a setting of the dataset, or cannot be
