@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <opencv2/core/types.hpp>
-#include <string>
 #include <vector>
 
 #include "soslam/dataset/photo_folder.h"
