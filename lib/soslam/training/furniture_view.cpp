@@ -272,8 +272,8 @@ void DrawOthers(const std::vector<const FurnitureModel*>& others, const Eigen::V
         away * Eigen::Vector2d(std::cos(direction), std::sin(direction));
     if ((position - camera_centre.head<2>()).norm() < 0.7 * own_size) continue;
     const double height = random->Chance(0.25) ? random->Uniform(0.0, size.z()) : 0.0;
-    placed->push_back({&other,
-                       Placed(position, height, random->Uniform(-kPi, kPi), RandomStretch(random)),
+    const Eigen::Vector3f stretch = RandomStretch(random);
+    placed->push_back({&other, Placed(position, height, random->Uniform(-kPi, kPi), stretch),
                        RandomMaterials(other, random)});
     canvas->Draw(placed->back(), lighting, 2);
   }
