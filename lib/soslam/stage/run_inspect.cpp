@@ -161,13 +161,12 @@ std::string RunInspect(const InspectRequest& request, bool is_coloured) {
     }
   }
   if (request.image) {
-    const cv::Mat picture = DrawPicture(request);
     if (request.image->extension() != ".png") {
       throw SettingsError(
           fmt::format("--image {}: expected a name that ends in .png", request.image->string()));
     }
     std::vector<uchar> bytes;
-    cv::imencode(".png", picture, bytes);
+    cv::imencode(".png", DrawPicture(request), bytes);
     WriteTextFile(*request.image, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   }
   if (request.image && !request.csv && !request.table) return "";

@@ -181,7 +181,7 @@ OptionVisitor::Conditions FindUnmetConditions(const PipelineStage& stage, const 
   const auto of_stage = options.find(stage.name);
   if (of_stage != options.end()) return UnmetConditions(rows, of_stage->second, name);
   if (stage.asked_by == nullptr || name == stage.asked_by) return {};
-  const auto unmet = UnmetConditions(rows, stage.resolve(json::object(), stage.name), name);
+  auto unmet = UnmetConditions(rows, stage.resolve(json::object(), stage.name), name);
   if (!unmet.empty()) return unmet;
   std::vector<std::string> asking =
       std::ranges::find(rows, stage.asked_by, &OptionRow::name)->choices;
