@@ -39,7 +39,7 @@ class InnerLayers {
   // Means over 7 x 7 cells of all channels of all tensors, [channels x 49], 32-bit floats.
   // Throws InputError where the network cannot be run on an image of this size.
   cv::Mat Features(const cv::Mat& image);
-  // Those of an image and of its mirror image.
+  // The features of an image and of its mirror image.
   std::pair<cv::Mat, cv::Mat> FeaturesOfBoth(const cv::Mat& image);
 
   const std::string& name() const { return name_; }

@@ -44,11 +44,11 @@ class AssociationModel {
   // no landmark, the track keeps its previous one. Whether it has a support is asked of the former
   // labels, and of the one that was decided for.
   void Fit(Track* track) const;
-  // The same with the labels and supports of its parts alone, which have been fitted; from their
-  // landmarks, if they are two or fewer.
+  // Fits a track with the labels and supports of its parts alone, which have been fitted; if there
+  // are at most two parts, from their landmarks.
   void FitLike(const std::vector<const Track*>& parts, Track* track) const;
-  // The same with similar labels only where the others misfit by more than those cost, and without
-  // asking whether the track has a support.
+  // Fits a track, as similar labels only where its own fit worse by more than a change of label
+  // costs, without asking whether the track has a support.
   void FitAsDetected(Track* track) const;
 
   // Expected box of a track in a frame. None when the track has no landmark, its landmark is not

@@ -31,8 +31,8 @@ struct FittedObject {
 inline constexpr double kHiddenFeet = 0.1;
 inline constexpr double kHiddenFeetInView = 0.5;
 
-// What an object stands on: a plane of the sequence or, where there is none, anything, with this
-// direction as up.
+// The support of an object: a plane of the sequence or, where there is none, the direction of up
+// alone.
 struct Support {
   int plane_index = kNoPlane;
   std::variant<Plane, UpEstimate> in_world;

@@ -25,7 +25,7 @@ class LabelConfusion {
   // Probability that an object is detected with a label, one of those of the detections, over which
   // it is normalised.
   double Probability(const std::string& of_detection, const std::string& of_object) const;
-  // The same for an object whose label is uncertain.
+  // That probability for an object whose label is uncertain.
   double Probability(const std::string& of_detection,
                      const std::vector<LabelProbability>& of_object) const;
   // -2 log of the probability of any label for an unseen object (uniform).

@@ -29,7 +29,7 @@ class PairEvidence {
     int in_both = 0;
     int in_any = 0;
   };
-  // The same for either order. The detections are of different frames.
+  // Symmetric in its arguments, which are detections of different frames.
   Counts CountPoints(int detection, int other) const;
 
   // True if the detections are of two frames that share a point; others tell nothing of each other.

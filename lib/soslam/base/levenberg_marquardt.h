@@ -67,7 +67,7 @@ auto MinimiseSquares(const Linearise& linearise, const Plus& plus,
   return at;
 }
 
-// The same where a state and a step are vectors that are added.
+// MinimiseSquares where a state and a step are vectors that are added.
 template <typename Vector, typename Linearise>
 auto MinimiseSquares(const Linearise& linearise, const LevenbergMarquardtOptions& options,
                      Vector* state) {

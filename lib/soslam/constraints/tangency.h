@@ -40,9 +40,9 @@ struct TangentDepth {
 // Depth of the point where an object is tangent to a plane parallel to the one behind an edge.
 TangentDepth FindTangentDepth(const BoxEdge& edge, const Landmark& landmark_in_camera);
 
-// The same to first order about a linearisation point: the depth of the centre times their ratio
-// there. With fixed depths, a smaller world would have smaller residuals. A centre nearer than a
-// tenth of its depth there, or behind the camera, counts as if it were at this tenth.
+// Tangent depth to first order about a linearisation point: the depth of the centre times their
+// ratio there. With fixed depths, a smaller world would have smaller residuals. A centre nearer
+// than a tenth of its depth there, or behind the camera, counts as if it were at this tenth.
 class TangentDepthRatio {
  public:
   TangentDepthRatio() = default;
@@ -63,7 +63,7 @@ class TangentDepthRatio {
 double Tangency(const BoxEdge& edge, const Landmark& landmark_in_camera, const TangentDepth& depth,
                 double bias_px, LandmarkJacobian1* jacobian);
 
-// The same without bias, with the tangent point at its own depth (FindTangentDepth), which counts
+// Tangency without bias, with the tangent point at its own depth (FindTangentDepth), which counts
 // as fixed in the Jacobian. None unless that is in front of the camera.
 std::optional<double> TangencyAtOwnDepth(const BoxEdge& edge, const Landmark& landmark_in_camera,
                                          LandmarkJacobian1* jacobian);

@@ -44,7 +44,7 @@ struct LandmarkErrors {
 
 LandmarkErrors CompareLandmarks(const Landmark& estimate, const GroundTruth& truth,
                                 const Landmark& truth_in_frame);
-// The same with `what_if`: in the frame of a camera, where errors of its pose do not count.
+// Errors in the frame of a camera, where those of its pose do not count, with `what_if`.
 LandmarkErrors CompareInCamera(const Landmark& estimate, const GroundTruth& truth,
                                const Landmark& truth_in_camera);
 

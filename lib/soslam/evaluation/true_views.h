@@ -20,7 +20,7 @@ class TrueViews {
 
   // None if unknown, as for an object that moves or is of another segment.
   std::optional<Landmark> InCamera(int frame_index, int true_index) const;
-  // The same, where it does not depend on the odometry.
+  // The true landmark, if it does not depend on the odometry.
   std::optional<Landmark> KnownInCamera(int frame_index, int true_index) const;
 
  private:

@@ -46,7 +46,7 @@ struct Camera {
   }
 };
 
-// What is wrong with the size of the images, in words; empty if it is an IsImageSize.
+// The fault of the size of the images, in words; empty if it is an IsImageSize.
 std::string TooLargeImage(const Camera& camera);
 
 template <typename Visitor>

@@ -21,7 +21,7 @@ inline bool IsImageSize(std::int64_t width, std::int64_t height) {
   return width > 0 && height > 0 && width <= kMaxPixels / height;
 }
 
-// The same for numbers of a text, which may have decimals.
+// IsImageSize for numbers of a text, which may have decimals.
 inline bool IsWholeImageSize(double width, double height) {
   const auto is_whole = [](double number) {
     return number > 0.0 && number <= static_cast<double>(kMaxPixels) &&

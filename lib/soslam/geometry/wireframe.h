@@ -18,7 +18,7 @@ using LineSegment3 = std::array<Eigen::Vector3d, 2>;
 // The edges of the cuboid |x_i| <= 1: four along x, four along y, four along z, each from -1 to 1.
 std::array<LineSegment3, 12> UnitCuboidEdges();
 
-// Those of these edges that belong to a face of the landmark's cuboid which the camera sees.
+// The edges of the landmark's cuboid that belong to a face which the camera sees.
 std::vector<LineSegment3> VisibleCuboidEdges(const Landmark& landmark_in_camera);
 
 // Points of the landmark that the camera sees on its silhouette, m: the tangent points in evenly

@@ -64,7 +64,7 @@ class ImageBytes {
   std::string UpTo(std::uint64_t begin, size_t count) const { return read_(begin, count); }
   // Exactly `count` bytes; none when there are fewer.
   std::optional<std::string> At(std::uint64_t begin, size_t count) const;
-  // The same bytes as an unsigned integer.
+  // These bytes as an unsigned integer.
   std::optional<std::uint64_t> NumberAt(std::uint64_t begin, size_t count, ByteOrder order) const;
 
  private:

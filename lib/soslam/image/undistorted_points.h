@@ -14,7 +14,7 @@ namespace soslam {
 std::optional<Eigen::Vector2d> UndistortedPixel(const Sequence& sequence,
                                                 const PointObservation& observation);
 
-// The same points. Observations whose lens distortion has no inverse are left out.
+// The points with undistorted pixels, without observations whose distortion has no inverse.
 std::vector<MapPoint> WithoutDistortion(const Sequence& sequence, std::vector<MapPoint> points);
 
 }  // namespace soslam

@@ -16,8 +16,8 @@ constexpr int kRoundsWithFixedRatio = 3;
 // Smallest reciprocal condition number (1-norm) of the first round's system: below it, the boxes do
 // not determine the body.
 constexpr double kMinConditionReciprocal = 1e-9;
-// The same of later rounds, which reweight, drop and add edges: below it, rounding errors dominate
-// the solution.
+// Smallest one of later rounds, which reweight, drop and add edges: below it, rounding errors
+// dominate the solution.
 constexpr double kMinLaterConditionReciprocal = 1e-13;
 // Smallest share of the initial size. One box without size and height has a trivial solution: a
 // body of no size at the camera's centre.

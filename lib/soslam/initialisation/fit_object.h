@@ -65,7 +65,7 @@ struct FitOptions {
 std::vector<ObjectFit> FitObject(const ObjectEvidence& evidence,
                                  const std::vector<Landmark>& starts, const FitOptions& options);
 
-// The same from the minima of the profile, on each face that the object may rest on.
+// The hypotheses from the minima of the profile, on each face that the object may rest on.
 std::vector<ObjectFit> FitObject(const ObjectEvidence& evidence, double yaw_step,
                                  size_t max_hypotheses);
 

@@ -37,7 +37,7 @@ struct UprightOptions {
                "standard deviation of a detector's box edge, as a fraction of the box's width or "
                "height; at least 1 px");
   }
-  // The same of edges about the outline of the object's body, with the errors of its shape.
+  // The sigma of edges about the outline of the object's body, with the errors of its shape.
   void DescribeSigmaAboutBody(OptionVisitor& visit, const char* doc) {
     visit.Real("box_sigma_fraction", &detection_sigma_fraction, {1e-3, 1.0}, doc);
   }

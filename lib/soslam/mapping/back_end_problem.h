@@ -38,7 +38,7 @@ class BackEndProblem {
   // defined there.
   void Solve(int max_iterations = std::numeric_limits<int>::max());
 
-  // The same, without a record in the summary; does not throw.
+  // Minimises without a record in the summary; does not throw.
   ceres::Solver::Summary Minimise(int max_iterations);
 
   // Takes one Gauss-Newton step if it lowers the cost; returns the decrease that the linearised

@@ -47,7 +47,7 @@ class BackEndVariables {
   Rigid3d PoseValue(size_t frame_index) const {
     return UnpackPose(&values_[kPoseSize * frame_index]);
   }
-  // Those of all objects; none without an initial estimate.
+  // The landmarks of all objects; none without an initial estimate.
   std::vector<std::optional<soslam::Landmark>> LandmarkValues() const;
   soslam::Landmark LandmarkValue(size_t object_index) const;  // needs an initial estimate
   Plane PlaneValue(size_t plane_index) const;

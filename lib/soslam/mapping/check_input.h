@@ -10,7 +10,7 @@ namespace soslam {
 // that belongs to the objects has another length, a number is not finite, a rotation or normal does
 // not have norm 1, the corners of a box are not in order, or a prior is of no body.
 void CheckBackEndInput(const BackEndInput& input, const OptimiseOptions& options);
-// The same of the initial landmarks, of which CheckBackEndInput knows nothing.
+// Checks the initial landmarks, at which CheckBackEndInput does not look.
 void CheckInitialLandmarks(const BackEndInput& input);
 
 }  // namespace soslam

@@ -17,7 +17,7 @@ namespace soslam {
 // The content of associations.json: which detections were found to be of the same object, and why.
 // Frames and objects are named by their ids.
 
-// What a detection is to the track that it is of.
+// Role of a detection in its track.
 enum class BoxFate {
   kAlone,        // its only box
   kExplained,    // its body explains the box

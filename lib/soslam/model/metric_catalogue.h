@@ -73,7 +73,7 @@ inline constexpr ObjectMetric kFrontError = {
      [](const ObjectMetrics& object) -> MetricValues { return {object.front.deg}; }}};
 inline constexpr ObjectMetric kObjectMetrics[] = {kIou, kCentreError, kRotation, kYawError,
                                                   kFrontError};
-// Those that have a mean.
+// The metrics of objects that have a mean.
 inline constexpr ObjectMetric kMeanMetrics[] = {kIou, kRotation, kYawError};
 
 // Columns of tables in which there are fronts.

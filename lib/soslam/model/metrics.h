@@ -303,7 +303,7 @@ struct Metrics {
   std::optional<TrajectoryMetrics> trajectory;      // for maps only, if the true poses are known
   std::optional<HeldOutMetrics> held_out;           // if frames were held out
   std::optional<MapQuality> map_quality;            // for maps only, with true objects
-  // Those of the sequence, where metrics were read.
+  // Name and odometry of the sequence, where metrics were read.
   std::string dataset = {}, odometry_source = {};
 };
 

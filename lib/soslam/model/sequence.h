@@ -128,7 +128,7 @@ struct SupportPlane {
   // cost 0.5 n^T information n. None: the plane is given and exact. Estimated planes of one normal
   // are parallel.
   std::optional<Eigen::Matrix3d> attitude_information = std::nullopt;
-  // What is known of an estimated plane's height without boxes. None: nothing.
+  // Prior on the height of an estimated plane from other evidence than boxes.
   std::optional<HeightPrior> height_prior = std::nullopt;
   // Unit vector in the plane along which, modulo quarter turns, most straight edges of the scene
   // lie. None: unknown, or there is no such direction.

@@ -45,7 +45,7 @@ UpPrior UpPriorFromCameras(const std::vector<Rigid3d>& world_from_camera, const 
                            double correlation_rad,
                            CameraOrientation orientation = CameraOrientation::kLevel);
 
-// The same where some cameras may be turned in any way: their axes have a bounded loss
+// Prior on up where some cameras may be turned in any way: their axes have a bounded loss
 // (Geman-McClure). Where most are held less evenly than the sigmas say, the information is smaller.
 UpPrior RobustUpPriorFromCameras(const std::vector<Rigid3d>& world_from_camera,
                                  const CameraTilt& tilt, double correlation_rad,

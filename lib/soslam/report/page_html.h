@@ -66,7 +66,7 @@ struct PageFinding {
 // The findings in all artefacts of a dataset's variants, errors first, each once.
 std::vector<PageFinding> PageFindings(const DatasetResult& dataset);
 
-// The same as HTML, escaped; empty if there are none.
+// The findings as HTML, escaped; empty if there are none.
 std::string FindingsHtml(const std::vector<PageFinding>& findings);
 
 }  // namespace soslam

@@ -62,7 +62,7 @@ struct Picture {
 Picture PictureOfBox(int frame_index, const Box& box, const Camera& camera);
 
 // Cuts the pictures out of their images, each of which is read once, at most max_px wide and high.
-// Those of frames without an image that can be read, and empty ones, remain without.
+// Pictures that are empty, or of frames whose image cannot be read, remain without.
 void AddJpegs(const std::vector<Picture*>& pictures, int max_px, const ImageSource& source,
               int threads);
 

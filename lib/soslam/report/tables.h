@@ -29,7 +29,7 @@ Table MistakesTable(const Metrics& metrics);
 // Tables over all datasets: maps of some variants compared with all true objects (map_quality in
 // metrics.json). Without rows if no dataset has such a map.
 
-// What is right: a row of QualityTables for each map, with what was given.
+// How much of each map is right: a row of QualityTables with what was given.
 Table MapsTable(const std::vector<DatasetResult>& datasets,
                 const std::vector<std::string>& variants);
 
@@ -231,7 +231,7 @@ struct PartDifference {
   std::vector<std::optional<PairedDifference>> of_metrics;
 };
 
-// Those of all pairs of neighbouring variants that both have metrics.
+// The differences between all pairs of neighbouring variants that both have metrics.
 std::vector<PartDifference> PartDifferences(const DatasetResult& dataset);
 
 // A page of prose with tables in it, each between two lines

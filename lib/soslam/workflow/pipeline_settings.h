@@ -21,7 +21,7 @@ struct VariantSettings {
   std::string semantic_table;       // path relative to the pipelines folder
   std::string semantic_table_file;  // the settings file that names it
   std::vector<Finding> findings;    // settings without effect
-  // The same for settings of the dataset for stages that this variant does not run, but others may.
+  // Settings of the dataset for stages that this variant does not run, but others may.
   std::vector<Finding> for_others;
 };
 
