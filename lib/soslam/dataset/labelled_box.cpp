@@ -142,7 +142,9 @@ std::map<int, std::string> ReadNames(const JsonEntry& document, const char* list
   const std::string place = fmt::format("{}#/{}", document.place(), list_name);
   std::map<int, std::string> names;
   for (const JsonEntry& entry : ListEntries(document.List(list_name), place)) {
-    if (!HasValue(entry, text_name) || entry.Text(text_name).empty()) continue;
+    if (!HasValue(entry, text_name)) continue;
+    const auto* text = entry.Field(text_name).get_ptr<const std::string*>();
+    if (text != nullptr && text->empty()) continue;
     if (!names.emplace(entry.Integer("id"), entry.Text(text_name)).second) {
       entry.Refuse("id", "one that no other entry has");
     }
