@@ -76,7 +76,19 @@ TEST(CheckBackEndInput, ObjectsNeedNoPlaneWithoutSupport) {
   for (Object& object : sequence.objects) object.plane_index = kNoPlane;
   OptimiseOptions options = TangencyOptions();
   options.support = false;
-  EXPECT_TRUE(OptimiseMap(input, options).objects.front().landmark_in_world);
+  const auto landmark = OptimiseMap(input, options).objects.front().landmark_in_world;
+  ASSERT_TRUE(landmark);
+  // Pictures tell yaws about the normal of a plane: here they tell nothing.
+  BoxAppearance seen_from_the_front;
+  for (int bin = 0; bin < kAzimuthBins; ++bin) {
+    seen_from_the_front.azimuth_costs[bin] = static_cast<float>(100 * bin);
+  }
+  for (Detection& detection : sequence.detections) {
+    detection.appearance = std::make_shared<const BoxAppearance>(seen_from_the_front);
+  }
+  const auto with_pictures = OptimiseMap(input, options).objects.front().landmark_in_world;
+  ASSERT_TRUE(with_pictures);
+  EXPECT_EQ(with_pictures->frame_from_object.Matrix(), landmark->frame_from_object.Matrix());
 }
 
 }  // namespace

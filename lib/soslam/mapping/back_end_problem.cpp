@@ -142,15 +142,12 @@ void BackEndProblem::AddStanding(size_t object_index) {
 
 void BackEndProblem::AddLandmark(size_t object_index) {
   const Object& object = input_.sequence.objects[object_index];
-  // An object of no plane has only up, which evidence of shape needs.
-  const SupportPlane support =
-      object.plane_index == kNoPlane ? SupportPlane{} : input_.sequence.planes[object.plane_index];
-  const Plane& plane = support.plane_in_world;
   double* landmark = variables_.Landmark(object_index);
   if (options_.support) {
     if (IsTangency()) {
       AddStanding(object_index);
     } else {
+      const Plane& plane = input_.sequence.planes[object.plane_index].plane_in_world;
       problem_.AddResidualBlock(new SupportResidual(plane, options_.variances.SupportAngleRad2(),
                                                     options_.variances.SupportTangencyM4()),
                                 &loss_, landmark);
@@ -172,12 +169,16 @@ void BackEndProblem::AddLandmark(size_t object_index) {
     return;
   }
   ObjectEvidence evidence;
-  evidence.plane = plane;
   evidence.ratio_is_free = !options_.ratio;
   if (prior) evidence.prior = OnFace(*prior, initial.rests_on);
-  evidence.scene_axis = support.scene_axis_in_world;
-  evidence.axes_weight = options_.upright.axes_weight;
-  evidence.picture_costs = PictureCosts(pictures, plane);
+  // Yaws are about the normal of a plane: without one, neither axes nor pictures tell them.
+  if (object.plane_index != kNoPlane) {
+    const SupportPlane& support = input_.sequence.planes[object.plane_index];
+    evidence.plane = support.plane_in_world;
+    evidence.scene_axis = support.scene_axis_in_world;
+    evidence.axes_weight = options_.upright.axes_weight;
+    evidence.picture_costs = PictureCosts(pictures, evidence.plane);
+  }
   // No loss: a ratio far from the prior is as unlikely as its spread says.
   for (auto& term : PriorTerms(evidence)) {
     problem_.AddResidualBlock(new LandmarkTermResidual(std::move(term), initial.shape_exponents),
