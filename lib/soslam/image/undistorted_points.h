@@ -14,6 +14,10 @@ namespace soslam {
 std::optional<Eigen::Vector2d> UndistortedPixel(const Sequence& sequence,
                                                 const PointObservation& observation);
 
+// An undistorted pixel of a frame as points are stored: of the image file.
+PointObservation StoredObservation(const Sequence& sequence, const Frame& frame,
+                                   const Eigen::Vector2d& pixel);
+
 // The points with undistorted pixels, without observations whose distortion has no inverse.
 std::vector<MapPoint> WithoutDistortion(const Sequence& sequence, std::vector<MapPoint> points);
 

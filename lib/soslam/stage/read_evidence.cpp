@@ -11,10 +11,10 @@
 #include "soslam/artefact/files.h"
 #include "soslam/artefact/hdf5_artefact.h"
 #include "soslam/base/error.h"
+#include "soslam/base/parallel.h"
 #include "soslam/base/paths.h"
 #include "soslam/dataset/image_path.h"
 #include "soslam/geometry/angles.h"
-#include "soslam/image/distort_pixels.h"
 #include "soslam/planes/scene_axis.h"
 
 namespace soslam {
@@ -104,14 +104,6 @@ cv::Mat FrameImageReader::Read(const FrameImage& image, int mode) const {
   const cv::Mat pixels = ReadImage(image.path, mode, sequence_.image_orientation,
                                    cv::Size(camera.width, camera.height));
   return undistorter_ ? undistorter_->Undistort(pixels) : pixels;
-}
-
-PointObservation StoredObservation(const Sequence& sequence, const Frame& frame,
-                                   const Eigen::Vector2d& pixel) {
-  const auto& distortion = sequence.image_distortion;
-  return {frame.id, distortion
-                        ? DistortPixels(sequence.CameraOf(frame), *distortion, {pixel}).front()
-                        : pixel};
 }
 
 namespace {

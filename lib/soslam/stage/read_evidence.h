@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <opencv2/core/mat.hpp>
 #include <optional>
 #include <vector>
 
-#include "soslam/base/parallel.h"
-#include "soslam/base/progress.h"
 #include "soslam/cli/command_line.h"
 #include "soslam/constraints/point_cost.h"
 #include "soslam/image/edge_maps.h"
@@ -64,26 +61,6 @@ class FrameImageReader {
   const Sequence& sequence_;
   std::optional<ImageUndistorter> undistorter_;
 };
-
-// Calls make(0) .. make(count - 1) on threads, and take(i, what was made) in order; few of what was
-// made are in memory at a time. Shows the progress in `what`, see Progress.
-template <typename Make, typename Take>
-void MakeInOrder(const char* what, size_t count, int threads, const Make& make, const Take& take) {
-  Progress progress(what, static_cast<int>(count));
-  const size_t batch = 4 * static_cast<size_t>(threads);
-  for (size_t begin = 0; begin < count; begin += batch) {
-    std::vector<decltype(make(begin))> made(std::min(batch, count - begin));
-    ParallelFor(made.size(), threads, [&](size_t i) {
-      made[i] = make(begin + i);
-      progress.Step();
-    });
-    for (size_t i = 0; i < made.size(); ++i) take(begin + i, made[i]);
-  }
-}
-
-// An undistorted pixel of a frame as points are stored: of the image file.
-PointObservation StoredObservation(const Sequence& sequence, const Frame& frame,
-                                   const Eigen::Vector2d& pixel);
 
 // Line segments in the images of folder "dataset", per frame; none if vertical edges are not used
 // or no frame has an image. The images are added to `inputs`. Throws SettingsError without a

@@ -10,6 +10,7 @@
 #include "soslam/artefact/hdf5_artefact.h"
 #include "soslam/artefact/options_json.h"
 #include "soslam/base/error.h"
+#include "soslam/base/parallel.h"
 #include "soslam/image/edge_maps.h"
 #include "soslam/stage/read_evidence.h"
 #include "soslam/stage/stages.h"

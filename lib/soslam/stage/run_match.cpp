@@ -11,6 +11,7 @@
 #include "soslam/evaluation/statistics.h"
 #include "soslam/image/box_colours.h"
 #include "soslam/image/feature_matches.h"
+#include "soslam/image/undistorted_points.h"
 #include "soslam/model/occlusion.h"
 #include "soslam/stage/read_evidence.h"
 #include "soslam/stage/stages.h"

@@ -12,6 +12,7 @@
 #include "soslam/geometry/angles.h"
 #include "soslam/geometry/triangulation.h"
 #include "soslam/image/box_mask.h"
+#include "soslam/image/undistorted_points.h"
 #include "soslam/model/moving_things.h"
 
 namespace soslam {
