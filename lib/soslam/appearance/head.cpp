@@ -207,21 +207,21 @@ float Head::Distance(const cv::Mat& features) const {
   return std::sqrt(means.squaredNorm() / static_cast<float>(means.size()));
 }
 
-InnerLayers LayersOf(const NetworkFile& network, const Head& head) {
+InnerLayers LoadLayers(const NetworkFile& network, const Head& head) {
   return {network.bytes, network.name, head.Layers(), head.IsRgb()};
 }
 
 bool IsNetworkOf(const NetworkFile& network, const Head& head) {
   if (Sha256OfText(network.bytes) == head.NetworkSha256()) return true;
   try {
-    return head.KnowsFeatures(LayersOf(network, head).Features(ProbeImage(head.Side())));
+    return head.KnowsFeatures(LoadLayers(network, head).Features(ProbeImage(head.Side())));
   } catch (const InputError&) {  // it has no such layers
     return false;
   }
 }
 
-AppearanceRecord RecordOf(const Sequence& sequence, const Detection& detection,
-                          const cv::Mat& image, const Head& head, InnerLayers* layers) {
+AppearanceRecord MakeAppearanceRecord(const Sequence& sequence, const Detection& detection,
+                                      const cv::Mat& image, const Head& head, InnerLayers* layers) {
   const Object& object = sequence.ObjectOf(detection);
   const Crop crop = RenderCrop(image, sequence.CameraOf(detection), detection.box,
                                detection.plane_in_camera.normal, head.Side());

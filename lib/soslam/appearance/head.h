@@ -73,6 +73,7 @@ class Head {
  private:
   // Throws InputError for numbers that are not finite, and for scales that are not positive.
   void CheckNumbers(const Hdf5File& file) const;
+
   struct Output {
     AzimuthCosts log_probabilities;
     LogRatios log_ratios;  // relative to the mean of the group's models
@@ -101,15 +102,15 @@ class Head {
 };
 
 // The layers of a network that a head reads. Throws InputError where there are none.
-InnerLayers LayersOf(const NetworkFile& network, const Head& head);
+InnerLayers LoadLayers(const NetworkFile& network, const Head& head);
 
 // True for the network that the head was trained on, also in a file of another program.
 bool IsNetworkOf(const NetworkFile& network, const Head& head);
 
-// What a head says of a detection with a label that it knows, in the image of its frame (see
-// RenderCrop), by the layers of its network. Throws InputError for features that are not finite or
-// of another number of channels than the head expects.
-AppearanceRecord RecordOf(const Sequence& sequence, const Detection& detection,
-                          const cv::Mat& image, const Head& head, InnerLayers* layers);
+// The record of what a head says of a detection with a label that it knows, in the image of its
+// frame (see RenderCrop), by the layers of its network. Throws InputError for features that are not
+// finite or of another number of channels than the head expects.
+AppearanceRecord MakeAppearanceRecord(const Sequence& sequence, const Detection& detection,
+                                      const cv::Mat& image, const Head& head, InnerLayers* layers);
 
 }  // namespace soslam

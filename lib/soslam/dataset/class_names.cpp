@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 constexpr std::array kNames = {"classes.txt", "obj.names",    "data.yaml",
                                "data.yml",    "dataset.yaml", "labels.txt"};
 
-std::vector<std::string> ListOf(std::string_view names) {
+std::vector<std::string> SplitNames(std::string_view names) {
   const auto fields = SplitFields(names);
   return {fields.begin(), fields.end()};
 }
@@ -111,7 +111,7 @@ std::optional<std::string> Contradiction(const ClassNames& one, const ClassNames
 
 // The names that labelImg comes with, and writes beside labels (classes.txt) until they are
 // changed.
-const std::vector<std::string> kLabelImgTemplate = ListOf(
+const std::vector<std::string> kLabelImgTemplate = SplitNames(
     "dog,person,cat,tv,car,meatballs,marinara sauce,tomato sauce,chicken noodle soup,"
     "french onion soup,chicken breast,ribs,pulled pork,hamburger,cavity");
 
@@ -188,7 +188,7 @@ std::vector<fs::path> FindLabelFiles(const fs::path& labels, const fs::path& dat
 }
 
 const std::vector<std::string>& CocoLabels() {
-  static const std::vector<std::string> labels = ListOf(
+  static const std::vector<std::string> labels = SplitNames(
       "person,bicycle,car,motorcycle,airplane,bus,train,truck,boat,traffic light,fire hydrant,"
       "stop sign,parking meter,bench,bird,cat,dog,horse,sheep,cow,elephant,bear,zebra,giraffe,"
       "backpack,umbrella,handbag,tie,suitcase,frisbee,skis,snowboard,sports ball,kite,"

@@ -30,7 +30,7 @@ const json& ShortList(const JsonEntry& problem, const char* name) {
   return list;
 }
 
-std::vector<Rigid3d> PosesOfProblem(const JsonEntry& problem, const char* name) {
+std::vector<Rigid3d> ReadPosesOfProblem(const JsonEntry& problem, const char* name) {
   std::vector<Rigid3d> poses;
   const json& list = ShortList(problem, name);
   for (size_t i = 0; i < list.size(); ++i) {
@@ -60,8 +60,8 @@ void ReadProblem(const fs::path& file, int number, const ImportOptions& options,
   const JsonEntry intrinsics(problem.Field("camera"), problem.place() + "#/camera");
   intrinsics.Positive("fy");
   const Camera camera = ParseCamera(intrinsics);
-  const auto truth = PosesOfProblem(problem, "T_wc");
-  const auto odometry = PosesOfProblem(problem, "init_T_wc");
+  const auto truth = ReadPosesOfProblem(problem, "T_wc");
+  const auto odometry = ReadPosesOfProblem(problem, "init_T_wc");
   const int frames = static_cast<int>(truth.size());
   if (odometry.size() != truth.size()) {
     throw InputError(fmt::format("{}: init_T_wc has {} poses; expected {}, as many as T_wc",

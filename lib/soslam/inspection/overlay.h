@@ -50,13 +50,13 @@ struct OverlayInput {
 // and the support planes.
 OverlayInput OverlayOfFrame(const Sequence& sequence, int frame_index);
 
-// Also the landmarks of the frame's observations: the best hypothesis of each. If there
-// are no single-frame estimates, the landmarks of the objects that are in the image, seen from the
-// estimated pose.
+// OverlayOfFrame with the landmarks of the frame's observations: the best hypothesis of each. If
+// there are no single-frame estimates, the landmarks of the objects that are in the image, seen
+// from the estimated pose.
 OverlayInput OverlayOfLandmarks(const Sequence& sequence, const LandmarkEstimates& estimates,
                                 int frame_index);
 
-// Also the landmarks of the map that are in the image, with poses and planes of the map.
+// OverlayOfFrame with the landmarks of the map that are in the image, and its poses and planes.
 OverlayInput OverlayOfMap(const Sequence& sequence, const MapEstimate& map, int frame_index);
 
 // The bodies of a world that are in the image of one of its frames, each with its caption.

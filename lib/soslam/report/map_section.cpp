@@ -112,11 +112,11 @@ class MapSectionBuilder {
       for (Entry& entry : *entries) pictures.push_back(&entry.picture);
     }
     AddJpegs(pictures, kPicturePx, images_, threads);
-    std::string html = SectionOf(title, placed, not_placed, "");
+    std::string html = MakeSection(title, placed, not_placed, "");
     for (std::vector<Entry>* entries : {&not_placed.entries, &placed}) {
       if (html.size() <= max_bytes) break;
       for (Entry& entry : *entries) entry.picture.jpeg.clear();
-      html = SectionOf(title, placed, not_placed, "For lack of room pictures are left out.");
+      html = MakeSection(title, placed, not_placed, "For lack of room pictures are left out.");
     }
     return html.size() <= max_bytes ? html : "";
   }
@@ -129,8 +129,8 @@ class MapSectionBuilder {
     size_t single = 0;  // things seen once
   };
 
-  std::string SectionOf(const std::string& title, const std::vector<Entry>& entries,
-                        const NotPlacedEntries& not_placed, const std::string& note) const {
+  std::string MakeSection(const std::string& title, const std::vector<Entry>& entries,
+                          const NotPlacedEntries& not_placed, const std::string& note) const {
     constexpr size_t kMaxNames = 100;
     std::string html = fmt::format("<p>{} in {}.", Counted(placed_.size(), "object"),
                                    Counted(sequence_.frames.size(), "image"));

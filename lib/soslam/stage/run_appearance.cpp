@@ -23,7 +23,7 @@
 namespace soslam {
 namespace {
 
-NetworkFile ReadNetworkOf(const Head& head, const std::filesystem::path& path) {
+NetworkFile ReadNetworkOfHead(const Head& head, const std::filesystem::path& path) {
   if (!IsFile(path)) {
     throw InputError(fmt::format(
         "{}: no such file; expected the network of {}: `./soslam network` fetches YOLOX-nano, and "
@@ -52,7 +52,7 @@ void RunAppearance(const NoOptions& options, const StageFiles& files, int thread
   const std::filesystem::path& sequence_file = files.at("sequence");
   const Sequence sequence = ReadSequence(sequence_file);
   const Head head(files.at("head"));
-  const NetworkFile network = ReadNetworkOf(head, files.at("network"));
+  const NetworkFile network = ReadNetworkOfHead(head, files.at("network"));
   const std::vector<FrameImage> images = FrameImages(sequence, files.at("dataset"), sequence_file);
   std::vector<std::filesystem::path> inputs = {sequence_file, files.at("network"),
                                                files.at("head")};
@@ -68,8 +68,8 @@ void RunAppearance(const NoOptions& options, const StageFiles& files, int thread
     ImageOfDetections frame{&image, {}};
     const auto index = static_cast<int>(image.frame - sequence.frames.data());
     for (const Detection& detection : DetectionsIn(sequence, index)) {
-      if (head.FindGroup(sequence.ObjectOf(detection).label))
-        frame.detections.push_back(&detection);
+      if (!head.FindGroup(sequence.ObjectOf(detection).label)) continue;
+      frame.detections.push_back(&detection);
     }
     count += frame.detections.size();
     if (!frame.detections.empty()) frames.push_back(std::move(frame));
@@ -84,11 +84,11 @@ void RunAppearance(const NoOptions& options, const StageFiles& files, int thread
   Progress progress("boxes", static_cast<int>(count));
   ParallelFor(static_cast<size_t>(threads), threads, [&](size_t worker) {
     if (worker >= frames.size()) return;
-    InnerLayers layers = LayersOf(network, head);
+    InnerLayers layers = LoadLayers(network, head);
     for (size_t i = worker; i < frames.size(); i += static_cast<size_t>(threads)) {
       const cv::Mat image = reader.Read(*frames[i].image, cv::IMREAD_COLOR);
       for (const Detection* detection : frames[i].detections) {
-        records[i].push_back(RecordOf(sequence, *detection, image, head, &layers));
+        records[i].push_back(MakeAppearanceRecord(sequence, *detection, image, head, &layers));
         progress.Step();
       }
     }

@@ -251,7 +251,8 @@ void RunFrames(const FrameOptions& options, const StageFiles& files, int threads
   int count = 0;
   for (const SourceFrame& frame : record.frames) {
     if (IsLeftOut(frame)) continue;
-    list += fmt::format("{} {}\n", frame.time_s.value_or(count++), frame.image);
+    list += fmt::format("{} {}\n", frame.time_s.value_or(count), frame.image);
+    ++count;
   }
   output.Write("rgb.txt", list);
   output.Write("frames.json",

@@ -92,7 +92,8 @@ void WriteCrops(const std::vector<TrainingModel>& models, const std::vector<Trai
       look_of_crop.push_back(static_cast<int>(model_of_crop.size()) / options.views);
       model_of_crop.push_back(model);
       std::vector<cv::Mat>& sheet = (*sheets)[models[model].group];
-      if (sheet.size() < kPictures) sheet.push_back(PictureOf(view));
+      if (options.sheets.empty() || sheet.size() == kPictures) continue;
+      sheet.push_back(DrawSmallPicture(view));
     }
   }
   file->WriteNumber("/features", "quantum", kQuantum);
@@ -137,7 +138,7 @@ void RunTrainingCrops(const TrainingCropsOptions& options, const StageFiles& fil
   const std::filesystem::path folder = options.sheets;
   std::filesystem::create_directories(folder);
   for (size_t i = 0; i < sheets.size(); ++i) {
-    const cv::Mat sheet = SheetOf(sheets[i]);
+    const cv::Mat sheet = MakeSheet(sheets[i]);
     if (!sheet.empty()) cv::imwrite((folder / (groups[i].name + ".png")).string(), sheet);
   }
 }

@@ -232,7 +232,7 @@ struct Solid {
 using Solids = std::vector<const Solid*>;
 
 // The solids of a scene, those of its objects first.
-std::vector<Solid> SolidsOf(const Scene& scene, const Rigid3d& world_from_camera) {
+std::vector<Solid> MakeSolids(const Scene& scene, const Rigid3d& world_from_camera) {
   std::vector<Solid> solids;
   for (const Landmark& body_in_world : AllBodies(scene)) {
     const Landmark body_in_camera = Transform(world_from_camera.Inverse(), body_in_world);
@@ -276,7 +276,7 @@ Colour RayColour(const Surroundings& surroundings, const Rigid3d& world_from_cam
 cv::Mat RenderFrame(const Scene& scene, const Rigid3d& world_from_camera) {
   const Camera& camera = scene.camera;
   const Surroundings surroundings(scene);
-  const std::vector<Solid> solids = SolidsOf(scene, world_from_camera);
+  const std::vector<Solid> solids = MakeSolids(scene, world_from_camera);
   cv::Mat image(camera.height, camera.width, CV_8UC3);
   Solids in_pixel;
   for (int v = 0; v < camera.height; ++v) {

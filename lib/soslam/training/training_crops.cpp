@@ -114,7 +114,7 @@ constexpr int kPictureSide = 140;  // pixels
 
 }  // namespace
 
-cv::Mat PictureOf(const FurnitureView& view) {
+cv::Mat DrawSmallPicture(const FurnitureView& view) {
   cv::Mat picture = view.crop.image.clone();
   const cv::Point middle(picture.cols / 2, picture.rows / 2);
   const double length = 0.35 * picture.cols;
@@ -126,7 +126,7 @@ cv::Mat PictureOf(const FurnitureView& view) {
   return picture;
 }
 
-cv::Mat SheetOf(const std::vector<cv::Mat>& pictures) {
+cv::Mat MakeSheet(const std::vector<cv::Mat>& pictures) {
   constexpr int kInRow = 8;
   const int rows = static_cast<int>(pictures.size()) / kInRow;
   cv::Mat sheet(rows * kPictureSide, kInRow * kPictureSide, CV_8UC3);

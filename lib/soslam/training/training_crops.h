@@ -96,9 +96,9 @@ TrainingView NumberedView(const std::vector<TrainingModel>& models,
                           const TrainingCropsOptions& options, int number);
 
 // The crop of a view in small, with an arrow where the front points.
-cv::Mat PictureOf(const FurnitureView& view);
+cv::Mat DrawSmallPicture(const FurnitureView& view);
 
 // Whole rows of such pictures; empty without one.
-cv::Mat SheetOf(const std::vector<cv::Mat>& pictures);
+cv::Mat MakeSheet(const std::vector<cv::Mat>& pictures);
 
 }  // namespace soslam
