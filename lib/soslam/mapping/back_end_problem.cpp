@@ -14,6 +14,7 @@
 #include "soslam/constraints/tangency.h"
 #include "soslam/geometry/angles.h"
 #include "soslam/initialisation/object_evidence.h"
+#include "soslam/mapping/normal_equations.h"
 
 namespace soslam {
 namespace {
@@ -288,7 +289,7 @@ void BackEndProblem::Solve(int max_iterations) {
   }
 }
 
-ceres::Solver::Summary BackEndProblem::Minimise(int max_iterations) {
+ceres::Solver::Summary BackEndProblem::Minimise(int max_iterations, double least_tolerance) {
   ceres::Solver::Options options = SolverOptions(max_iterations);
   if (IsTangency() && !(image_blocks_.empty() && point_blocks_.empty())) {
     // The costs of images have kinks at pixels: every step that crosses one may be refused.
@@ -303,29 +304,17 @@ ceres::Solver::Summary BackEndProblem::Minimise(int max_iterations) {
       if (!problem_.HasParameterBlock(landmark)) continue;
       options.inner_iteration_ordering->AddElementToGroup(landmark, 0);
     }
-    std::vector<double*> variables;
-    problem_.GetParameterBlocks(&variables);
-    std::erase_if(variables, [&](double* at) { return problem_.IsParameterBlockConstant(at); });
     options.use_inner_iterations =
-        options.inner_iteration_ordering->NumElements() > 0 && variables.size() > 1;
-    // Ceres ends inner iterations for good once they gain less than this: as soon as a step would.
-    options.inner_iteration_tolerance = options.function_tolerance;
+        options.inner_iteration_ordering->NumElements() > 0 && VariableBlocks(problem_).size() > 1;
   }
+  options.function_tolerance = std::max(options.function_tolerance, least_tolerance);
+  // Ceres ends inner iterations for good once they gain less than this: as soon as a step would.
+  options.inner_iteration_tolerance = options.function_tolerance;
   IterationProgress progress;
   options.callbacks.push_back(&progress);
   ceres::Solver::Summary solution;
   ceres::Solve(options, &problem_, &solution);
   return solution;
-}
-
-double BackEndProblem::Step() {
-  ceres::Solver::Options options = SolverOptions(1);
-  options.initial_trust_region_radius = 1e8;  // hardly any damping
-  ceres::Solver::Summary solution;
-  ceres::Solve(options, &problem_, &solution);
-  if (solution.iterations.size() < 2) return 0.0;
-  const ceres::IterationSummary& step = solution.iterations[1];
-  return step.relative_decrease == 0.0 ? 0.0 : step.cost_change / step.relative_decrease;
 }
 
 double BackEndProblem::BoxCost() {

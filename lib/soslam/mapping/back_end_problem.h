@@ -38,12 +38,9 @@ class BackEndProblem {
   // defined there.
   void Solve(int max_iterations = std::numeric_limits<int>::max());
 
-  // Minimises without a record in the summary; does not throw.
-  ceres::Solver::Summary Minimise(int max_iterations);
-
-  // Takes one Gauss-Newton step if it lowers the cost; returns the decrease that the linearised
-  // problem predicts.
-  double Step();
+  // Minimises without a record in the summary, until a step lowers the cost by a smaller share than
+  // least_tolerance, or than that of Solve if it is larger; does not throw.
+  ceres::Solver::Summary Minimise(int max_iterations, double least_tolerance = 0.0);
 
   // The part of the boxes in the present cost.
   double BoxCost();

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "soslam/mapping/covariance.h"
 
-#include <ceres/crs_matrix.h>
 #include <ceres/manifold.h>
 
-#include <algorithm>
-
-#include "soslam/constraints/tangency.h"
+#include "soslam/mapping/normal_equations.h"
 
 namespace soslam {
 namespace {
@@ -19,39 +16,21 @@ constexpr double kLeastIndependentShare = 1e-12;
 
 // Columns of unit length: units do not count when it is decided what is determined.
 MarginalCovariances::MarginalCovariances(ceres::Problem* problem) : problem_(problem) {
-  std::vector<double*> blocks;
-  problem->GetParameterBlocks(&blocks);
-  std::erase_if(blocks, [&](double* block) { return problem->IsParameterBlockConstant(block); });
+  const std::vector<double*> blocks = VariableBlocks(*problem);
   if (blocks.empty()) return;
   int columns = 0;
   for (const double* block : blocks) {
     first_column_[block] = columns;
     columns += problem->ParameterBlockTangentSize(block);
   }
-  ceres::Problem::EvaluateOptions options;
-  options.parameter_blocks = blocks;
-  ceres::CRSMatrix rows;
-  if (!problem->Evaluate(options, nullptr, nullptr, nullptr, &rows)) return;
-  // The curvature rows are for solvers alone.
-  std::vector<ceres::ResidualBlockId> residuals;
-  problem->GetResidualBlocks(&residuals);
-  size_t row = 0;  // the first one after the present block
-  for (const ceres::ResidualBlockId residual : residuals) {
-    const ceres::CostFunction* cost = problem->GetCostFunctionForResidualBlock(residual);
-    row += static_cast<size_t>(cost->num_residuals());
-    if (dynamic_cast<const TangencyResidual*>(cost) == nullptr) continue;
-    std::fill(rows.values.begin() + rows.rows[row - TangencyResidual::kCurvatureRows],
-              rows.values.begin() + rows.rows[row], 0.0);
-  }
-  Eigen::SparseMatrix<double> jacobian =
-      Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>>(
-          rows.num_rows, rows.num_cols, static_cast<int>(rows.values.size()), rows.rows.data(),
-          rows.cols.data(), rows.values.data());
-  column_norms_ =
-      (jacobian.cwiseAbs2().transpose() * Eigen::VectorXd::Ones(jacobian.rows())).cwiseSqrt();
+  Eigen::SparseMatrix<double> normal =
+      MakeNormalEquations(blocks, CurvatureRows::kWithout, problem).matrix;
+  if (normal.rows() == 0) return;
+  column_norms_ = normal.diagonal().cwiseSqrt();
   if (!column_norms_.allFinite() || !(column_norms_.minCoeff() > 0.0)) return;
-  jacobian = jacobian * column_norms_.cwiseInverse().asDiagonal();
-  factor_.compute(jacobian.transpose() * jacobian);
+  const Eigen::VectorXd inverse = column_norms_.cwiseInverse();
+  normal = inverse.asDiagonal() * normal * inverse.asDiagonal();
+  factor_.compute(normal);
   are_determined_ = factor_.info() == Eigen::Success &&
                     factor_.matrixL().nestedExpression().diagonal().array().square().minCoeff() >
                         kLeastIndependentShare;
@@ -79,7 +58,8 @@ Covariance9 MarginalCovariances::OfLandmark(const double* landmark) const {
 Eigen::Matrix4d MarginalCovariances::OfPlane(const double* normal, const double* offset) const {
   Eigen::Matrix<double, Eigen::Dynamic, 4> half = Eigen::MatrixXd::Zero(column_norms_.size(), 4);
   if (const Eigen::MatrixXd of_normal = HalfInverse(normal); of_normal.cols() > 0) {
-    ceres::Matrix normal_by_tangent(3, of_normal.cols());
+    Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor> normal_by_tangent(3,
+                                                                                of_normal.cols());
     problem_->GetManifold(normal)->PlusJacobian(normal, normal_by_tangent.data());
     half.leftCols<3>() = of_normal * normal_by_tangent.transpose();
   }

@@ -15,8 +15,7 @@ namespace soslam {
 // ceres::Covariance depend on the BLAS that is installed.)
 class MarginalCovariances {
  public:
-  // Evaluates the Jacobian, without the curvature rows of TangencyResidual, and factors. The
-  // problem must outlive this object.
+  // Linearises the problem, and factors its normal equations. It must outlive this object.
   explicit MarginalCovariances(ceres::Problem* problem);
 
   // Whether the residuals determine all blocks. If not, there are no covariances.

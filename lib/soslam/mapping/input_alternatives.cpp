@@ -8,24 +8,26 @@
 #include <string>
 
 #include "soslam/geometry/angles.h"
+#include "soslam/mapping/normal_equations.h"
 
 namespace soslam {
 namespace {
 
 constexpr int kMaxIterations = 50;
 constexpr size_t kMostPlanesAlone = 10;
+// The least correction that promises something: the linearised problem may see half of the way to a
+// far minimum.
+constexpr double kPromisingCorrection = 0.5;
 
-// The problem at the present values of its variables.
-InputAlternative AlternativeAt(const Sequence& sequence, const std::vector<int>& planes,
-                               BackEndProblem* problem) {
+// The focal length and these planes at the present values of the variables.
+InputAlternative CompareWithGiven(const Sequence& sequence, const std::vector<int>& planes,
+                                  const BackEndVariables& variables) {
   InputAlternative found;
-  problem->problem().Evaluate({}, &found.cost, nullptr, nullptr, nullptr);
-  found.box_cost = problem->BoxCost();
-  found.focal_factor = problem->variables().FocalFactor();
-  const auto landmarks = problem->variables().LandmarkValues();
+  found.focal_factor = variables.FocalFactor();
+  const auto landmarks = variables.LandmarkValues();
   for (const int index : planes) {
     const Plane& given = sequence.planes[static_cast<size_t>(index)].plane_in_world;
-    const Plane plane = problem->variables().PlaneValue(static_cast<size_t>(index));
+    const Plane plane = variables.PlaneValue(static_cast<size_t>(index));
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     int count = 0;
     for (size_t i = 0; i < landmarks.size(); ++i) {
@@ -41,34 +43,38 @@ InputAlternative AlternativeAt(const Sequence& sequence, const std::vector<int>&
   return found;
 }
 
-// Adds the alternative with these blocks free, if it is promising. Returns whether it is.
-bool Add(const Sequence& sequence, const std::set<double*>& blocks, const std::vector<int>& planes,
-         BackEndProblem* problem, std::vector<InputAlternative>* alternatives) {
-  // The first step to a far minimum may be half as long as the way.
-  constexpr double kPromisingCorrection = 0.5;
-  const std::vector<double> before = problem->variables().values();
-  int degrees = 0;
-  for (double* block : blocks) {
-    problem->problem().SetParameterBlockVariable(block);
-    degrees += problem->problem().ParameterBlockTangentSize(block);
-  }
-  const double gain = problem->Step();
-  const double dispersion =
-      std::max(1.0, (alternatives->front().box_cost - gain) / problem->summary().expected_box_cost);
+// Whether the linearised problem promises more than chance gives, and a correction that matters.
+bool IsPromising(const InputAlternative& linearised, double gain, double expected_box_cost) {
+  const double dispersion = std::max(1.0, linearised.box_cost / expected_box_cost);
   // Mean and two standard deviations of chi-square.
-  const double twice_by_chance = degrees + 2.0 * std::sqrt(2.0 * degrees);
-  // A step that would raise the cost is not taken, and tells nothing of the correction.
-  const bool is_refused = problem->variables().values() == before;
-  const bool is_promising = 2.0 * gain > twice_by_chance * dispersion &&
-                            (is_refused || LargestCorrection(AlternativeAt(
-                                               sequence, planes, problem)) > kPromisingCorrection);
-  if (is_promising && problem->Minimise(kMaxIterations).IsSolutionUsable()) {
-    alternatives->push_back(AlternativeAt(sequence, planes, problem));
-    alternatives->back().degrees = degrees;
+  const double twice_by_chance = linearised.degrees + 2.0 * std::sqrt(2.0 * linearised.degrees);
+  return 2.0 * gain > twice_by_chance * dispersion &&
+         LargestCorrection(linearised) > kPromisingCorrection;
+}
+
+// The planes whose normals and heights the problem takes as they are given.
+std::vector<int> GivenPlanes(const Sequence& sequence, BackEndProblem* problem) {
+  std::vector<int> given;
+  for (size_t i = 0; i < sequence.planes.size(); ++i) {
+    if (sequence.planes[i].attitude_information) continue;
+    if (!problem->problem().HasParameterBlock(problem->variables().Offset(i))) continue;
+    given.push_back(static_cast<int>(i));
   }
-  problem->variables().SetValues(before);
-  for (double* block : blocks) problem->problem().SetParameterBlockConstant(block);
-  return is_promising;
+  return given;
+}
+
+// Priors of the objects of a label that count together as much as that of one.
+BackEndInput WithPriorsOfLabels(const BackEndInput& input) {
+  BackEndInput result{input.sequence, input.initial_landmarks, input.priors};
+  std::map<std::string, int> objects;
+  for (size_t i = 0; i < result.priors.size(); ++i) {
+    if (result.initial_landmarks[i]) ++objects[input.sequence.objects[i].label];
+  }
+  for (size_t i = 0; i < result.priors.size(); ++i) {
+    if (!result.priors[i] || !result.initial_landmarks[i]) continue;
+    result.priors[i]->log_sigma *= std::sqrt(objects[input.sequence.objects[i].label]);
+  }
+  return result;
 }
 
 }  // namespace
@@ -93,38 +99,59 @@ std::vector<InputAlternative> FindInputAlternatives(const BackEndInput& map_inpu
       std::ranges::any_of(DetectionsByObject(sequence),
                           [](const std::vector<int>& of_object) { return of_object.size() > 1; });
   if (!has_views) return {};  // the priors alone would tell
-  BackEndInput input{sequence, map_input.initial_landmarks, map_input.priors};
-  std::map<std::string, int> objects_of_label;
-  for (size_t i = 0; i < input.priors.size(); ++i) {
-    if (input.initial_landmarks[i]) ++objects_of_label[sequence.objects[i].label];
-  }
-  for (size_t i = 0; i < input.priors.size(); ++i) {
-    if (!input.priors[i] || !input.initial_landmarks[i]) continue;
-    input.priors[i]->log_sigma *= std::sqrt(objects_of_label[sequence.objects[i].label]);
-  }
+  const BackEndInput input = WithPriorsOfLabels(map_input);
   BackEndProblem problem(input, options);
   BackEndVariables& variables = problem.variables();
   variables.SetValues(solution.values());
-  const auto is_given = [&](const double* block) {
-    return problem.problem().HasParameterBlock(block) &&
-           problem.problem().IsParameterBlockConstant(block);
-  };
-  if (!is_given(variables.LogFocal())) return {};  // there are no boxes
-  std::vector<int> given_planes;
-  for (size_t i = 0; i < sequence.planes.size(); ++i) {
-    const bool is_estimated = sequence.planes[i].attitude_information.has_value();
-    if (!is_estimated && is_given(variables.Offset(i))) given_planes.push_back(static_cast<int>(i));
+  if (!problem.problem().HasParameterBlock(variables.LogFocal())) return {};  // there are no boxes
+  const std::vector<int> given_planes = GivenPlanes(sequence, &problem);
+  std::set<double*> given = {variables.LogFocal()};
+  for (const int plane : given_planes) {
+    given.insert({variables.Normal(static_cast<size_t>(plane)),
+                  variables.Offset(static_cast<size_t>(plane))});
   }
-  if (!problem.Minimise(kMaxIterations).IsSolutionUsable()) return {};
-  std::vector<InputAlternative> alternatives = {AlternativeAt(sequence, {}, &problem)};
-  Add(sequence, {variables.LogFocal()}, {}, &problem, &alternatives);
+  const ScoreTest score(given, &problem.problem());
+  const double box_cost = problem.BoxCost();
+  std::vector<double> start = variables.values();
+  std::vector<InputAlternative> alternatives;
+  // Costs are compared in units of what chance gives; a hundredth of one is nothing.
+  const double tolerance = 0.01 / problem.summary().expected_box_cost;
+  // Adds the problem's minimum from the present values of its variables.
+  const auto minimise = [&](const std::vector<int>& free_planes) {
+    if (!problem.Minimise(kMaxIterations, tolerance).IsSolutionUsable()) return false;
+    alternatives.push_back(CompareWithGiven(sequence, free_planes, variables));
+    problem.problem().Evaluate({}, &alternatives.back().cost, nullptr, nullptr, nullptr);
+    alternatives.back().box_cost = problem.BoxCost();
+    return true;
+  };
+  // Adds the alternative with these blocks free, if it is promising. Returns whether it is.
+  const auto add = [&](const std::set<double*>& blocks, const std::vector<int>& free_planes) {
+    const double gain = score.Step(blocks);
+    InputAlternative linearised = CompareWithGiven(sequence, free_planes, variables);
+    variables.SetValues(start);
+    for (double* block : blocks) {
+      linearised.degrees += problem.problem().ParameterBlockTangentSize(block);
+    }
+    linearised.box_cost = box_cost - gain;
+    if (!IsPromising(linearised, gain, problem.summary().expected_box_cost)) return false;
+    if (alternatives.empty()) {
+      if (!minimise({})) return false;
+      start = variables.values();
+    }
+    for (double* block : blocks) problem.problem().SetParameterBlockVariable(block);
+    if (minimise(free_planes)) alternatives.back().degrees = linearised.degrees;
+    for (double* block : blocks) problem.problem().SetParameterBlockConstant(block);
+    variables.SetValues(start);
+    return true;
+  };
+  add({variables.LogFocal()}, {});
   const auto add_planes = [&](const std::vector<int>& planes, bool normals) {
     std::set<double*> blocks;
     for (const int plane : planes) {
       blocks.insert(variables.Offset(static_cast<size_t>(plane)));
       if (normals) blocks.insert(variables.Normal(static_cast<size_t>(plane)));
     }
-    return Add(sequence, blocks, planes, &problem, &alternatives);
+    return add(blocks, planes);
   };
   for (const bool normals : {false, true}) {
     if (given_planes.empty() || !add_planes(given_planes, normals)) continue;
