@@ -5,7 +5,7 @@
 
 #include "soslam/system/process.h"
 
-// Like benchmark_main, with the settings of stages for memory and OpenCV's threads, and with the
+// Like benchmark_main, with the setting of stages for OpenCV's threads, and with the
 // processor's name in the result.
 int main(int argc, char** argv) {
   cv::setNumThreads(1);

@@ -14,6 +14,7 @@
 #include "soslam/constraints/tangency.h"
 #include "soslam/geometry/angles.h"
 #include "soslam/initialisation/object_evidence.h"
+#include "soslam/mapping/linear_solver.h"
 #include "soslam/mapping/normal_equations.h"
 
 namespace soslam {
@@ -291,11 +292,14 @@ void BackEndProblem::Solve(int max_iterations) {
 
 ceres::Solver::Summary BackEndProblem::Minimise(int max_iterations, double least_tolerance) {
   ceres::Solver::Options options = SolverOptions(max_iterations);
+  ChooseLinearSolver(problem_, &options);
   if (IsTangency() && !(image_blocks_.empty() && point_blocks_.empty())) {
     // The costs of images have kinks at pixels: every step that crosses one may be refused.
     options.use_nonmonotonic_steps = true;
     options.function_tolerance = 1e-6;
   } else {
+    // Drift is the sum of many small steps of poses, which more damping would shorten.
+    if (IsTangency()) options.initial_trust_region_radius = 1e8;
     // A landmark that its boxes hardly determine would shorten the steps of all others: after each
     // step, each is optimised alone.
     options.inner_iteration_ordering = std::make_shared<ceres::ParameterBlockOrdering>();
