@@ -60,7 +60,7 @@ class Head {
   // groups of which it learned neither azimuths nor ratios.
   std::optional<int> FindGroup(const std::string& label) const;
 
-  // What the features (InnerLayers::Features) of a crop and of its mirror image say.
+  // The evidence of the features (InnerLayers::Features) of a crop and of its mirror image.
   BoxAppearance Appearance(const cv::Mat& features, const cv::Mat& mirrored,
                            const BoxDirection& direction, int group) const;
 
@@ -79,9 +79,9 @@ class Head {
     LogRatios log_ratios;  // relative to the mean of the group's models
   };
   Output Evaluate(const cv::Mat& features, const BoxDirection& direction, int group) const;
-  // What the head says of a picture's ratios, `relative` to the mean of the group's models, over
-  // what these alone would say: its answer is a posterior, of which they are the prior. None if it
-  // is no surer than they are, or does not tell ratios of the group.
+  // The likelihood of a picture's ratios, `relative` to the mean of the group's models: the head's
+  // answer, which is a posterior, over the distribution of these models, its prior. Empty if it is
+  // no surer than they are, or the head does not tell ratios of the group.
   std::optional<LogRatios> RatioLikelihood(const LogRatios& relative, int group) const;
   Eigen::VectorXf ScaledMeans(const cv::Mat& features) const;
 

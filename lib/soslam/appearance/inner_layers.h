@@ -27,7 +27,7 @@ inline constexpr int kPooledSide = 7;
 // An image of waves by which networks are compared: side x side, blue, green, red.
 cv::Mat ProbeImage(int side);
 
-// What the inner layers of a detector network say of square images of objects.
+// The inner layers of a detector network, and their features of square images of objects.
 class InnerLayers {
  public:
   // An ONNX network and inner tensors (CutNetwork) of shape [1, channels, rows, columns];

@@ -136,7 +136,7 @@ Schema ListSchema(Schema of_items, size_t least, size_t most);
 // The schema that null satisfies, too.
 Schema OrNullSchema(Schema schema);
 
-// What only readers do.
+// The visits that only readers use.
 struct VisitorThatDoesNotRead {
   template <typename Violation>
   void Check(const Violation&) {}

@@ -50,7 +50,7 @@ void CheckArtefactHeader(const nlohmann::json& header, const std::string& kind,
 // A value as ASCII text, truncated to fit on a line.
 std::string Excerpt(const nlohmann::json& value);
 
-// What keeps the field sha256 from being a digest, in words; empty if nothing does.
+// The reason why the field sha256 is no digest, in words; empty if it is one.
 std::string DigestViolation(const std::string& sha256);
 
 // [major, minor] of all schemas. A reader refuses newer ones, and files that lack what is required.
@@ -58,7 +58,7 @@ inline constexpr std::array<int, 2> kSchemaVersion = {1, 12};
 inline constexpr const char* kSchemaVersionField = "schema_version";
 extern const char* const kSoftware;  // name and version of this software
 
-// What an artefact of any kind begins with.
+// The beginning of artefacts of all kinds.
 struct FileHeader {
   struct Input {
     std::string file;
@@ -122,7 +122,7 @@ void RefuseRowsTwice(const nlohmann::json& document, const std::string& kind);
 
 }  // namespace internal
 
-// What a document without a header holds. Throws InputError, naming `where` and the field.
+// The value in a document without a header. Throws InputError, naming `where` and the field.
 template <typename Value>
 Value ReadDocument(const nlohmann::json& document, const std::string& where) {
   Value value = {};

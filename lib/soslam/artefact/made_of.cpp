@@ -32,7 +32,7 @@ FileHeader ReadHeader(const fs::path& artefact) {
 
 std::string Shortened(const std::string& sha256) { return sha256.substr(0, 10); }
 
-// What distinguishes an artefact from another one of its kind, in words.
+// The differences between two artefacts of a kind, in words.
 std::string Differences(const fs::path& before, const fs::path& now) {
   const std::string old_name = ParseJsonFile(before).value("name", "");
   const std::string name = ParseJsonFile(now).value("name", "");

@@ -22,7 +22,7 @@ struct Agreement {
   int matched = 0;
 
   // Shares of the estimated and of the given objects that are matched, and their harmonic mean.
-  // None without given objects.
+  // Undefined without given objects.
   std::optional<double> Precision() const;
   std::optional<double> Recall() const;
   std::optional<double> F1() const;

@@ -31,7 +31,7 @@ struct DetectionDecision {
   int object = -1;        // index in Association::objects; -1: not used
 };
 
-// What edits say of a track.
+// A track's edits.
 struct ByHand {
   // Boxes of the object, whether they fit or not: those that edits join or split, which come before
   // others of their frames; and what else these edits make one object of, which comes after them.
@@ -59,7 +59,7 @@ struct Track {
   std::optional<int> frames_in_sight;
   // OverlapByBoxes; none where an image shows it whole, or it was not needed to decide the fate.
   std::optional<double> overlap_by_boxes;
-  // None: no edit names it. Otherwise it is an object, however rarely it is seen, unless it is
+  // Empty: no edit names it. Otherwise it is an object, however rarely it is seen, unless it is
   // deleted or has no body.
   std::optional<ByHand> by_hand;
 };
@@ -84,7 +84,7 @@ struct Association {
   bool is_settled = true;  // see Clusters
   // One entry for each segment; empty when support planes are given.
   std::map<int, UpEstimate> up_of_segments;
-  // What decided about the objects, see AddDecisiveEvidence.
+  // The evidence that decided about the objects, see AddDecisiveEvidence.
   std::vector<Associations::PairRow> held_least, held_most;
   std::vector<Associations::KeptOutRow> kept_out;
 };

@@ -64,13 +64,13 @@ class BoxLikelihood {
  public:
   BoxLikelihood(const Sequence& sequence, const AssociateOptions& options);
 
-  // None when the landmark is not entirely in front of the camera. `known_frame_index`: the frame
+  // Empty when the landmark is not entirely in front of the camera. `known_frame_index`: the frame
   // of the same segment in which the object was seen and from which drift is counted. `bias`: of
   // boxes of the object's label.
   std::optional<Prediction> Predict(const FittedObject& object, int known_frame_index,
                                     int frame_index, const EdgeBias& bias = {}) const;
 
-  // None when the box is so far off that CostOfAnyBox is certainly lower.
+  // Empty when the box is so far off that CostOfAnyBox is certainly lower.
   std::optional<BoxMatch> Match(const Prediction& prediction, const Detection& detection) const;
 
   // Cost of the box of an unseen object: uniform over all positions and sizes in the image.

@@ -63,7 +63,7 @@ concept Named = requires(Enum value) {
   { NamesOf(value) } -> std::convertible_to<std::span<const char* const>>;
 };
 
-// What keeps a text from being one of these, in words; empty if it is one.
+// The reason why a text is none of these, in words; empty if it is one.
 std::string NotOneOf(const char* field, const std::string& text,
                      const std::vector<std::string>& known);
 

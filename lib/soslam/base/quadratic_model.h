@@ -32,7 +32,7 @@ struct QuadraticModel {
     information.row(parameter).setZero();
     information.col(parameter).setZero();
   }
-  // The same problem in other variables that the parameters depend on; `d_others` is the Jacobian
+  // The problem in other variables that the parameters depend on; `d_others` is the Jacobian
   // of the parameters by them.
   template <int kOthers>
   QuadraticModel<kOthers> Chained(const Eigen::Matrix<double, kSize, kOthers>& d_others) const {

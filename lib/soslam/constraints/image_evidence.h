@@ -22,7 +22,7 @@ struct ImageResiduals {
   double constant_cost = 0.0;  // on top of theirs
 };
 
-// What an image says about the landmark of one detection. Landmarks are in its camera. The initial
+// The evidence of an image about the landmark of one detection, in its camera. The initial
 // landmark has the least sum of the costs below, the map that of the residuals.
 class ImageEvidence {
  public:

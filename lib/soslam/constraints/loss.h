@@ -33,7 +33,7 @@ inline RobustCost EvaluateLoss(const ceres::LossFunction& loss, double residual)
   return {0.5 * rho[0], rho[1]};
 }
 
-// The same as a residual of its own: half the square of `value` is the cost.
+// The loss as a residual of its own: half the square of `value` is the cost.
 struct RobustResidual {
   double value;
   double slope;  // d value / d residual

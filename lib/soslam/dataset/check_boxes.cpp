@@ -14,7 +14,7 @@
 namespace soslam {
 namespace {
 
-// What the four numbers of a box in a file may mean: the corners are linear in them.
+// A meaning that the four numbers of a box in a file may have: the corners are linear in them.
 struct BoxConvention {
   const char* name;
   Eigen::Matrix4d corners_from_numbers;

@@ -123,7 +123,7 @@ std::vector<DetectionRow> RowsWithoutObject(const std::vector<LabelledBox>& boxe
 
 namespace {
 
-// What the numbers of images may be in place of rows, as the end of a message.
+// The likely meaning of the numbers of images, other than rows, as the end of a message.
 std::string LikelyNumbers(const std::vector<LabelledBox>& boxes, const fs::path& file, int images) {
   const bool count_from_one = std::ranges::all_of(boxes, [&](const LabelledBox& box) {
     const int* number = std::get_if<int>(&box.frame);

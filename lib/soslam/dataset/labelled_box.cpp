@@ -49,7 +49,7 @@ constexpr const char* kTracks =
     "rows of MOTChallenge and trackers (frame from 1, id, left, top, width, height, score) have no "
     "labels: docs/detections.md has the command that converts them";
 
-// What a table without all columns is likely to be, as the end of a message.
+// The likely origin of a table without all columns, as the end of a message.
 std::string LikelyTable(const std::vector<std::string>& header) {
   const auto has = [&](const char* name) { return std::ranges::count(header, name) > 0; };
   std::vector<std::string> likely;

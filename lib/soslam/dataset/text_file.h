@@ -34,7 +34,7 @@ struct TextLine {
 // carriage returns, or with a carriage return in a text without line feeds. Throws InputError when
 // the file cannot be read, is not a regular file, is larger than 1 GiB, or is not UTF-8.
 std::vector<TextLine> ReadTextLines(const std::filesystem::path& path);
-// What `parse` makes of each line of ReadTextLines.
+// The result of `parse` for each line of ReadTextLines.
 template <typename Parse>
 auto ParseTextLines(const std::filesystem::path& path, const Parse& parse) {
   std::vector<std::invoke_result_t<Parse, const TextLine&>> items;

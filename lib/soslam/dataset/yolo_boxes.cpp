@@ -204,7 +204,7 @@ void ReadYoloExtras(std::vector<YoloRow>* rows) {
 
 namespace {
 
-// What a convention makes of the four numbers of a box. Throws InputError naming `place`.
+// A box from four numbers by a convention. Throws InputError naming `place`.
 using ToBox = std::function<Box(const std::array<double, 4>&, const std::string& place)>;
 
 std::vector<LabelledBox> ReadBoxes(const YoloTexts& texts, const std::vector<std::string>& labels,

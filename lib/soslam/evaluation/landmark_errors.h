@@ -69,7 +69,7 @@ BodyErrors CompareBodies(const Landmark& estimate, const GroundTruth& truth,
 // The error of the estimate's front, whose landmark `aligned` is in the world of the truth.
 FrontError CompareFronts(const ObjectEstimate& estimate, const Landmark& aligned,
                          const GroundTruth& truth);
-// None where there is no error.
+// Empty without errors.
 std::optional<FrontSummary> SummariseFronts(const std::vector<FrontError>& fronts);
 
 PlaneErrors ComparePlane(const Plane& plane, const Landmark& truth);

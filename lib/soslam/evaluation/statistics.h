@@ -19,7 +19,7 @@ std::vector<double> CollectValues(const Items& items, const ValueOf& value_of) {
   return values;
 }
 
-// None if there are no values.
+// Empty without values.
 std::optional<double> MeanOf(const std::vector<double>& values);
 std::optional<double> MedianOf(std::vector<double> values);
 

@@ -18,14 +18,14 @@ class TrueViews {
   // The sequence has to outlive it.
   explicit TrueViews(const Sequence& sequence);
 
-  // None if unknown, as for an object that moves or is of another segment.
+  // Empty if unknown, as for an object that moves or is of another segment.
   std::optional<Landmark> InCamera(int frame_index, int true_index) const;
   // The true landmark, if it does not depend on the odometry.
   std::optional<Landmark> KnownInCamera(int frame_index, int true_index) const;
 
  private:
   const Sequence& sequence_;
-  // None of an object that is not in the frame's world.
+  // Empty for an object that is not in the frame's world.
   std::optional<Landmark> FromPose(const Rigid3d& world_from_camera, int frame_index,
                                    const TrueObject& object) const;
 

@@ -70,10 +70,10 @@ inline constexpr auto kInCamera = [](auto& visit, Landmark& landmark) {
 // The geometric mean of the half axes: the size of the body, whatever its shape.
 double MeanHalfAxis(const Landmark& landmark);
 
-// The same landmark in the target frame.
+// A landmark in the target frame.
 Landmark Transform(const Rigid3d& target_from_source, const Landmark& landmark_in_source);
 
-// The same body in the frame of its own axes, whose xz plane is the mirror plane of a symmetric
+// A body in the frame of its own axes, whose xz plane is the mirror plane of a symmetric
 // object; it rests on its bottom there.
 Landmark InOwnAxes(const Landmark& landmark);
 
@@ -135,7 +135,7 @@ std::optional<Box> OutlineBox(const Camera& camera, const Landmark& landmark_in_
 double OutlineEdgeRms(const Camera& camera, const Landmark& landmark_in_camera, const Box& box);
 
 // Depth at which a ray first meets the surface (eq. 13): origin + depth * direction, depth > 0.
-// None when the ray misses the surface, or the surface is behind the origin or around it.
+// Empty when the ray misses the surface, or the surface is behind the origin or around it.
 std::optional<double> NearestIntersection(const Landmark& landmark, const Eigen::Vector3d& origin,
                                           const Eigen::Vector3d& direction);
 

@@ -55,7 +55,7 @@ class VisibleSurface {
 
   // d (direction . point) / d landmark, for a point of a fixed pixel or its mirror image.
   LandmarkJacobian1 Derivative(const Point& point, const Eigen::Vector3d& direction) const;
-  // The same for what FromPixelOnTangentPlane gives; `tangent` moves with the landmark.
+  // Derivative of what FromPixelOnTangentPlane gives; `tangent` moves with the landmark.
   LandmarkJacobian1 DerivativeOnTangentPlane(const Eigen::Vector3d& in_object, const Point& tangent,
                                              const Eigen::Vector3d& direction) const;
   // d (direction . ToPixel) / d landmark; zero for a point on its pixel's ray.

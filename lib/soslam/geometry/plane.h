@@ -23,7 +23,7 @@ void Describe(Visitor& visit, Plane& plane) {
   visit.Field("offset", &plane.offset, "metres: normal . x + offset = 0");
 }
 
-// The same plane in the target frame.
+// A plane in the target frame.
 inline Plane Transform(const Rigid3d& target_from_source, const Plane& plane_in_source) {
   const Eigen::Vector3d normal_in_target = target_from_source.rotation * plane_in_source.normal;
   return {normal_in_target,

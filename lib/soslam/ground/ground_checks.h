@@ -24,7 +24,7 @@ inline constexpr const char* kObjectsAgainstSettingsCheck = "scale_of_objects_di
 inline constexpr const char* kObjectsAgainstOneAnotherCheck = "scale_contradicted";
 inline constexpr const char* kSettingsAgainstEachOtherCheck = "settings_of_scale_differ";
 
-// None where nothing tells the scale. `findings`: of CheckGround.
+// Empty where nothing tells the scale. `findings`: of CheckGround.
 std::optional<WorldScale> EstimateWorldScale(const GroundEstimate& estimate,
                                              const std::vector<Finding>& findings);
 

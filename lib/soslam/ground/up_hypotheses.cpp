@@ -24,7 +24,7 @@ UpPrior WithCommonError(const UpPrior& up_prior) {
   return WithTiltCovariance(up_prior.up_in_world, covariance);
 }
 
-// What the settings say of the scale. `on_lowest_plane`: a point on the lowest plane of points,
+// The scale by the settings. `on_lowest_plane`: a point on the lowest plane of points,
 // whether or not objects stand on it.
 std::vector<KnownScale> KnownScales(const NormalisedInput& input, const Eigen::Vector3d& up,
                                     const std::optional<Eigen::Vector3d>& on_lowest_plane) {

@@ -19,7 +19,7 @@
 
 namespace soslam {
 
-// What a detector finds in a frame's image and in its turned copies (ImageTurns::Row).
+// Scores of the detections in a frame's image and in its turned copies (ImageTurns::Row).
 struct TurnedImage {
   int frame_index;
   std::array<double, kQuarterTurns> scores;
@@ -28,7 +28,7 @@ struct TurnedImage {
 // KnownScale::setting of an object whose size edits give.
 inline constexpr const char* kSizeByHand = "edits";
 
-// What is given, in the normalised world.
+// The input of the estimate, in the normalised world.
 struct NormalisedInput {
   const Sequence& sequence;
   const std::vector<GroundPoint>& points;

@@ -55,7 +55,7 @@ class BinaryDescriptors {
   explicit BinaryDescriptors(const cv::Mat& grey) : grey_(grey) {}
 
   // Hamming distance between the plain descriptor of one pixel and the mirrored one of another.
-  // None where either has none.
+  // Empty where one of them has no descriptor.
   std::optional<double> Distance(const Eigen::Vector2d& pixel,
                                  const Eigen::Vector2d& mirror_pixel) const {
     const std::scoped_lock lock(described_->mutex);

@@ -10,7 +10,7 @@ namespace soslam {
 // Number of first bytes by which FileKind tells files apart.
 inline constexpr size_t kFileKindSize = 256;
 
-// What a file is by its first bytes, to say it where another kind was expected: "an HDF5 file", "a
+// The kind of a file by its first bytes, for messages that expected another: "an HDF5 file", "a
 // PNG image", "a Git LFS pointer, ...", "JSON", "XML". Empty for other texts and for unknown kinds.
 std::string FileKind(std::string_view first_bytes);
 std::string KindOfFile(const std::filesystem::path& path);

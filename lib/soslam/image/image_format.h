@@ -75,7 +75,7 @@ class ImageBytes {
 // of several images the first.
 enum class OtherContent { kRawPhoto, kSeveralImages, kAnimation };
 
-// None for one image, and for files of unknown content. RAW photos are recognised by their content,
+// Empty for one image, and for unknown content. RAW photos are recognised by their content,
 // also under another name, and by the extensions of cameras.
 std::optional<OtherContent> FindOtherContent(const std::filesystem::path& path,
                                              const ImageBytes& file);
@@ -100,7 +100,7 @@ struct ImageFormat {
   const char* whole = nullptr;
   // Sets the file's orientation to 1, for formats whose decoders turn images unasked; else null.
   void (*clear_orientation)(std::span<char> file) = nullptr;
-  // What a file of this format has in place of one image; null if the format allows nothing else.
+  // Other content of a file of this format than one image; null if the format allows none.
   std::optional<OtherContent> (*other_content)(const ImageBytes& file) = nullptr;
 };
 inline constexpr size_t kSignatureSize = 12;

@@ -12,7 +12,7 @@
 
 namespace soslam {
 
-// What runs a network.
+// The library that runs a network.
 enum class NetworkBackend { kOpenCv, kOnnxRuntime };
 inline constexpr const char* kNetworkBackendNames[] = {"opencv", "onnxruntime"};
 
@@ -62,7 +62,7 @@ class Network {
 // Throws InputError when the backend cannot load the network.
 std::unique_ptr<Network> LoadNetwork(const NetworkFile& file);
 
-// What LoadNetwork calls, with the exceptions of the backends. Without ONNX Runtime in this
+// LoadNetwork with the exceptions of the backends. Without ONNX Runtime in this
 // software, its network is null and its version empty: ReadNetworkFile has refused it.
 std::unique_ptr<Network> LoadWithOpenCv(const NetworkFile& file);
 std::unique_ptr<Network> LoadWithOnnxRuntime(const NetworkFile& file);

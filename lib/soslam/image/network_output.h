@@ -27,7 +27,7 @@ inline constexpr const char* kOutputLayoutNames[] = {
     "auto", "v5",           "v8",         "yolox",  "end_to_end",
     "detr", "detr_softmax", "detr_boxes", "paddle", "paddle_nms"};
 
-// What the layouts differ in.
+// Differences between the layouts.
 struct LayoutProperties {
   bool has_objectness = false;   // scores of classes are given the presence of an object
   bool has_one_class = false;    // a candidate has one class, with its score
@@ -45,7 +45,7 @@ enum class PixelValues {
 };
 inline constexpr const char* kPixelValuesNames[] = {"auto", "rgb_0_1", "bgr_0_255", "rgb_imagenet"};
 
-// What a network takes, and what it returns; nothing is kAuto.
+// A network's input and output; nothing is kAuto.
 struct NetworkFormat {
   OutputLayout layout = OutputLayout::kV5;
   PixelValues pixel_values = PixelValues::kRgbUnit;

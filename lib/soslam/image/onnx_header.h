@@ -19,7 +19,7 @@ struct OnnxValue {
   std::vector<std::int64_t> shape;  // 0 for a side that is fixed only when the network runs
 };
 
-// What an ONNX file states about its network.
+// The properties of a network that its ONNX file states.
 struct OnnxHeader {
   std::vector<OnnxValue> inputs;  // without weights, which older files list among them
   std::vector<OnnxValue> outputs;

@@ -111,7 +111,7 @@ std::string HowToJoin(const fs::path& network) {
       network.string());
 }
 
-// What an input beside the image takes; empty for unknown ones. Networks are told that the image
+// The value of an input beside the image; empty for unknown ones. Networks are told that the image
 // has the size of their input, so that boxes are in its pixels, and that none of these is padding.
 cv::Mat FurtherInput(const OnnxValue& input, const cv::Size& size) {
   const auto width = static_cast<float>(size.width), height = static_cast<float>(size.height);

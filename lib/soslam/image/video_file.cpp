@@ -95,7 +95,7 @@ ImageTurn ReadTurn(const std::uint8_t* display_matrix, const std::string& place)
 
 }  // namespace
 
-// What FFmpeg's libraries hold of a video.
+// The state of FFmpeg's libraries for a video.
 struct VideoReader::Decoder {
   AVFormatContext* format = nullptr;
   AVStream* stream = nullptr;  // of `format`
@@ -254,7 +254,7 @@ cv::Mat VideoReader::Image(int mode) {
                     "a smaller size",
                     path_.string(), frame.width, frame.height, aspect));
   }
-  // The same values on every processor.
+  // Values that are equal on every processor.
   constexpr int kExact = SWS_ACCURATE_RND | SWS_BITEXACT;
   decoder_->converter =
       sws_getCachedContext(decoder_->converter, frame.width, frame.height,

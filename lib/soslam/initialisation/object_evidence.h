@@ -83,7 +83,7 @@ struct ObjectEvidence {
 
 inline constexpr int kYawsOfPictures = 72;
 
-// What the picture in a box tells, and the ray through the box's centre.
+// The evidence of the picture in a box, and the ray through the box's centre.
 struct PictureView {
   std::shared_ptr<const BoxAppearance> appearance;
   Eigen::Vector3d ray_in_reference;
@@ -151,8 +151,8 @@ std::vector<double> DirectionWeights(const std::vector<Eigen::Vector3d>& directi
 // Gives the views their DirectionWeights about NearestToAllRays.
 void WeighViews(double correlation_rad, ObjectEvidence* evidence);
 
-// What the priors of ratio, size, scene and yaw say of a landmark; a prior of weight zero says
-// nothing. Single frames, several views and the back end have these terms.
+// Costs of a landmark by the priors of ratio, size, scene and yaw; a prior of weight zero has
+// none. Single frames, several views and the back end have these terms.
 std::vector<std::unique_ptr<const LandmarkTerm>> PriorTerms(const ObjectEvidence& evidence);
 
 // Costs of a landmark: boxes, with the tangent points at their depths on the linearisation point,

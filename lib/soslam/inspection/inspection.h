@@ -56,7 +56,7 @@ struct Fact {
   std::string doc = {};  // what a field is
 };
 
-// What an artefact says, for a person.
+// An artefact's contents in words and tables, for a person.
 struct Inspection {
   std::string title;  // file, kind and what that holds
   std::vector<Fact> facts;

@@ -24,10 +24,10 @@ std::vector<std::vector<Landmark>> HypothesesByObject(const Sequence& sequence,
 std::vector<std::optional<Landmark>> ChooseInitialLandmarks(const Sequence& sequence,
                                                             const LandmarkEstimates& estimates);
 
-// The same for upright bodies. Of the hypotheses of all observations, the estimates from several
-// views, and the minima of ProfileOverYaw, the best of every few degrees of yaw is fitted to the
-// boxes, edges and ratio prior of views spread over the whole sequence, with constant poses; the
-// one of lowest cost is taken, which with symmetry images includes the texture of these views.
+// Initial landmarks of upright bodies. Of the hypotheses of all observations, estimates from
+// several views, and the minima of ProfileOverYaw, the best of every few degrees of yaw is fitted
+// to the boxes, edges and ratio prior of views spread over the whole sequence, with constant poses;
+// the one of lowest cost is taken, which with symmetry images includes the texture of these views.
 // `input.initial_landmarks` may be empty and is not used. Throws InputError as CheckBackEndInput.
 std::vector<std::optional<Landmark>> ChooseInitialUprightLandmarks(
     const BackEndInput& input, const LandmarkEstimates& estimates, const OptimiseOptions& options,

@@ -26,7 +26,7 @@ enum class CurvatureRows { kWith, kWithout };
 NormalEquations MakeNormalEquations(const std::vector<double*>& blocks, CurvatureRows curvature,
                                     ceres::Problem* problem);
 
-// What the linearised problem says of blocks that are constant (Rao's score test): by how much the
+// Rao's score test of blocks that are constant: the linearised problem predicts by how much the
 // cost would fall if they were free, and where to. What is variable moves with them.
 class ScoreTest {
  public:

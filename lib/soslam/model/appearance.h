@@ -17,7 +17,7 @@ struct LogRatios {
   Eigen::Vector2f sigma;
 };
 
-// What the picture in a box tells of the object.
+// Evidence of the picture in a box about the object.
 struct BoxAppearance {
   // Negative logarithms of the likelihoods of the azimuths from which the object is seen: the angle
   // about its z axis from its x axis to the direction towards the camera, against the ray through

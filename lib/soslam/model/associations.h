@@ -31,7 +31,7 @@ inline constexpr std::array kBoxFateNames = {"alone",     "explained", "second",
                                              "duplicate", "by_hand",   "deleted"};
 inline constexpr const auto& NamesOf(BoxFate) { return kBoxFateNames; }
 
-// What became of a track.
+// The end of a track.
 enum class TrackFate {
   kObject,
   kTooFewDetections,  // false: fewer than min_observations

@@ -158,7 +158,7 @@ void Describe(Visitor& visit, PlaneEstimate& plane) {
   visit.Field("plane_in_world", &plane.plane_in_world, "where it is");
 }
 
-// What keeps these rows from being those of a sequence, in words; empty if nothing does, or it is
+// The reason why these rows are not those of a sequence, in words; empty if they are, or it is
 // null.
 std::string RowsViolation(const std::vector<FramePose>& trajectory,
                           const std::vector<PlaneEstimate>& planes, const Sequence* sequence);

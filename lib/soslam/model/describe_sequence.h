@@ -276,7 +276,7 @@ void Describe(Visitor& visit, RejectedTable& table) {
   });
 }
 
-// What no type of a sequence expresses, in words; empty where it is met. Detections and other rows
+// The broken rule that no type expresses, in words, or empty: detections and other rows
 // ascend by frame, then object; frames of a segment are contiguous, as odometry connects
 // neighbours.
 template <typename Item>

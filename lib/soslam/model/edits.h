@@ -40,7 +40,7 @@ struct Edits {
   std::string file = {};  // where they are from, for messages; not part of the file
 };
 
-// What a sequence says of the edits that were applied to it.
+// The record, in a sequence, of the edits that were applied to it.
 struct AppliedEdits {
   std::map<std::string, int> kinds;  // number by name of the kind
   std::string sha256;                // of edits.json

@@ -8,7 +8,7 @@
 
 namespace soslam {
 
-// What the images of a sequence have in common.
+// Points that the images of a sequence share.
 struct ImageMatches {
   std::vector<PointTrack> tracks;
   std::vector<BoxColours> colours = {};  // of each of Sequence::detections

@@ -12,7 +12,7 @@ namespace soslam {
 
 inline constexpr size_t kQuarterTurns = 4;
 
-// What a detector finds in images and in turned copies of them: most where they are upright.
+// Detections in images and in turned copies of them: most are found where images are upright.
 struct ImageTurns {
   struct Row {
     std::string image;  // path in the dataset folder

@@ -132,7 +132,7 @@ inline constexpr MetricOf<DriftSummary> kDriftMetrics[] = {
 // Standard deviation of the yaw about the landmark's z axis, degrees; none without covariance.
 std::optional<double> YawSigmaDeg(const ObjectEstimate& estimate);
 
-// What an estimate says of itself.
+// Metrics that an estimate has without ground truth.
 inline constexpr MetricOf<ObjectEstimate> kEstimateMetrics[] = {
     {{"yaw_sigma", "yaw sigma", "deg", 2},
      [](const ObjectEstimate& estimate) { return MetricValues{YawSigmaDeg(estimate)}; }},

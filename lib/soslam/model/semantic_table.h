@@ -20,7 +20,7 @@ struct SemanticTable {
   std::optional<ShapePrior> default_prior;   // for labels that are not in the table
 
   bool Contains(const std::string& label) const;
-  // None if the table has neither the label nor a default.
+  // Empty if the table has neither the label nor a default.
   std::optional<ShapePrior> Find(const std::string& label) const;
   // Prior of an object whose label may be uncertain: of the mixture of its labels, with what is
   // known of its size. Labels of another mount than the most probable one's are left out.

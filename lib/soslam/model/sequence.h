@@ -135,7 +135,7 @@ struct SupportPlane {
   std::optional<Eigen::Vector3d> scene_axis_in_world = std::nullopt;
 };
 
-// What points and photos tell of a world, without what stands in it.
+// Up and horizontal planes of a world by its points and photos, without the objects in it.
 struct PointGround {
   Eigen::Vector3d up_in_world = Eigen::Vector3d::UnitZ();
   // On up (1 / rad^2), as SupportPlane::attitude_information.
@@ -183,7 +183,7 @@ struct Detection {
   std::optional<Landmark> true_landmark_in_camera = std::nullopt;
   // Id of the object in Sequence::true_objects, where the dataset gives it.
   std::optional<int> true_object_id = std::nullopt;
-  // What the picture tells, where a stage uses it (AddAppearance). Not stored with the sequence.
+  // The picture's evidence, where a stage uses it (AddAppearance). Not stored with the sequence.
   std::shared_ptr<const BoxAppearance> appearance = nullptr;
 };
 

@@ -88,7 +88,7 @@ struct ShapePrior {
 // heights, so the variance of the logarithm of a depth is the sum of those of height and ratio.
 ShapePrior TurnedToSupport(const ShapePrior& prior);
 
-// The same for an object that rests on a face, from the prior of one that stands; height_m stays
+// The prior of an object that rests on a face, from that of one that stands; height_m stays
 // that of its own z axis.
 ShapePrior OnFace(const ShapePrior& standing, RestingFace face);
 

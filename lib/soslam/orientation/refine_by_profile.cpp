@@ -79,7 +79,7 @@ RefinedObservation RefineOnFace(const Sequence& sequence, const Detection& detec
     const SymmetryDescriptor descriptor(symmetry_options.descriptor, symmetry_image, camera,
                                         InOwnAxes(best));
     for (const Eigen::Vector2d& pixel : texture->pixels) {
-      // None at the border of the image, by rounding.
+      // Empty at the border of the image, by rounding.
       RecordPair(pixel, descriptor.Evaluate(pixel, std::nullopt, false, texture->mirror_plane),
                  &record);
     }

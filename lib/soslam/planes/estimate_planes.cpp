@@ -155,7 +155,7 @@ EstimatedPlane FindEstimatedPlane(const StandingBodies& standing, const RefinedP
   return {plane, point, level.col(0), at_point * covariance * at_point.transpose(), of_points};
 }
 
-// What an object stands on: the plane that it decided about, if any, or that of lowest cost.
+// An object's support: the plane that it decided about, if any, or that of lowest cost.
 ObjectSupport FindSupport(const ObjectEvidence& evidence, const std::optional<int>& decided,
                           const std::vector<EstimatedPlane>& planes) {
   ObjectSupport support;
@@ -276,7 +276,7 @@ std::optional<PlanesEstimate> EstimateFrom(const Eigen::Vector3d& up, const UpPr
 }
 
 // The planes of all objects with one mount, the z axes of whose bodies point up as in `up_prior`.
-// None when no object's boxes determine the height of a plane.
+// Empty when no object's boxes determine the height of a plane.
 std::optional<PlanesEstimate> EstimatePlanes(const Sequence& sequence,
                                              const std::vector<std::optional<ShapePrior>>& priors,
                                              Mount mount, const UpPrior& up_prior,

@@ -9,7 +9,7 @@
 
 namespace soslam {
 
-// What a detector finds in an image and in its turned copies (ImageTurns::Row::scores), and where
+// Scores of an image and of its turned copies (ImageTurns::Row::scores), and the direction in which
 // up would be in the camera's frame.
 struct TurnedScores {
   std::array<double, kQuarterTurns> scores;

@@ -142,7 +142,7 @@ std::string SheetHtml(const Sheet& sheet, const Sequence& sequence) {
     const std::string name =
         has_name ? fmt::format("{}: {}", frame.id, fs::path(frame.image).filename().string())
                  : fmt::format("{}", frame.id);
-    // What names a box for other programs: {"image": "rgb/7.png", "box": [10, 20, 30, 40]}.
+    // The name of a box for other programs: {"image": "rgb/7.png", "box": [10, 20, 30, 40]}.
     const std::string anchor =
         fmt::format("{{\"image\": {}, \"box\": [{:.1f}, {:.1f}, {:.1f}, {:.1f}]}}",
                     JsonText(frame.image), box.x_min, box.y_min, box.x_max, box.y_max);

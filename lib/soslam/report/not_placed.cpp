@@ -54,7 +54,7 @@ SeenBox FindSeenBox(const Associations::DetectionName& name, const Sequence& seq
 }
 
 std::vector<NotPlaced> TracksLeftOut(const Associations& associations, const Sequence& sequence) {
-  // What is left out of each track, in the order of the list.
+  // The part of each track that is left out, in the order of the list.
   std::map<const Associations::TrackRow*, NotPlaced> left_out;
   std::map<const Associations::TrackRow*, std::map<std::string, int>> labels;
   for (const Associations::DetectionRow& detection : associations.detections) {

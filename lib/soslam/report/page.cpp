@@ -143,7 +143,7 @@ class PageMaker {
     page_.unfinished.push_back({Utf8(result.name), Utf8(state), is_shown});
   }
 
-  // What `make` makes of the variant of most interest; empty where its files are not valid.
+  // The result of `make` for the variant of most interest; empty where its files are not valid.
   template <typename Make>
   std::string SectionOfBest(const char* what, const Make& make) {
     const size_t index = DetailedVariants(page_).front();
@@ -209,7 +209,7 @@ class PageMaker {
   std::map<fs::path, size_t> sequence_of_, symmetry_of_;  // by resolved path
 };
 
-// What the data of a dataset's page and those of the page of all datasets share.
+// Data that the page of a dataset and the page of all datasets share.
 json MakeHead(const DatasetPage& page) {
   json head = {{"dataset", Utf8(page.name)},  {"url", EncodeUrl(page.name)},
                {"unfinished", json::array()}, {"findings", json::array()},

@@ -70,7 +70,7 @@ void AddJpegs(const std::vector<Picture*>& pictures, int max_px, const ImageSour
 // element that others can show as well, none if empty.
 std::string PictureSvg(const Picture& picture, const std::string& name, const std::string& id);
 
-// What a map says of an object, in words.
+// A map's statements about an object, in words.
 
 // The scale of a map's world.
 struct ScaleOfMap {
@@ -126,7 +126,7 @@ SeenBox FindSeenBox(const Associations::DetectionName& name, const Sequence& seq
 // The tracks that association left out, by associations.json. `sequence` as for FindSeenBox.
 std::vector<NotPlaced> TracksLeftOut(const Associations& associations, const Sequence& sequence);
 
-// What a variant's folder has no landmark for, with the most boxes first: tracks that association
+// Things without a landmark in a variant's folder, most boxes first: tracks that association
 // left out, and objects without a landmark in the map.
 std::vector<NotPlaced> CollectUnplaced(const std::filesystem::path& folder, const MapEstimate& map,
                                        const Sequence& sequence);
@@ -207,7 +207,7 @@ nlohmann::json PageGridInFrame(
 // moves the plane to the detection's plane_in_camera, with which odometry need not agree.
 Rigid3d CameraAbovePlane(const Sequence& sequence, const Detection& detection);
 
-// What produced a variant's landmarks: a back end, all frames without one, or each observation.
+// The source of a variant's landmarks: a back end, all frames without one, or each observation.
 enum class VariantKind { kMap, kViews, kFrames };
 inline constexpr std::array kVariantKindNames = {"map", "views", "frames"};
 inline constexpr const auto& NamesOf(VariantKind) { return kVariantKindNames; }

@@ -67,7 +67,7 @@ auto CountMeans(const Means& means) {
   return std::ranges::count_if(means, [](const auto& mean) { return mean.has_value(); });
 }
 
-// None for variants without the metric. Only single-frame variants have first observations; their
+// Empty for variants without the metric. Only single-frame variants have first observations; their
 // number of objects is that over all observations, as metrics.json has no other.
 Means CollectMeans(const DatasetResult& dataset, const Layout& layout, const RowKind& kind) {
   Means means(layout.variants.size());

@@ -39,7 +39,7 @@ struct AboutDataset {
   bool HasDetectorBoxes() const { return boxes_of == BoxesOf::kDetector; }
 };
 
-// What tables say of a dataset beside its name.
+// A dataset's facts in tables, beside its name.
 struct DatasetFacts : AboutDataset {
   std::optional<DatasetCounts> counts = std::nullopt;  // none without a sequence.json
   std::string odometry = {};                           // origin of the pose estimates
@@ -158,7 +158,7 @@ enum class DamagedFiles { kRefused, kNoted };
 std::vector<DatasetResult> ReadResults(const std::filesystem::path& results,
                                        DamagedFiles damaged = DamagedFiles::kRefused);
 
-// What tables say of the dataset in <results>/<dataset>/: from the sequence.json of the first
+// The facts of the dataset in <results>/<dataset>/: from the sequence.json of the first
 // variant that has one, and from <settings>/<dataset>.json; `settings` may be empty. Throws
 // InputError.
 DatasetFacts ReadFacts(const DatasetResult& dataset, const std::filesystem::path& settings);

@@ -169,7 +169,7 @@ struct SequenceCounts {
 // Throws InputError as ReadSequence.
 SequenceCounts CountObservations(const std::filesystem::path& sequence_file);
 
-// None without metrics, observations, or the timing of one of these stages.
+// Empty without metrics, observations, or the timing of one of these stages.
 std::optional<LandmarkTime> TimePerLandmark(const VariantResult& variant,
                                             const SequenceCounts& counts);
 

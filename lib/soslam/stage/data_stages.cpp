@@ -28,7 +28,7 @@ void RunImport(const ImportOptions& options, const StageFiles& files, int thread
   std::vector<std::filesystem::path> inputs;
   Sequence sequence = ImportDataset(folder, options, &inputs);
   if (options.scene_axes) AddSceneAxes(folder, threads, &sequence, &inputs);
-  // What soslam-reconstruct found when it made the poses of the dataset, and the images to which it
+  // Findings of soslam-reconstruct when it made the poses of the dataset, and images to which it
   // gave none. Other programs have files of that name as well.
   const std::filesystem::path reconstructed = folder / "reconstruction.json";
   if (Exists(reconstructed) && options.folder.trajectory_format == TrajectoryFormat::kTum &&

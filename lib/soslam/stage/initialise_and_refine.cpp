@@ -46,7 +46,7 @@ void CheckPointEvidence(const PointOptions& options, std::string_view method,
   CheckHasPoints(options, files);
 }
 
-// None unless points are evidence.
+// Empty unless points are evidence.
 std::optional<PointsInFrames> ReadPointsInFrames(const PointOptions& options,
                                                  const Sequence& sequence,
                                                  const StageFiles& files) {

@@ -159,7 +159,7 @@ AllDetections DetectInBoth(const std::vector<fs::path>& images, const DetectIn& 
   return all;
 }
 
-// What the detector finds in some images as they are and turned by quarters.
+// Detections in some images as they are and turned by quarters.
 ImageTurns SeenInTurns(const std::vector<ListedImage>& listed, const std::vector<fs::path>& paths,
                        const std::function<AllDetections(const std::vector<fs::path>& images,
                                                          const ImageTurn& turn)>& detect) {
@@ -265,7 +265,7 @@ void RunDetect(const DetectorOptions& options, const StageFiles& files, int thre
   const auto detect = [&](const std::vector<fs::path>& some, ImageOrientation orientation) {
     return DetectAll(some, network, format, labels, options, orientation, upright, threads);
   };
-  // What was found in place of "auto" and "surer": the same comes out again.
+  // The values found in place of "auto" and "surer", which give the same result again.
   DetectorOptions found = options;
   const AllDetections all = DetectInBoth(images, detect, &found.image_orientation);
   CheckBoxesArePossible(all.tally, format, network.name);

@@ -38,7 +38,7 @@ namespace fs = std::filesystem;
 // The beginning of an odometry.txt that this stage wrote, and may replace.
 const std::string kOdometryMark = fmt::format("# {}:", kReconstructed);
 
-// What is known before COLMAP runs.
+// Knowledge before COLMAP runs.
 struct Given {
   std::vector<ListedImage> images;
   std::optional<LensCamera> camera;

@@ -51,7 +51,7 @@ std::string DescribeTracks(const Association& association) {
   return CountsInWords(ReasonsInWords(counts));
 }
 
-// What the matches of soslam-match tell of pairs of boxes; nothing where they are not used.
+// Evidence of the matches of soslam-match about pairs of boxes; empty where they are not used.
 PairEvidence ReadPairs(bool shared_points, const Sequence& sequence, const StageFiles& files) {
   if (!shared_points) return {};
   if (!files.contains("matches")) {
@@ -320,7 +320,7 @@ void RunPlanes(const PlanesOptions& options, const StageFiles& files, int thread
 
 namespace {
 
-// What turns.json of the dataset folder has of the frames; empty where there is none, or it is of
+// Rows of turns.json of the dataset folder, by frame; empty where there is none, or it is of
 // upright images and the cameras are of stored ones.
 std::vector<TurnedImage> TurnedImages(const Sequence& sequence, const StageFiles& files,
                                       std::vector<std::filesystem::path>* inputs) {
@@ -339,7 +339,7 @@ std::vector<TurnedImage> TurnedImages(const Sequence& sequence, const StageFiles
   return images;
 }
 
-// What told the scale, in the order of how much it pulls at it.
+// Prints the evidence of the scale, in the order of how much it pulls at it.
 void PrintPulls(const GroundEstimate& estimate) {
   constexpr double kLeastPull = 0.01;
   std::vector<const WorldReport::ObjectRow*> pulling;

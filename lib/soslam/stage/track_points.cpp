@@ -46,7 +46,7 @@ std::vector<FeatureTrack> FollowFeatures(const Sequence& sequence,
   return tracker.Tracks();
 }
 
-// None if a track's image points are not those of one static point, or it is too far away.
+// Empty if a track's image points are not those of one static point, or it is too far away.
 std::optional<MapPoint> TriangulateTrack(const Sequence& sequence,
                                          const std::vector<FrameImage>& images,
                                          const FeatureTrack& track, const TrackOptions& options) {

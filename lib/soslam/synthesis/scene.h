@@ -81,7 +81,7 @@ struct SceneNoise {
   double false_share = 0.0;  // expected number of boxes of nothing for each detection
 };
 
-// What the detector's boxes are around: whole objects, each wholly inside the image with its centre
+// The subjects of the detector's boxes: whole objects, each wholly inside the image with its centre
 // in sight; or the visible parts of objects, also of those that are cut or partly hidden.
 enum class BoxedPart { kWhole, kVisible };
 inline constexpr std::array kBoxedPartNames = {"whole", "visible"};  // in files

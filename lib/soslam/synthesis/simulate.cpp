@@ -13,14 +13,14 @@
 namespace soslam {
 namespace {
 
-// What a camera sees of a body, in rays through the centres of pixels.
+// The part of a body that a camera sees, in rays through the centres of pixels.
 struct VisiblePart {
   int silhouette = 0;  // rays that meet the body, inside and outside the image
   int visible = 0;     // rays inside the image that meet it first
   Eigen::AlignedBox2d pixels;
 };
 
-// What a camera sees of each body. Silhouettes are counted as far as three images reach in each
+// The visible part of each body. Silhouettes are counted as far as three images reach in each
 // direction, the camera's own in their middle.
 std::vector<VisiblePart> VisibleParts(const Camera& camera,
                                       const std::vector<Landmark>& bodies_in_camera) {

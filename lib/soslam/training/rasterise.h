@@ -30,7 +30,7 @@ struct PlacedModel {
   std::vector<Material> materials;  // in place of the model's
 };
 
-// What a pinhole camera sees of models: colours (blue, green, red; 32-bit float), inverse depth (0
+// A pinhole camera's image of models: colours (blue, green, red; 32-bit float), inverse depth (0
 // where there is nothing) and the number of the model (0 where there is none).
 class Rasteriser {
  public:
